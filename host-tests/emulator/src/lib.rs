@@ -1,0 +1,1 @@
+//! The firmware image on an emulated board.
