@@ -1,0 +1,59 @@
+//! What the firmware needs to know of a design beside its tables: integers in stated units.
+
+/// Constants of the design that tables were generated for; written by the generator next to them.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct DesignConstants {
+    /// The design's `name`.
+    pub name: &'static str,
+    /// First eight bytes, big-endian, of the SHA-256 of the design's canonical text.
+    pub hash: u64,
+    /// Version of the tables' layout and of the generator.
+    pub table_version: u32,
+    /// Gauge pressure at rest, pascals.
+    pub rest_pressure: i32,
+    /// Gauge pressure at the end of the tables, pascals.
+    pub maximum_pressure: i32,
+    /// The pressure transducer.
+    pub transducer: Transducer,
+}
+
+/// The pressure transducer of a design.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Transducer {
+    /// Gauge pressure at the lower and upper end of its range, pascals.
+    pub range: [i32; 2],
+    /// Smallest change it tells apart, millipascals.
+    pub resolution: i32,
+    /// One standard deviation of one sample at the converter, millipascals.
+    pub noise: i32,
+    /// Its kind, with what only that kind has.
+    pub kind: TransducerKind,
+}
+
+/// Kinds of transducer.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum TransducerKind {
+    /// Voltage proportional to the supply, read by the chip's converter.
+    Ratiometric {
+        /// Output at the two ends of the range, in `1 / 65536` of the supply, increasing.
+        output: [u32; 2],
+    },
+    /// Honeywell ABP2 on I2C.
+    Abp2 {
+        /// Seven-bit bus address.
+        address: u8,
+        /// Counts of 24 bits at the two ends of the range (transfer function A: 10 % and 90 % of 2^24;
+        /// B: 30 % and 70 %).
+        counts: [u32; 2],
+    },
+    /// TE MS5837-02BA on I2C: absolute pressure, range from its own calibration words.
+    Ms5837 {
+        /// Seven-bit bus address.
+        address: u8,
+    },
+    /// Infineon DPS310 on I2C: absolute pressure, range from its own coefficients.
+    Dps310 {
+        /// Seven-bit bus address.
+        address: u8,
+    },
+}

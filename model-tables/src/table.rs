@@ -1,0 +1,203 @@
+//! The lookup on the chip: pressure rise -> force and indentation, integers only.
+//!
+//! Segments widen geometrically. With `y = clamp(rise, 0, maximum) + bias`, one count of leading zeros names
+//! the octave of `y`, one shift left brings its highest set bit to bit 31, and what is left of that word, read
+//! as a signed number, *is* the place inside the octave: `t = 2^31 (f - 1)` for a fraction `0 <= f < 1`. Both
+//! outputs share it, each a polynomial evaluated by Horner's rule in products that keep their upper 32 bits.
+//! There is no search, no division and no branch on data, and no input can panic.
+//!
+//! The tables of a design are a constant, so the compiler folds everything but the coefficients.
+
+use crate::units::{Micronewtons, Nanometres, PressureRise};
+
+/// Coefficients of one segment, constant term first.
+///
+/// In units of `2^-shift` of the output. The argument is `u = (f - 1) / 2`, from -1/2 at the segment's lower
+/// end to just below 0 at its upper end, so the constant term is the value at the upper end.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[repr(C)]
+pub struct Segment<const FORCE: usize, const INDENTATION: usize> {
+    /// Coefficients of the force, `2^-force_shift` micronewtons.
+    pub force: [i32; FORCE],
+    /// Coefficients of the indentation, `2^-indentation_shift` nanometres.
+    pub indentation: [i32; INDENTATION],
+}
+
+/// The tables of one design: `SEGMENTS` segments, polynomials of `FORCE` and `INDENTATION` coefficients.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Tables<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize> {
+    /// `k`: a count of pressure rise is `1 / 2^k` pascal.
+    pub pressure_fraction_bits: u32,
+    /// Last input covered, counts; inputs above it read as it does, flagged. `maximum + bias < 2^31`.
+    pub maximum: i32,
+    /// Added to the input before its octave is taken, counts, >= 1: the first segment starts at zero input.
+    pub bias: i32,
+    /// Leading zeros of `maximum + bias`: the octave of the first entry of `segments`.
+    pub top_leading_zeros: u32,
+    /// Every octave is cut into `2^split_bits` equal segments.
+    pub split_bits: u32,
+    /// Bits of the force's coefficients below one micronewton.
+    pub force_shift: u32,
+    /// Bits of the indentation's coefficients below one nanometre.
+    pub indentation_shift: u32,
+    /// Segments, the highest octave first; inside an octave upwards.
+    pub segments: [Segment<FORCE, INDENTATION>; SEGMENTS],
+}
+
+/// What the tables say of a pressure rise.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Reading {
+    /// Force on the plate.
+    pub force: Micronewtons,
+    /// Indentation of the pole.
+    pub indentation: Nanometres,
+    /// The input lay above the tables: force and indentation are lower bounds.
+    pub saturated: bool,
+    /// The input was negative and read as zero.
+    pub negative: bool,
+}
+
+impl<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize>
+    Tables<SEGMENTS, FORCE, INDENTATION>
+{
+    /// Bytes of the coefficients; the other fields become immediates of the code.
+    pub const BYTES: usize = size_of::<[Segment<FORCE, INDENTATION>; SEGMENTS]>();
+
+    /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // so that the fields fold into the code of the one call site
+    pub fn lookup(&self, rise: PressureRise) -> Reading {
+        // Neither sum of two positive `i32` leaves the `u32`.
+        let top = (self.maximum as u32).wrapping_add(self.bias as u32);
+        let shifted = (rise.0.max(0) as u32).wrapping_add(self.bias as u32);
+        let y = shifted.min(top);
+        // `y >= bias`, so its highest bit is not below the bias's: setting that bit changes nothing but what
+        // the compiler can prove of the index.
+        let lowest_octave = 0x8000_0000_u32.wrapping_shr(self.bias.leading_zeros());
+        let leading_zeros = (y | lowest_octave).leading_zeros();
+        let normalised = y.wrapping_shl(leading_zeros);
+        let octave = leading_zeros.wrapping_sub(self.top_leading_zeros);
+        let (index, place) = if self.split_bits == 0 {
+            (octave, normalised)
+        } else {
+            let part = (normalised & 0x7fff_ffff) >> (31 - self.split_bits);
+            let place = normalised.wrapping_shl(self.split_bits) | 0x8000_0000;
+            ((octave << self.split_bits) | part, place)
+        };
+        let t = place as i32;
+        // The index is in range for every input of a generated table; the fallback keeps panics out.
+        let segment = self
+            .segments
+            .get(index as usize)
+            .unwrap_or(&self.segments[SEGMENTS - 1]);
+        Reading {
+            force: Micronewtons(horner(&segment.force, t) >> self.force_shift),
+            indentation: Nanometres(horner(&segment.indentation, t) >> self.indentation_shift),
+            saturated: shifted > top,
+            negative: rise.0 < 0,
+        }
+    }
+}
+
+/// `c0 + u (c1 + u (c2 + ...))` with `u = t / 2^32`, every product rounded down.
+///
+/// Generated coefficients stay below 2^30 in magnitude and `|u| <= 1/2`, so no sum leaves 32 bits.
+#[inline(always)]
+#[allow(clippy::inline_always)] // part of the lookup
+fn horner<const N: usize>(coefficients: &[i32; N], t: i32) -> i32 {
+    let mut sum = 0;
+    for &coefficient in coefficients.iter().rev() {
+        let product = (i64::from(sum) * i64::from(t)) >> 32;
+        sum = coefficient.wrapping_add(product as i32);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Force `= rise` and indentation `= rise^2` on 0..=12 counts, in two octaves of `y = rise + 4`.
+    ///
+    /// Octave [4, 8): u = (y - 8) / 8, so y = 8 + 8 u. Octave [8, 16]: y = 16 + 16 u (the last, partial one
+    /// ends at y = 15 with maximum 11).
+    const HAND_MADE: Tables<2, 2, 3> = Tables {
+        pressure_fraction_bits: 2,
+        maximum: 11,
+        bias: 4,
+        top_leading_zeros: 28,
+        split_bits: 0,
+        force_shift: 4,
+        indentation_shift: 6,
+        segments: [
+            // rise = 12 + 16 u; rise^2 = 144 + 384 u + 256 u^2.
+            Segment {
+                force: [12 << 4, 16 << 4],
+                indentation: [144 << 6, 384 << 6, 256 << 6],
+            },
+            // rise = 4 + 8 u; rise^2 = 16 + 64 u + 64 u^2.
+            Segment {
+                force: [4 << 4, 8 << 4],
+                indentation: [16 << 6, 64 << 6, 64 << 6],
+            },
+        ],
+    };
+
+    #[test]
+    fn evaluates_the_polynomial_of_the_segment() {
+        for rise in 0..=11 {
+            let reading = HAND_MADE.lookup(PressureRise(rise));
+            assert_eq!(reading.force, Micronewtons(rise));
+            assert_eq!(reading.indentation, Nanometres(rise * rise));
+            assert!(!reading.saturated && !reading.negative);
+        }
+    }
+
+    #[test]
+    fn holds_and_flags_both_ends() {
+        let last = HAND_MADE.lookup(PressureRise(11));
+        for rise in [12, 13, 1 << 20, i32::MAX] {
+            let reading = HAND_MADE.lookup(PressureRise(rise));
+            assert_eq!(
+                (reading.force, reading.indentation),
+                (last.force, last.indentation)
+            );
+            assert!(reading.saturated && !reading.negative);
+        }
+        for rise in [-1, -1000, i32::MIN] {
+            let reading = HAND_MADE.lookup(PressureRise(rise));
+            assert_eq!(
+                (reading.force, reading.indentation),
+                (Micronewtons(0), Nanometres(0))
+            );
+            assert!(reading.negative && !reading.saturated);
+        }
+    }
+
+    /// The same functions with every octave cut in two: [4, 6) [6, 8) [8, 12) [12, 16).
+    #[test]
+    fn cuts_octaves_into_equal_parts() {
+        let line = |upper: i32, width: i32| Segment {
+            force: [(upper - 4) << 4, (2 * width) << 4],
+            indentation: [7, 0],
+        };
+        let tables = Tables::<4, 2, 2> {
+            pressure_fraction_bits: 2,
+            maximum: 11,
+            bias: 4,
+            top_leading_zeros: 28,
+            split_bits: 1,
+            force_shift: 4,
+            indentation_shift: 0,
+            segments: [line(12, 4), line(16, 4), line(6, 2), line(8, 2)],
+        };
+        for rise in 0..=11 {
+            assert_eq!(tables.lookup(PressureRise(rise)).force, Micronewtons(rise));
+        }
+    }
+
+    #[test]
+    fn counts_the_bytes_of_the_coefficients() {
+        assert_eq!(Tables::<5, 3, 3>::BYTES, 120);
+    }
+}
