@@ -1,0 +1,228 @@
+//! What the fingertip says: values with a status, or the reason why there are none.
+
+use core::fmt;
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
+
+/// Time since reset, microseconds. 64 bits do not wrap in 584 000 years.
+#[derive(Clone, Copy, Debug, Default, Eq, Ord, PartialEq, PartialOrd)]
+pub struct Microseconds(pub u64);
+
+/// Why there is no reading. A fault never becomes a number.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Fault {
+    /// The transducer's line rests at or above the top of its window: a broken wire, held up by the pull-up.
+    SensorOpen,
+    /// The transducer's line rests at or below the bottom of its window: a short to ground, or no supply.
+    SensorShort,
+    /// The zero is not taken yet.
+    Zeroing,
+    /// The filter is filling again after a gap.
+    Settling,
+    /// Samples were lost between the converter and the signal path.
+    SamplesLost,
+    /// The converter gave no samples in time.
+    ConverterStalled,
+}
+
+impl Fault {
+    /// Every fault with its code in telemetry; 0 is not used, so that a cleared word names none.
+    pub const CODES: [(Self, u8); 6] = [
+        (Self::SensorOpen, 1),
+        (Self::SensorShort, 2),
+        (Self::Zeroing, 3),
+        (Self::Settling, 4),
+        (Self::SamplesLost, 5),
+        (Self::ConverterStalled, 6),
+    ];
+
+    /// The reason in words.
+    pub const fn reason(self) -> &'static str {
+        match self {
+            Self::SensorOpen => "sensor open",
+            Self::SensorShort => "sensor short",
+            Self::Zeroing => "zeroing",
+            Self::Settling => "settling",
+            Self::SamplesLost => "samples lost",
+            Self::ConverterStalled => "converter stalled",
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.reason())
+    }
+}
+
+impl core::error::Error for Fault {}
+
+/// What qualifies a reading, any number of reasons at once; none means it holds as it stands.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Warnings(u16);
+
+impl Warnings {
+    /// No qualification.
+    pub const NONE: Self = Self(0);
+    /// Beyond the tables' or the transducer's range: force and indentation are lower bounds.
+    pub const SATURATED: Self = Self(1);
+    /// The zero was not measured at rest since power-up but is the design's: all values may be offset.
+    pub const ZERO_UNVERIFIED: Self = Self(2);
+    /// The pressure is below the zero by more than noise: a leak, or a zero taken while pressed. Force and
+    /// indentation are 0 but too low by the unknown offset.
+    pub const BELOW_ZERO: Self = Self(4);
+
+    /// Every reason with its word, the gravest first.
+    const REASONS: [(Self, &'static str); 3] = [
+        (Self::SATURATED, "saturated"),
+        (Self::BELOW_ZERO, "below zero"),
+        (Self::ZERO_UNVERIFIED, "zero unverified"),
+    ];
+
+    /// The bits, as telemetry carries them.
+    pub const fn bits(self) -> u16 {
+        self.0
+    }
+
+    /// The warnings of a word in telemetry, or nothing when it has a bit that no warning owns.
+    pub fn from_bits(bits: u16) -> Option<Self> {
+        let known = Self::REASONS.iter().fold(0, |all, (one, _)| all | one.0);
+        (bits & !known == 0).then_some(Self(bits))
+    }
+
+    /// These and those.
+    #[must_use]
+    pub const fn and(self, those: Self) -> Self {
+        Self(self.0 | those.0)
+    }
+
+    /// These when `condition`, else none.
+    #[must_use]
+    pub const fn when(self, condition: bool) -> Self {
+        if condition { self } else { Self::NONE }
+    }
+
+    /// Whether all of `those` are among these.
+    pub const fn contains(self, those: Self) -> bool {
+        self.0 & those.0 == those.0
+    }
+}
+
+impl fmt::Display for Warnings {
+    /// The reasons, the gravest first, separated by "; ".
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut separator = "";
+        for (one, word) in Self::REASONS {
+            if self.contains(one) {
+                write!(f, "{separator}{word}")?;
+                separator = "; ";
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Force and indentation at a pressure rise, with what qualifies them.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Measurement {
+    /// Pressure over the zero, filtered.
+    pub pressure_rise: PressureRise,
+    /// Force on the fingertip.
+    pub force: Micronewtons,
+    /// Indentation of its pole.
+    pub indentation: Nanometres,
+    /// What qualifies the three.
+    pub warnings: Warnings,
+}
+
+/// One report of the signal path.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Report {
+    /// The instant the values belong to: the middle of the samples they are made of.
+    pub time: Microseconds,
+    /// The values, or the reason why there are none.
+    pub outcome: Result<Measurement, Fault>,
+}
+
+impl Report {
+    /// How far to believe the report.
+    pub fn status(&self) -> Status {
+        match self.outcome {
+            Ok(Measurement { warnings, .. }) if warnings == Warnings::NONE => Status::Ok,
+            Ok(Measurement { warnings, .. }) => Status::Warning(warnings),
+            Err(fault) => Status::Fault(fault),
+        }
+    }
+}
+
+/// How far to believe a report. Displays as `ok`, `warning: <reasons>` or `fault: <reason>`.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Status {
+    /// The values hold.
+    Ok,
+    /// There are values, qualified.
+    Warning(Warnings),
+    /// There are no values.
+    Fault(Fault),
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ok => f.write_str("ok"),
+            Self::Warning(warnings) => write!(f, "warning: {warnings}"),
+            Self::Fault(fault) => write!(f, "fault: {fault}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(outcome: Result<Measurement, Fault>) -> Report {
+        Report {
+            time: Microseconds(0),
+            outcome,
+        }
+    }
+
+    fn qualified(warnings: Warnings) -> Report {
+        report(Ok(Measurement {
+            warnings,
+            ..Measurement::default()
+        }))
+    }
+
+    #[test]
+    fn a_status_reads_as_scripts_expect_it() {
+        assert_eq!(qualified(Warnings::NONE).status().to_string(), "ok");
+        assert_eq!(
+            qualified(Warnings::SATURATED).status().to_string(),
+            "warning: saturated"
+        );
+        assert_eq!(
+            qualified(Warnings::ZERO_UNVERIFIED.and(Warnings::SATURATED))
+                .status()
+                .to_string(),
+            "warning: saturated; zero unverified"
+        );
+        assert_eq!(
+            report(Err(Fault::SensorOpen)).status().to_string(),
+            "fault: sensor open"
+        );
+    }
+
+    #[test]
+    fn unknown_warning_bits_are_not_believed() {
+        assert_eq!(Warnings::from_bits(7).map(Warnings::bits), Some(7));
+        assert_eq!(Warnings::from_bits(8), None);
+    }
+
+    #[test]
+    fn codes_of_faults_are_distinct_and_not_zero() {
+        for (i, (_, code)) in Fault::CODES.iter().enumerate() {
+            assert!(*code != 0);
+            assert!(Fault::CODES[..i].iter().all(|(_, other)| other != code));
+        }
+    }
+}

@@ -1,0 +1,643 @@
+//! Frames on the wire: one per report, and a hello once a second.
+//!
+//! A frame is a body, its CRC, both stuffed with COBS so that no byte of them is zero, and one zero byte at
+//! the end. A reader that joins in the middle, or meets noise, is in step again after the next zero.
+//!
+//! All numbers are little-endian; signed ones are two's complement. Every body opens alike:
+//!
+//! | offset | bytes | field |
+//! |---|---|---|
+//! | 0 | 1 | protocol version, 1 |
+//! | 1 | 1 | kind: 1 reading, 2 fault, 3 hello |
+//! | 2 | 2 | sequence number; one counter over all kinds, wraps from 65535 to 0. A gap is a lost frame |
+//! | 4 | 8 | time since reset, microseconds. Of a reading or fault: the middle of its samples |
+//!
+//! Kind 1, a reading (27 bytes; on the wire 31 with CRC, COBS and the zero):
+//!
+//! | offset | bytes | field |
+//! |---|---|---|
+//! | 12 | 2 | warnings, one bit each: 0 saturated (force and indentation are lower bounds), 1 zero unverified, 2 below zero; none set: the reading is ok |
+//! | 14 | 1 | `k` of the pressure rise's unit, 0 to 31 |
+//! | 15 | 4 | pressure rise, signed, counts of `1 / 2^k` pascal |
+//! | 19 | 4 | force, signed, micronewtons |
+//! | 23 | 4 | indentation, signed, nanometres |
+//!
+//! Kind 2, a fault (13 bytes; on the wire 17): no reading, because
+//!
+//! | offset | bytes | field |
+//! |---|---|---|
+//! | 12 | 1 | 1 sensor open, 2 sensor short, 3 zeroing, 4 settling, 5 samples lost, 6 converter stalled |
+//!
+//! Kind 3, hello (36 bytes; on the wire 40):
+//!
+//! | offset | bytes | field |
+//! |---|---|---|
+//! | 12 | 3 | version of the firmware: major, minor, patch |
+//! | 15 | 1 | why the chip was reset last: 0 unknown, 1 power-on, 2 pin, 3 software, 4 watchdog, 5 brown-out, 6 low power |
+//! | 16 | 8 | hash of the design whose tables are in the image |
+//! | 24 | 4 | time from one report to the next, microseconds |
+//! | 28 | 4 | blocks of samples lost since reset |
+//! | 32 | 4 | frames dropped since reset because the line was not free |
+//!
+//! The two bytes after the body are its CRC-16/IBM-3740 (polynomial 0x1021, initial value 0xFFFF, not
+//! reflected, no final exclusive-or; check value 0x29B1), low byte first. Python has it as
+//! `binascii.crc_hqx(body, 0xFFFF)`.
+//!
+//! A frame of another version, an unknown kind, code or length is refused as a whole: none of it is a number.
+
+use crate::report::{Fault, Measurement, Microseconds, Report, Warnings};
+use core::fmt;
+use crc::{CRC_16_IBM_3740, Crc};
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
+
+/// Version of the layout above.
+pub const PROTOCOL_VERSION: u8 = 1;
+
+const HEADER: usize = 12;
+const READING: usize = HEADER + 15;
+const FAULT: usize = HEADER + 1;
+const HELLO: usize = HEADER + 24;
+const CRC_BYTES: usize = 2;
+
+/// Longest body with its CRC.
+const MAXIMUM_PLAIN: usize = HELLO + CRC_BYTES;
+
+/// Longest frame on the wire: COBS adds one byte to anything below 255, the zero is one more.
+pub const MAXIMUM_FRAME: usize = MAXIMUM_PLAIN + 2;
+
+const CHECK: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
+
+/// Why the chip was reset last.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum ResetCause {
+    /// The chip does not say.
+    Unknown,
+    /// Power was switched on.
+    PowerOn,
+    /// The reset pin was pulled.
+    Pin,
+    /// The firmware asked for it.
+    Software,
+    /// A watchdog was not fed.
+    Watchdog,
+    /// The supply sagged.
+    BrownOut,
+    /// A forbidden entry into a low-power mode.
+    LowPower,
+}
+
+impl ResetCause {
+    const CODES: [(Self, u8); 7] = [
+        (Self::Unknown, 0),
+        (Self::PowerOn, 1),
+        (Self::Pin, 2),
+        (Self::Software, 3),
+        (Self::Watchdog, 4),
+        (Self::BrownOut, 5),
+        (Self::LowPower, 6),
+    ];
+}
+
+impl fmt::Display for ResetCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Unknown => "unknown",
+            Self::PowerOn => "power-on",
+            Self::Pin => "pin",
+            Self::Software => "software",
+            Self::Watchdog => "watchdog",
+            Self::BrownOut => "brown-out",
+            Self::LowPower => "low power",
+        })
+    }
+}
+
+/// Who is speaking, once a second.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Hello {
+    /// When.
+    pub time: Microseconds,
+    /// Version of the firmware: major, minor, patch.
+    pub firmware: [u8; 3],
+    /// Why the chip was reset last.
+    pub reset_cause: ResetCause,
+    /// Hash of the design whose tables are in the image.
+    pub design_hash: u64,
+    /// From one report to the next, microseconds.
+    pub report_period: u32,
+    /// Blocks of samples lost since reset.
+    pub blocks_lost: u32,
+    /// Frames dropped since reset.
+    pub frames_dropped: u32,
+}
+
+/// What one frame says.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Message {
+    /// A report of the signal path.
+    Report {
+        /// The report.
+        report: Report,
+        /// `k`: a count of its pressure rise is `1 / 2^k` pascal. 0 to 31; a fault carries none and reads 0.
+        pressure_fraction_bits: u8,
+    },
+    /// Who is speaking.
+    Hello(Hello),
+}
+
+/// A message and its place in the stream.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Frame {
+    /// Counts frames, wraps.
+    pub sequence: u16,
+    /// What it says.
+    pub message: Message,
+}
+
+/// Why bytes are not a frame.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum DecodeError {
+    /// The stuffing is broken, or there are more bytes than any frame has.
+    Stuffing,
+    /// Fewer bytes than the shortest frame has.
+    Short,
+    /// The check value does not fit the bytes.
+    Crc,
+    /// Another version of the layout.
+    Version(u8),
+    /// No such kind.
+    Kind(u8),
+    /// The bytes are not as many as the kind has.
+    Length,
+    /// A field holds what the layout does not allow; its offset.
+    Field(u8),
+}
+
+impl fmt::Display for DecodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stuffing => f.write_str("the COBS stuffing is broken or the frame is too long"),
+            Self::Short => f.write_str("the frame is too short"),
+            Self::Crc => f.write_str("the CRC does not fit"),
+            Self::Version(found) => {
+                write!(
+                    f,
+                    "protocol version {found}, this reader knows {PROTOCOL_VERSION}"
+                )
+            }
+            Self::Kind(found) => write!(f, "unknown kind of frame {found}"),
+            Self::Length => f.write_str("the length does not fit the kind of frame"),
+            Self::Field(offset) => write!(f, "the field at offset {offset} holds no allowed value"),
+        }
+    }
+}
+
+impl core::error::Error for DecodeError {}
+
+/// Bytes of one frame, the closing zero included.
+pub struct Encoded {
+    bytes: [u8; MAXIMUM_FRAME],
+    length: usize,
+}
+
+impl Encoded {
+    /// The bytes to send.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.bytes[..self.length.min(MAXIMUM_FRAME)]
+    }
+}
+
+/// The bytes of a frame, ready for the wire.
+pub fn encode(frame: &Frame) -> Encoded {
+    let mut body = Writer::new();
+    match &frame.message {
+        Message::Report {
+            report,
+            pressure_fraction_bits,
+        } => match report.outcome {
+            Ok(measurement) => {
+                body.header(1, frame.sequence, report.time);
+                body.put(measurement.warnings.bits().to_le_bytes());
+                body.put([*pressure_fraction_bits]);
+                body.put(measurement.pressure_rise.0.to_le_bytes());
+                body.put(measurement.force.0.to_le_bytes());
+                body.put(measurement.indentation.0.to_le_bytes());
+            }
+            Err(fault) => {
+                body.header(2, frame.sequence, report.time);
+                body.put([code_of(&Fault::CODES, fault)]);
+            }
+        },
+        Message::Hello(hello) => {
+            body.header(3, frame.sequence, hello.time);
+            body.put(hello.firmware);
+            body.put([code_of(&ResetCause::CODES, hello.reset_cause)]);
+            body.put(hello.design_hash.to_le_bytes());
+            body.put(hello.report_period.to_le_bytes());
+            body.put(hello.blocks_lost.to_le_bytes());
+            body.put(hello.frames_dropped.to_le_bytes());
+        }
+    }
+    body.put(CHECK.checksum(body.filled()).to_le_bytes());
+
+    let mut bytes = [0; MAXIMUM_FRAME];
+    // The destination has room for the longest frame, so this cannot fail; a zero alone would be an empty frame.
+    let stuffed = cobs::try_encode(body.filled(), &mut bytes[..MAXIMUM_FRAME - 1]).unwrap_or(0);
+    Encoded {
+        bytes,
+        length: stuffed + 1,
+    }
+}
+
+/// The frame in the bytes between two zeros (the zeros themselves left out).
+///
+/// # Errors
+/// [`DecodeError`] for anything that [`encode`] would not have written.
+pub fn decode(stuffed: &[u8]) -> Result<Frame, DecodeError> {
+    let mut plain = [0; MAXIMUM_PLAIN];
+    if stuffed.contains(&0) {
+        return Err(DecodeError::Stuffing);
+    }
+    let length = cobs::decode(stuffed, &mut plain)
+        .map_err(|_| DecodeError::Stuffing)?
+        .frame_size();
+    let plain = plain.get(..length).ok_or(DecodeError::Stuffing)?;
+    let (body, check) = plain
+        .split_last_chunk::<CRC_BYTES>()
+        .filter(|(body, _)| body.len() >= HEADER)
+        .ok_or(DecodeError::Short)?;
+    if CHECK.checksum(body) != u16::from_le_bytes(*check) {
+        return Err(DecodeError::Crc);
+    }
+    read_body(body)
+}
+
+fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
+    let mut fields = Reader(body);
+    let [version, kind] = fields.take()?;
+    if version != PROTOCOL_VERSION {
+        return Err(DecodeError::Version(version));
+    }
+    let sequence = u16::from_le_bytes(fields.take()?);
+    let time = Microseconds(u64::from_le_bytes(fields.take()?));
+    let expected = match kind {
+        1 => READING,
+        2 => FAULT,
+        3 => HELLO,
+        _ => return Err(DecodeError::Kind(kind)),
+    };
+    if body.len() != expected {
+        return Err(DecodeError::Length);
+    }
+    let message = match kind {
+        1 => {
+            let bits = u16::from_le_bytes(fields.take()?);
+            let warnings = Warnings::from_bits(bits).ok_or(DecodeError::Field(12))?;
+            let [pressure_fraction_bits] = fields.take()?;
+            if pressure_fraction_bits > 31 {
+                return Err(DecodeError::Field(14));
+            }
+            let measurement = Measurement {
+                pressure_rise: PressureRise(i32::from_le_bytes(fields.take()?)),
+                force: Micronewtons(i32::from_le_bytes(fields.take()?)),
+                indentation: Nanometres(i32::from_le_bytes(fields.take()?)),
+                warnings,
+            };
+            Message::Report {
+                report: Report {
+                    time,
+                    outcome: Ok(measurement),
+                },
+                pressure_fraction_bits,
+            }
+        }
+        2 => {
+            let [code] = fields.take()?;
+            let fault = named_by(&Fault::CODES, code).ok_or(DecodeError::Field(12))?;
+            Message::Report {
+                report: Report {
+                    time,
+                    outcome: Err(fault),
+                },
+                pressure_fraction_bits: 0,
+            }
+        }
+        _ => {
+            let firmware = fields.take()?;
+            let [code] = fields.take()?;
+            let reset_cause = named_by(&ResetCause::CODES, code).ok_or(DecodeError::Field(15))?;
+            Message::Hello(Hello {
+                time,
+                firmware,
+                reset_cause,
+                design_hash: u64::from_le_bytes(fields.take()?),
+                report_period: u32::from_le_bytes(fields.take()?),
+                blocks_lost: u32::from_le_bytes(fields.take()?),
+                frames_dropped: u32::from_le_bytes(fields.take()?),
+            })
+        }
+    };
+    Ok(Frame { sequence, message })
+}
+
+/// Frames out of a stream of bytes that come one at a time.
+#[derive(Debug)]
+pub struct Decoder {
+    bytes: [u8; MAXIMUM_FRAME],
+    length: usize,
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self {
+            bytes: [0; MAXIMUM_FRAME],
+            length: 0,
+        }
+    }
+}
+
+impl Decoder {
+    /// Takes the next byte; at the zero that closes a frame, what the frame says. Zeros alone say nothing.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Frame, DecodeError>> {
+        if byte != 0 {
+            if let Some(place) = self.bytes.get_mut(self.length) {
+                *place = byte;
+            }
+            // Past the end it only grows, so that a flood of bytes without a zero reads as too long.
+            self.length = self.length.saturating_add(1);
+            return None;
+        }
+        let length = core::mem::take(&mut self.length);
+        match self.bytes.get(..length) {
+            Some([]) => None,
+            Some(stuffed) => Some(decode(stuffed)),
+            None => Some(Err(DecodeError::Stuffing)),
+        }
+    }
+}
+
+fn code_of<T: Copy + PartialEq>(codes: &[(T, u8)], wanted: T) -> u8 {
+    codes
+        .iter()
+        .find(|(one, _)| *one == wanted)
+        .map_or(0, |(_, code)| *code)
+}
+
+fn named_by<T: Copy>(codes: &[(T, u8)], wanted: u8) -> Option<T> {
+    codes
+        .iter()
+        .find(|(_, code)| *code == wanted)
+        .map(|(one, _)| *one)
+}
+
+/// Fields put one after the other.
+struct Writer {
+    bytes: [u8; MAXIMUM_PLAIN],
+    length: usize,
+}
+
+impl Writer {
+    const fn new() -> Self {
+        Self {
+            bytes: [0; MAXIMUM_PLAIN],
+            length: 0,
+        }
+    }
+
+    fn put<const N: usize>(&mut self, field: [u8; N]) {
+        if let Some(place) = self.bytes.get_mut(self.length..self.length + N) {
+            place.copy_from_slice(&field);
+            self.length += N;
+        }
+    }
+
+    fn header(&mut self, kind: u8, sequence: u16, time: Microseconds) {
+        self.put([PROTOCOL_VERSION, kind]);
+        self.put(sequence.to_le_bytes());
+        self.put(time.0.to_le_bytes());
+    }
+
+    fn filled(&self) -> &[u8] {
+        &self.bytes[..self.length.min(MAXIMUM_PLAIN)]
+    }
+}
+
+/// Fields taken one after the other.
+struct Reader<'a>(&'a [u8]);
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], DecodeError> {
+        let (field, rest) = self.0.split_first_chunk::<N>().ok_or(DecodeError::Length)?;
+        self.0 = rest;
+        Ok(*field)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Sequence 0x0102, 3 000 500 us, saturated, k = 8, 642 Pa = 164352 counts, 1.5 N, 2.5 mm; the CRC by
+    /// Python's `binascii.crc_hqx`, COBS by hand.
+    const READING_FRAME: &[u8] = &[
+        0x08, 0x01, 0x01, 0x02, 0x01, 0xB4, 0xC8, 0x2D, 0x01, 0x01, 0x01, 0x01, 0x02, 0x01, 0x02, 0x08, 0x03,
+        0x82, 0x02, 0x04, 0x60, 0xE3, 0x16, 0x04, 0xA0, 0x25, 0x26, 0x03, 0x5C, 0xD8, 0x00,
+    ];
+
+    /// Sequence 65535, time 0, sensor open.
+    const FAULT_FRAME: &[u8] = &[
+        0x05, 0x01, 0x02, 0xFF, 0xFF, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x01, 0xAB, 0xAF, 0x00,
+    ];
+
+    /// Sequence 7, 1 s, version 0.1.0, watchdog, hash 0x0123456789ABCDEF, 1000 us, 2 blocks, 259 frames.
+    const HELLO_FRAME: &[u8] = &[
+        0x04, 0x01, 0x03, 0x07, 0x04, 0x40, 0x42, 0x0F, 0x01, 0x01, 0x01, 0x01, 0x01, 0x02, 0x01, 0x0C, 0x04,
+        0xEF, 0xCD, 0xAB, 0x89, 0x67, 0x45, 0x23, 0x01, 0xE8, 0x03, 0x01, 0x02, 0x02, 0x01, 0x01, 0x03, 0x03,
+        0x01, 0x01, 0x03, 0x65, 0x75, 0x00,
+    ];
+
+    fn reading() -> Frame {
+        Frame {
+            sequence: 0x0102,
+            message: Message::Report {
+                report: Report {
+                    time: Microseconds(3_000_500),
+                    outcome: Ok(Measurement {
+                        pressure_rise: PressureRise(164_352),
+                        force: Micronewtons(1_500_000),
+                        indentation: Nanometres(2_500_000),
+                        warnings: Warnings::SATURATED,
+                    }),
+                },
+                pressure_fraction_bits: 8,
+            },
+        }
+    }
+
+    fn fault() -> Frame {
+        Frame {
+            sequence: 65535,
+            message: Message::Report {
+                report: Report {
+                    time: Microseconds(0),
+                    outcome: Err(Fault::SensorOpen),
+                },
+                pressure_fraction_bits: 0,
+            },
+        }
+    }
+
+    fn hello() -> Frame {
+        Frame {
+            sequence: 7,
+            message: Message::Hello(Hello {
+                time: Microseconds(1_000_000),
+                firmware: [0, 1, 0],
+                reset_cause: ResetCause::Watchdog,
+                design_hash: 0x0123_4567_89AB_CDEF,
+                report_period: 1000,
+                blocks_lost: 2,
+                frames_dropped: 259,
+            }),
+        }
+    }
+
+    #[test]
+    fn the_check_is_the_catalogues() {
+        assert_eq!(CHECK.checksum(b"123456789"), 0x29B1);
+    }
+
+    #[test]
+    fn frames_are_the_documented_bytes() {
+        for (frame, bytes) in [
+            (reading(), READING_FRAME),
+            (fault(), FAULT_FRAME),
+            (hello(), HELLO_FRAME),
+        ] {
+            assert_eq!(encode(&frame).as_bytes(), bytes);
+            assert_eq!(decode(&bytes[..bytes.len() - 1]), Ok(frame));
+        }
+    }
+
+    /// A body with its CRC, stuffed: what only a broken or newer sender would write.
+    fn stuffed(body: &[u8]) -> Vec<u8> {
+        let mut plain = body.to_vec();
+        plain.extend(CHECK.checksum(body).to_le_bytes());
+        cobs::encode_vec(&plain)
+    }
+
+    #[test]
+    fn what_the_layout_does_not_allow_is_refused() {
+        let mut body = [1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1];
+        assert!(decode(&stuffed(&body)).is_ok());
+        assert_eq!(decode(&stuffed(&body[..12])), Err(DecodeError::Length));
+        assert_eq!(decode(&stuffed(&body[..11])), Err(DecodeError::Short));
+        body[12] = 99;
+        assert_eq!(decode(&stuffed(&body)), Err(DecodeError::Field(12)));
+        body[1] = 9;
+        assert_eq!(decode(&stuffed(&body)), Err(DecodeError::Kind(9)));
+        body[0] = 2;
+        assert_eq!(decode(&stuffed(&body)), Err(DecodeError::Version(2)));
+        assert_eq!(decode(&[]), Err(DecodeError::Stuffing));
+        assert_eq!(decode(&[200, 1]), Err(DecodeError::Stuffing));
+    }
+
+    #[test]
+    fn a_stream_is_in_step_again_after_noise() {
+        let mut decoder = Decoder::default();
+        let mut stream = vec![0x55; 300];
+        stream.extend([0, 0]);
+        stream.extend(READING_FRAME);
+        stream.extend(&FAULT_FRAME[3..]);
+        stream.extend(HELLO_FRAME);
+        let answers: Vec<_> = stream.iter().filter_map(|&byte| decoder.push(byte)).collect();
+        assert_eq!(answers.len(), 4);
+        assert_eq!(answers[0], Err(DecodeError::Stuffing));
+        assert_eq!(answers[1], Ok(reading()));
+        assert!(answers[2].is_err());
+        assert_eq!(answers[3], Ok(hello()));
+    }
+
+    fn any_frame() -> impl Strategy<Value = Frame> {
+        let measurement = (any::<i32>(), any::<i32>(), any::<i32>(), 0_u16..8).prop_map(
+            |(pressure_rise, force, indentation, bits)| Measurement {
+                pressure_rise: PressureRise(pressure_rise),
+                force: Micronewtons(force),
+                indentation: Nanometres(indentation),
+                warnings: Warnings::from_bits(bits).expect("three bits are known"),
+            },
+        );
+        let outcome = prop_oneof![
+            measurement.prop_map(Ok),
+            (0..Fault::CODES.len()).prop_map(|i| Err(Fault::CODES[i].0)),
+        ];
+        let report = (any::<u64>(), outcome, 0_u8..32).prop_map(|(time, outcome, bits)| Message::Report {
+            report: Report {
+                time: Microseconds(time),
+                outcome,
+            },
+            pressure_fraction_bits: if outcome.is_ok() { bits } else { 0 },
+        });
+        let hello = (
+            any::<u64>(),
+            any::<[u8; 3]>(),
+            0..ResetCause::CODES.len(),
+            any::<u64>(),
+            any::<[u32; 3]>(),
+        )
+            .prop_map(|(time, firmware, cause, design_hash, counters)| {
+                Message::Hello(Hello {
+                    time: Microseconds(time),
+                    firmware,
+                    reset_cause: ResetCause::CODES[cause].0,
+                    design_hash,
+                    report_period: counters[0],
+                    blocks_lost: counters[1],
+                    frames_dropped: counters[2],
+                })
+            });
+        (any::<u16>(), prop_oneof![report, hello]).prop_map(|(sequence, message)| Frame { sequence, message })
+    }
+
+    proptest! {
+        #[test]
+        fn a_frame_survives_the_wire(frame in any_frame()) {
+            let encoded = encode(&frame);
+            let (last, stuffed) = encoded.as_bytes().split_last().expect("never empty");
+            prop_assert_eq!(*last, 0);
+            prop_assert!(!stuffed.contains(&0));
+            prop_assert_eq!(decode(stuffed), Ok(frame));
+        }
+
+        #[test]
+        fn one_flipped_bit_is_never_a_frame(frame in any_frame(), place in any::<prop::sample::Index>(), bit in 0..8) {
+            let mut bytes = encode(&frame).as_bytes().to_vec();
+            bytes.pop();
+            let index = place.index(bytes.len());
+            bytes[index] ^= 1_u8 << bit;
+            prop_assert!(decode(&bytes).is_err());
+        }
+
+        #[test]
+        fn no_bytes_make_the_reader_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            let _ = decode(&bytes);
+            let mut decoder = Decoder::default();
+            for byte in bytes {
+                let _ = decoder.push(byte);
+            }
+        }
+
+        #[test]
+        fn no_body_with_a_good_check_makes_the_reader_panic(
+            body in prop::collection::vec(any::<u8>(), 0..80), version in 0_u8..3, kind in 0_u8..5,
+        ) {
+            let mut body = body;
+            if let Some([a, b]) = body.first_chunk_mut() {
+                *a = version;
+                *b = kind;
+            }
+            let _ = decode(&stuffed(&body));
+        }
+    }
+}
