@@ -13,6 +13,8 @@
 pub mod constants;
 pub mod curve;
 pub mod design;
+#[cfg(feature = "std")]
+pub mod design_file;
 pub mod material;
 pub mod table;
 pub mod units;

@@ -1,0 +1,183 @@
+//! The design file: the TOML text that states a fingertip, read by build script and command line alike.
+//!
+//! Values keep the units of the file (their key names say which), so that reading what was printed gives the
+//! same design; [`DesignFile::design`] converts to SI. Every error is one line and names the key, the value
+//! found and what is allowed.
+
+mod error;
+mod print;
+mod section;
+mod sections;
+
+use crate::design::{Design, Membrane, RestBy};
+use crate::material::Law;
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+pub use error::{DesignFileError, Problem};
+
+/// A design file's content.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignFile {
+    /// The design's name: letters, digits, `-` and `_`.
+    pub name: String,
+    /// `[membrane]`.
+    pub membrane: MembraneSection,
+    /// `[material]`: constants in pascals.
+    pub material: Law,
+    /// `[rest]`.
+    pub rest: RestSection,
+    /// `[fluid] compliance_mm3_per_kpa`: tubing, actuator and bubbles, cubic millimetres per kilopascal.
+    pub compliance_mm3_per_kpa: f64,
+    /// `[press] max_indentation_mm`: end of the tables, millimetres.
+    pub max_indentation_mm: Option<f64>,
+    /// `[transducer]`.
+    pub transducer: Option<TransducerSection>,
+    /// `[accuracy]`.
+    pub accuracy: Option<Accuracy>,
+    /// `[actuator] diameter_mm`: free diameter of the feedback membrane, millimetres.
+    pub actuator_diameter_mm: Option<f64>,
+}
+
+/// `[membrane]`: undeformed, millimetres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MembraneSection {
+    /// Radial semi-axis of the mid-surface.
+    pub radial_semi_axis_mm: f64,
+    /// Axial semi-axis of the mid-surface.
+    pub axial_semi_axis_mm: f64,
+    /// Wall thickness.
+    pub thickness_mm: f64,
+}
+
+/// `[rest]`: exactly one of the four.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RestSection {
+    /// `pole_stretch`, > 1.
+    PoleStretch(f64),
+    /// `pressure_kpa`, gauge, > 0.
+    PressureKpa(f64),
+    /// `equator_radius_mm`, deformed.
+    EquatorRadiusMm(f64),
+    /// `height_mm` of the inflated dome over its base.
+    HeightMm(f64),
+}
+
+/// `[transducer]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransducerSection {
+    /// Gauge pressure at the two ends of its range, kilopascals.
+    pub range_kpa: [f64; 2],
+    /// Smallest change it tells apart, pascals.
+    pub resolution_pa: f64,
+    /// One standard deviation of one sample at the converter, pascals; `resolution_pa` where not given.
+    pub noise_pa: f64,
+    /// Its kind.
+    pub kind: TransducerKindSection,
+}
+
+/// `kind` of `[transducer]`, with the keys that only it has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TransducerKindSection {
+    /// `"ratiometric"`: a voltage proportional to the supply.
+    Ratiometric {
+        /// Output at the two ends of the range, fractions of the supply.
+        output_fraction_at_range: [f64; 2],
+    },
+    /// `"abp2"`: Honeywell ABP2.
+    Abp2 {
+        /// Seven-bit I2C address.
+        address: u8,
+        /// Transfer function.
+        transfer: Transfer,
+    },
+    /// `"ms5837-02ba"`: TE MS5837-02BA; its address is fixed.
+    Ms5837,
+    /// `"dps310"`: Infineon DPS310.
+    Dps310 {
+        /// Seven-bit I2C address, 0x76 or 0x77.
+        address: u8,
+    },
+}
+
+/// Transfer function of a Honeywell ABP2.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Transfer {
+    /// 10 % to 90 % of 2^24 counts.
+    A,
+    /// 30 % to 70 % of 2^24 counts.
+    B,
+}
+
+/// `[accuracy]`: what the tables must meet on every input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Largest error of the force, percent of reading.
+    pub force_percent_of_reading: f64,
+    /// Largest error of the indentation, percent of reading.
+    pub indentation_percent_of_reading: f64,
+    /// Where that begins, percent of the output at `max_indentation_mm`; below it the same error in absolute
+    /// terms.
+    pub from_percent_of_full_scale: f64,
+}
+
+impl DesignFile {
+    /// Reads and checks a design file.
+    ///
+    /// # Errors
+    /// [`DesignFileError`] with the file's name, and the line where there is one.
+    pub fn read(path: &Path) -> Result<Self, DesignFileError> {
+        let text = std::fs::read_to_string(path).map_err(|error| DesignFileError {
+            file: path.display().to_string(),
+            line: None,
+            problem: Problem::Unreadable(error.to_string()),
+        })?;
+        Self::parse(&text, &path.display().to_string())
+    }
+
+    /// Checks the text of a design file; `file` is the name that errors give it.
+    ///
+    /// # Errors
+    /// [`DesignFileError`] for the first thing that is wrong.
+    pub fn parse(text: &str, file: &str) -> Result<Self, DesignFileError> {
+        sections::parse(text).map_err(|(line, problem)| DesignFileError {
+            file: file.to_owned(),
+            line,
+            problem,
+        })
+    }
+
+    /// The design's canonical text: every value written out, comments left out.
+    pub fn canonical(&self) -> String {
+        print::canonical(self)
+    }
+
+    /// SHA-256 of [`DesignFile::canonical`].
+    pub fn hash(&self) -> [u8; 32] {
+        Sha256::digest(self.canonical()).into()
+    }
+
+    /// What the model needs of the design, in SI units.
+    pub fn design(&self) -> Design {
+        const MM: f64 = 1e-3;
+        const KPA: f64 = 1e3;
+        Design {
+            membrane: Membrane {
+                radial_semi_axis: self.membrane.radial_semi_axis_mm * MM,
+                axial_semi_axis: self.membrane.axial_semi_axis_mm * MM,
+                thickness: self.membrane.thickness_mm * MM,
+            },
+            law: self.material,
+            rest: match self.rest {
+                RestSection::PoleStretch(stretch) => RestBy::PoleStretch(stretch),
+                RestSection::PressureKpa(pressure) => RestBy::Pressure(pressure * KPA),
+                RestSection::EquatorRadiusMm(radius) => RestBy::EquatorRadius(radius * MM),
+                RestSection::HeightMm(height) => RestBy::Height(height * MM),
+            },
+            compliance: self.compliance_mm3_per_kpa * 1e-12,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

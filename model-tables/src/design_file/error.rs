@@ -1,0 +1,87 @@
+//! What can be wrong with a design file.
+
+use std::fmt;
+
+/// A design file that cannot be used; `Display` is one line.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct DesignFileError {
+    /// The file.
+    pub file: String,
+    /// Line of the offence, counted from 1; `None` where there is none (a missing section, a missing file).
+    pub line: Option<usize>,
+    /// What is wrong.
+    pub problem: Problem,
+}
+
+/// What is wrong.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Problem {
+    /// The file cannot be read.
+    Unreadable(String),
+    /// The text is not TOML.
+    Syntax(String),
+    /// A key or section that must be there is not.
+    Missing {
+        /// Its full name.
+        key: String,
+        /// What it has to be.
+        allowed: String,
+    },
+    /// A key or section nobody knows.
+    Unknown {
+        /// Its full name.
+        key: String,
+        /// The names known in that place.
+        allowed: String,
+    },
+    /// A value that cannot be.
+    Value {
+        /// Full name of the key.
+        key: String,
+        /// The value, as written.
+        found: String,
+        /// What it has to be.
+        allowed: String,
+    },
+    /// Something legal that this version cannot do.
+    Unsupported {
+        /// Full name of the key or section.
+        key: String,
+        /// What to do instead.
+        remedy: String,
+    },
+}
+
+impl fmt::Display for DesignFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file)?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        write!(f, ": {}", self.problem)
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable(reason) => write!(f, "the design file cannot be read: {}", one_line(reason)),
+            Self::Syntax(reason) => write!(f, "not valid TOML: {}", one_line(reason)),
+            Self::Missing { key, allowed } => write!(f, "`{key}` is missing: needs {allowed}"),
+            Self::Unknown { key, allowed } => write!(f, "`{key}` is not a known key: allowed are {allowed}"),
+            Self::Value { key, found, allowed } => {
+                write!(f, "`{key}` is {}: must be {allowed}", one_line(found))
+            }
+            Self::Unsupported { key, remedy } => {
+                write!(f, "`{key}` is not supported by this version: {remedy}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for DesignFileError {}
+
+/// Line breaks and runs of spaces become single spaces.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}

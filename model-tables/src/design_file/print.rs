@@ -1,0 +1,95 @@
+//! The canonical text of a design: the same design always gives the same bytes.
+
+use super::{DesignFile, RestSection, TransducerKindSection, Transfer};
+use crate::material::Law;
+use std::fmt::{self, Write};
+
+pub(super) fn canonical(file: &DesignFile) -> String {
+    let mut text = String::new();
+    print(file, &mut text).expect("writing to a string does not fail");
+    text
+}
+
+/// `{:?}` of an `f64` is the shortest text that reads back as the same bits, and is valid TOML.
+fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
+    writeln!(out, "name = \"{}\"", file.name)?;
+    let membrane = &file.membrane;
+    writeln!(out, "\n[membrane]")?;
+    writeln!(out, "radial_semi_axis_mm = {:?}", membrane.radial_semi_axis_mm)?;
+    writeln!(out, "axial_semi_axis_mm = {:?}", membrane.axial_semi_axis_mm)?;
+    writeln!(out, "thickness_mm = {:?}", membrane.thickness_mm)?;
+    writeln!(out, "\n[material]")?;
+    match file.material {
+        Law::NeoHookean { c1 } => writeln!(out, "law = \"neo-hookean\"\nc1_pa = {c1:?}")?,
+        Law::MooneyRivlin { c1, c2 } => {
+            writeln!(out, "law = \"mooney-rivlin\"\nc1_pa = {c1:?}\nc2_pa = {c2:?}")?;
+        }
+        Law::Yeoh { c1, c2, c3 } => {
+            writeln!(
+                out,
+                "law = \"yeoh\"\nc1_pa = {c1:?}\nc2_pa = {c2:?}\nc3_pa = {c3:?}"
+            )?;
+        }
+    }
+    writeln!(out, "\n[rest]")?;
+    match file.rest {
+        RestSection::PoleStretch(stretch) => writeln!(out, "pole_stretch = {stretch:?}")?,
+        RestSection::PressureKpa(pressure) => writeln!(out, "pressure_kpa = {pressure:?}")?,
+        RestSection::EquatorRadiusMm(radius) => writeln!(out, "equator_radius_mm = {radius:?}")?,
+        RestSection::HeightMm(height) => writeln!(out, "height_mm = {height:?}")?,
+    }
+    writeln!(out, "\n[fluid]")?;
+    writeln!(out, "compliance_mm3_per_kpa = {:?}", file.compliance_mm3_per_kpa)?;
+    if let Some(depth) = file.max_indentation_mm {
+        writeln!(out, "\n[press]\nmax_indentation_mm = {depth:?}")?;
+    }
+    if let Some(transducer) = &file.transducer {
+        writeln!(out, "\n[transducer]")?;
+        match transducer.kind {
+            TransducerKindSection::Ratiometric {
+                output_fraction_at_range: [low, high],
+            } => {
+                writeln!(
+                    out,
+                    "kind = \"ratiometric\"\noutput_fraction_at_range = [{low:?}, {high:?}]"
+                )?;
+            }
+            TransducerKindSection::Abp2 { address, transfer } => {
+                let transfer = match transfer {
+                    Transfer::A => "A",
+                    Transfer::B => "B",
+                };
+                writeln!(
+                    out,
+                    "kind = \"abp2\"\naddress = {address:#04x}\ntransfer = \"{transfer}\""
+                )?;
+            }
+            TransducerKindSection::Ms5837 => writeln!(out, "kind = \"ms5837-02ba\"")?,
+            TransducerKindSection::Dps310 { address } => {
+                writeln!(out, "kind = \"dps310\"\naddress = {address:#04x}")?;
+            }
+        }
+        let [low, high] = transducer.range_kpa;
+        writeln!(out, "range_kpa = [{low:?}, {high:?}]")?;
+        writeln!(out, "resolution_pa = {:?}", transducer.resolution_pa)?;
+        writeln!(out, "noise_pa = {:?}", transducer.noise_pa)?;
+    }
+    if let Some(accuracy) = &file.accuracy {
+        writeln!(out, "\n[accuracy]")?;
+        let rows = [
+            ("force_percent_of_reading", accuracy.force_percent_of_reading),
+            (
+                "indentation_percent_of_reading",
+                accuracy.indentation_percent_of_reading,
+            ),
+            ("from_percent_of_full_scale", accuracy.from_percent_of_full_scale),
+        ];
+        for (key, value) in rows {
+            writeln!(out, "{key} = {value:?}")?;
+        }
+    }
+    if let Some(diameter) = file.actuator_diameter_mm {
+        writeln!(out, "\n[actuator]\ndiameter_mm = {diameter:?}")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,277 @@
+//! Reading one table of a design file: typed values, and the keys that nobody asked for.
+
+use super::error::Problem;
+use std::fmt::Write as _;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The line (where there is one) and what is wrong there.
+pub(super) type Fault = (Option<usize>, Problem);
+
+/// Numbers a key may take.
+#[derive(Clone, Copy)]
+pub(super) struct Bounds {
+    low: f64,
+    high: f64,
+    open_low: bool,
+    unit: &'static str,
+}
+
+impl Bounds {
+    /// `low < value <= high`.
+    pub(super) const fn above(low: f64, high: f64, unit: &'static str) -> Self {
+        Self {
+            low,
+            high,
+            open_low: true,
+            unit,
+        }
+    }
+
+    /// `low <= value <= high`.
+    pub(super) const fn within(low: f64, high: f64, unit: &'static str) -> Self {
+        Self {
+            low,
+            high,
+            open_low: false,
+            unit,
+        }
+    }
+
+    fn admits(self, value: f64) -> bool {
+        let above = if self.open_low {
+            value > self.low
+        } else {
+            value >= self.low
+        };
+        above && value <= self.high
+    }
+
+    fn describe(self) -> String {
+        let from = if self.open_low { "above" } else { "at least" };
+        let mut text = format!("a number {from} {} and at most {}", self.low, self.high);
+        if !self.unit.is_empty() {
+            let _ = write!(text, " {}", self.unit);
+        }
+        text
+    }
+}
+
+/// One table, and the keys that were asked for.
+pub(super) struct Section<'a> {
+    text: &'a str,
+    path: &'static str,
+    header: usize,
+    table: &'a DeTable<'a>,
+    known: Vec<&'static str>,
+}
+
+impl<'a> Section<'a> {
+    /// The document itself.
+    pub(super) fn root(text: &'a str, table: &'a DeTable<'a>) -> Self {
+        Self {
+            text,
+            path: "",
+            header: 0,
+            table,
+            known: Vec::new(),
+        }
+    }
+
+    /// The sub-table of that name, if it is there.
+    pub(super) fn sub(&mut self, name: &'static str) -> Result<Option<Section<'a>>, Fault> {
+        let Some(value) = self.get(name) else {
+            return Ok(None);
+        };
+        match value.get_ref() {
+            DeValue::Table(table) => Ok(Some(Section {
+                text: self.text,
+                path: name,
+                header: value.span().start,
+                table,
+                known: Vec::new(),
+            })),
+            _ => Err(self.refuse(name, "a table of keys")),
+        }
+    }
+
+    /// The sub-table of that name, which must be there.
+    pub(super) fn needed_sub(&mut self, name: &'static str, holds: &str) -> Result<Section<'a>, Fault> {
+        match self.sub(name)? {
+            Some(section) => Ok(section),
+            None => Err((
+                None,
+                Problem::Missing {
+                    key: format!("[{name}]"),
+                    allowed: format!("a section with {holds}"),
+                },
+            )),
+        }
+    }
+
+    /// Whether the key is there.
+    pub(super) fn has(&mut self, key: &'static str) -> bool {
+        self.get(key).is_some()
+    }
+
+    /// A number, if the key is there.
+    pub(super) fn number(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<f64>, Fault> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        match to_number(value.get_ref()).filter(|number| bounds.admits(*number)) {
+            Some(number) => Ok(Some(number)),
+            None => Err(self.refuse(key, &bounds.describe())),
+        }
+    }
+
+    /// A number that must be there.
+    pub(super) fn needed_number(&mut self, key: &'static str, bounds: Bounds) -> Result<f64, Fault> {
+        match self.number(key, bounds)? {
+            Some(number) => Ok(number),
+            None => Err(self.missing(key, &bounds.describe())),
+        }
+    }
+
+    /// Two increasing numbers, if the key is there.
+    pub(super) fn pair(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<[f64; 2]>, Fault> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        let numbers: Option<Vec<f64>> = value
+            .get_ref()
+            .as_array()
+            .map(|array| array.iter().map(|item| to_number(item.get_ref())).collect())
+            .unwrap_or_default();
+        match numbers.as_deref() {
+            Some(&[low, high]) if low < high && bounds.admits(low) && bounds.admits(high) => {
+                Ok(Some([low, high]))
+            }
+            _ => Err(self.refuse(key, &pair_wanted(bounds))),
+        }
+    }
+
+    /// Two increasing numbers that must be there.
+    pub(super) fn needed_pair(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
+        match self.pair(key, bounds)? {
+            Some(pair) => Ok(pair),
+            None => Err(self.missing(key, &pair_wanted(bounds))),
+        }
+    }
+
+    /// A text, if the key is there.
+    pub(super) fn text(&mut self, key: &'static str, allowed: &str) -> Result<Option<&'a str>, Fault> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        match value.get_ref() {
+            DeValue::String(text) => Ok(Some(text.as_ref())),
+            _ => Err(self.refuse(key, allowed)),
+        }
+    }
+
+    /// A text that must be there.
+    pub(super) fn needed_text(&mut self, key: &'static str, allowed: &str) -> Result<&'a str, Fault> {
+        match self.text(key, allowed)? {
+            Some(text) => Ok(text),
+            None => Err(self.missing(key, allowed)),
+        }
+    }
+
+    /// The value of `key` is not `allowed`.
+    pub(super) fn refuse(&self, key: &str, allowed: &str) -> Fault {
+        let found = self
+            .table
+            .get(key)
+            .and_then(|value| self.text.get(value.span()))
+            .unwrap_or("not readable");
+        let problem = Problem::Value {
+            key: self.full(key),
+            found: found.to_owned(),
+            allowed: allowed.to_owned(),
+        };
+        (self.line_of(key), problem)
+    }
+
+    /// `key` is missing here.
+    pub(super) fn missing(&self, key: &str, allowed: &str) -> Fault {
+        let problem = Problem::Missing {
+            key: self.full(key),
+            allowed: allowed.to_owned(),
+        };
+        let line = (!self.path.is_empty()).then(|| self.line_at(self.header));
+        (line, problem)
+    }
+
+    /// `key` asks for something that this version cannot do.
+    pub(super) fn unsupported(&self, key: &str, remedy: &str) -> Fault {
+        let problem = Problem::Unsupported {
+            key: self.full(key),
+            remedy: remedy.to_owned(),
+        };
+        (self.line_of(key), problem)
+    }
+
+    /// The end of reading: a key that was never asked for is an error. The first in the file is named.
+    pub(super) fn finish(self) -> Result<(), Fault> {
+        let unknown = self
+            .table
+            .keys()
+            .filter(|key| !self.known.contains(&key.get_ref().as_ref()))
+            .min_by_key(|key| key.span().start);
+        match unknown {
+            None => Ok(()),
+            Some(key) => Err((
+                Some(self.line_at(key.span().start)),
+                Problem::Unknown {
+                    key: self.full(key.get_ref()),
+                    allowed: self.known.join(", "),
+                },
+            )),
+        }
+    }
+
+    fn get(&mut self, key: &'static str) -> Option<&'a Spanned<DeValue<'a>>> {
+        if !self.known.contains(&key) {
+            self.known.push(key);
+        }
+        self.table.get(key)
+    }
+
+    fn full(&self, key: &str) -> String {
+        if self.path.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{}.{key}", self.path)
+        }
+    }
+
+    fn line_of(&self, key: &str) -> Option<usize> {
+        let (key, _) = self.table.get_key_value(key)?;
+        Some(self.line_at(key.span().start))
+    }
+
+    fn line_at(&self, offset: usize) -> usize {
+        line_at(self.text, offset)
+    }
+}
+
+/// The line of a byte offset, counted from 1.
+pub(super) fn line_at(text: &str, offset: usize) -> usize {
+    1 + text.bytes().take(offset).filter(|&byte| byte == b'\n').count()
+}
+
+fn pair_wanted(bounds: Bounds) -> String {
+    format!("two increasing numbers in brackets, each {}", bounds.describe())
+}
+
+fn to_number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+            .ok()
+            .map(|number| number as f64),
+        _ => None,
+    }
+}

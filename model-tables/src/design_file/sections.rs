@@ -1,0 +1,249 @@
+//! The sections of a design file, in the order of the file.
+
+use super::error::Problem;
+use super::section::{Bounds, Fault, Section, line_at};
+use super::{
+    Accuracy, DesignFile, MembraneSection, RestSection, TransducerKindSection, TransducerSection, Transfer,
+};
+use crate::material::Law;
+use toml::de::DeTable;
+
+/// Lengths of a fingertip, from a hair to a hand.
+const LENGTH: Bounds = Bounds::above(0.0, 1000.0, "mm");
+/// Elastic constants, up to that of steel.
+const STIFFNESS: Bounds = Bounds::above(0.0, 1e12, "Pa");
+/// Pressures, up to 100 bar.
+const PRESSURE: Bounds = Bounds::above(0.0, 10_000.0, "kPa");
+
+/// The design in a text.
+pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
+    let document = DeTable::parse(text).map_err(|error| {
+        let line = error.span().map(|span| line_at(text, span.start));
+        (line, Problem::Syntax(error.message().to_owned()))
+    })?;
+    let mut root = Section::root(text, document.get_ref());
+    let name = name(&mut root)?;
+    let membrane = membrane(root.needed_sub(
+        "membrane",
+        "radial_semi_axis_mm, axial_semi_axis_mm, thickness_mm",
+    )?)?;
+    let material = material(root.needed_sub("material", "law and its constants")?)?;
+    let rest = rest(root.needed_sub("rest", REST_KEYS)?)?;
+    let compliance = root.sub("fluid")?.map(fluid).transpose()?;
+    root.sub("model")?.map(model).transpose()?;
+    let press = root.sub("press")?.map(press).transpose()?;
+    let transducer = root.sub("transducer")?.map(transducer).transpose()?;
+    let accuracy = root.sub("accuracy")?.map(accuracy).transpose()?;
+    let actuator = root.sub("actuator")?.map(actuator).transpose()?;
+    if root.has("calibration") {
+        return Err(root.unsupported(
+            "calibration",
+            "remove the section and put the calibrated values into [membrane] and [material]",
+        ));
+    }
+    root.finish()?;
+    Ok(DesignFile {
+        name,
+        membrane,
+        material,
+        rest,
+        compliance_mm3_per_kpa: compliance.unwrap_or(0.0),
+        max_indentation_mm: press,
+        transducer,
+        accuracy,
+        actuator_diameter_mm: actuator,
+    })
+}
+
+fn name(root: &mut Section<'_>) -> Result<String, Fault> {
+    const ALLOWED: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
+    let name = root.needed_text("name", ALLOWED)?;
+    let plain = name
+        .chars()
+        .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
+    if plain && (1..=64).contains(&name.len()) {
+        Ok(name.to_owned())
+    } else {
+        Err(root.refuse("name", ALLOWED))
+    }
+}
+
+fn membrane(mut section: Section<'_>) -> Result<MembraneSection, Fault> {
+    let membrane = MembraneSection {
+        radial_semi_axis_mm: section.needed_number("radial_semi_axis_mm", LENGTH)?,
+        axial_semi_axis_mm: section.needed_number("axial_semi_axis_mm", LENGTH)?,
+        thickness_mm: section.needed_number("thickness_mm", LENGTH)?,
+    };
+    let least = membrane.radial_semi_axis_mm.min(membrane.axial_semi_axis_mm);
+    if membrane.thickness_mm >= least {
+        let allowed = format!("less than the smaller semi-axis, {least} mm");
+        return Err(section.refuse("thickness_mm", &allowed));
+    }
+    section.finish()?;
+    Ok(membrane)
+}
+
+fn material(mut section: Section<'_>) -> Result<Law, Fault> {
+    const LAWS: &str = "\"neo-hookean\", \"mooney-rivlin\" or \"yeoh\"";
+    // The higher constants may have either sign; whether the law is then stable is the solver's to say.
+    const HIGHER: Bounds = Bounds::within(-1e12, 1e12, "Pa");
+    let law = match section.needed_text("law", LAWS)? {
+        "neo-hookean" => Law::NeoHookean {
+            c1: section.needed_number("c1_pa", STIFFNESS)?,
+        },
+        "mooney-rivlin" => Law::MooneyRivlin {
+            c1: section.needed_number("c1_pa", STIFFNESS)?,
+            c2: section.needed_number("c2_pa", HIGHER)?,
+        },
+        "yeoh" => Law::Yeoh {
+            c1: section.needed_number("c1_pa", STIFFNESS)?,
+            c2: section.needed_number("c2_pa", HIGHER)?,
+            c3: section.needed_number("c3_pa", HIGHER)?,
+        },
+        _ => return Err(section.refuse("law", LAWS)),
+    };
+    section.finish()?;
+    Ok(law)
+}
+
+const REST_KEYS: &str = "exactly one of pole_stretch, pressure_kpa, equator_radius_mm, height_mm";
+
+fn rest(mut section: Section<'_>) -> Result<RestSection, Fault> {
+    let stretch = Bounds::above(1.0, 10.0, "(no stretch is 1)");
+    let given: Vec<(&str, RestSection)> = [
+        (
+            "pole_stretch",
+            section
+                .number("pole_stretch", stretch)?
+                .map(RestSection::PoleStretch),
+        ),
+        (
+            "pressure_kpa",
+            section
+                .number("pressure_kpa", PRESSURE)?
+                .map(RestSection::PressureKpa),
+        ),
+        (
+            "equator_radius_mm",
+            section
+                .number("equator_radius_mm", LENGTH)?
+                .map(RestSection::EquatorRadiusMm),
+        ),
+        (
+            "height_mm",
+            section.number("height_mm", LENGTH)?.map(RestSection::HeightMm),
+        ),
+    ]
+    .into_iter()
+    .filter_map(|(key, value)| value.map(|value| (key, value)))
+    .collect();
+    match given[..] {
+        [(_, rest)] => {
+            section.finish()?;
+            Ok(rest)
+        }
+        [] => {
+            // A misspelt key is the likelier reason, and the better message.
+            let missing = section.missing("pole_stretch", REST_KEYS);
+            section.finish()?;
+            Err(missing)
+        }
+        [(first, _), (second, _), ..] => {
+            Err(section.refuse(second, &format!("left out, as {first} is given: {REST_KEYS}")))
+        }
+    }
+}
+
+fn fluid(mut section: Section<'_>) -> Result<f64, Fault> {
+    let bounds = Bounds::within(0.0, 1e6, "mm^3/kPa");
+    let compliance = section.number("compliance_mm3_per_kpa", bounds)?;
+    section.finish()?;
+    Ok(compliance.unwrap_or(0.0))
+}
+
+fn model(mut section: Section<'_>) -> Result<(), Fault> {
+    const KINDS: &str = "\"membrane\" (the only model of this version)";
+    match section.text("kind", KINDS)? {
+        None | Some("membrane") => section.finish(),
+        Some("solid" | "auto") => Err(section.unsupported("kind", "set it to \"membrane\" or leave it out")),
+        Some(_) => Err(section.refuse("kind", KINDS)),
+    }
+}
+
+fn press(mut section: Section<'_>) -> Result<f64, Fault> {
+    let depth = section.needed_number("max_indentation_mm", LENGTH)?;
+    section.finish()?;
+    Ok(depth)
+}
+
+fn transducer(mut section: Section<'_>) -> Result<TransducerSection, Fault> {
+    const KINDS: &str = "\"ratiometric\", \"abp2\", \"ms5837-02ba\" or \"dps310\"";
+    // No gauge pressure lies below a vacuum.
+    const RANGE: Bounds = Bounds::within(-101.325, 10_000.0, "kPa");
+    const FINENESS: Bounds = Bounds::above(0.0, 1e6, "Pa");
+    let kind = match section.needed_text("kind", KINDS)? {
+        "ratiometric" => TransducerKindSection::Ratiometric {
+            output_fraction_at_range: section
+                .pair(
+                    "output_fraction_at_range",
+                    Bounds::within(0.0, 1.0, "of the supply"),
+                )?
+                .unwrap_or([0.1, 0.9]),
+        },
+        "abp2" => TransducerKindSection::Abp2 {
+            address: address(&mut section, 0x08, 0x77)?.unwrap_or(0x28),
+            transfer: match section.text("transfer", TRANSFERS)? {
+                None | Some("A") => Transfer::A,
+                Some("B") => Transfer::B,
+                Some(_) => return Err(section.refuse("transfer", TRANSFERS)),
+            },
+        },
+        "ms5837-02ba" => TransducerKindSection::Ms5837,
+        "dps310" => TransducerKindSection::Dps310 {
+            address: address(&mut section, 0x76, 0x77)?.unwrap_or(0x77),
+        },
+        _ => return Err(section.refuse("kind", KINDS)),
+    };
+    let range_kpa = section.needed_pair("range_kpa", RANGE)?;
+    let resolution_pa = section.needed_number("resolution_pa", FINENESS)?;
+    if resolution_pa >= 1e3 * (range_kpa[1] - range_kpa[0]) {
+        return Err(section.refuse("resolution_pa", "less than the width of range_kpa"));
+    }
+    let noise_pa = section.number("noise_pa", Bounds::within(0.0, 1e6, "Pa"))?;
+    section.finish()?;
+    Ok(TransducerSection {
+        range_kpa,
+        resolution_pa,
+        noise_pa: noise_pa.unwrap_or(resolution_pa),
+        kind,
+    })
+}
+
+const TRANSFERS: &str = "\"A\" (10 % to 90 % of the counts) or \"B\" (30 % to 70 %)";
+
+fn address(section: &mut Section<'_>, low: u8, high: u8) -> Result<Option<u8>, Fault> {
+    let bounds = Bounds::within(f64::from(low), f64::from(high), "(a seven-bit address)");
+    let address = section.number("address", bounds)?;
+    match address {
+        Some(number) if libm::fmod(number, 1.0) > 0.0 => Err(section.refuse("address", "a whole number")),
+        other => Ok(other.map(|number| number as u8)),
+    }
+}
+
+fn accuracy(mut section: Section<'_>) -> Result<Accuracy, Fault> {
+    const PERCENT: Bounds = Bounds::within(0.001, 10.0, "%");
+    let accuracy = Accuracy {
+        force_percent_of_reading: section.needed_number("force_percent_of_reading", PERCENT)?,
+        indentation_percent_of_reading: section.needed_number("indentation_percent_of_reading", PERCENT)?,
+        from_percent_of_full_scale: section
+            .needed_number("from_percent_of_full_scale", Bounds::within(0.01, 100.0, "%"))?,
+    };
+    section.finish()?;
+    Ok(accuracy)
+}
+
+fn actuator(mut section: Section<'_>) -> Result<f64, Fault> {
+    let diameter = section.needed_number("diameter_mm", LENGTH)?;
+    section.finish()?;
+    Ok(diameter)
+}

@@ -1,0 +1,392 @@
+use super::*;
+
+/// A complete file; the tests break one thing in it at a time.
+const GOOD: &str = r#"
+name = "bench-tip"
+[membrane]
+radial_semi_axis_mm = 4.5
+axial_semi_axis_mm = 2.7
+thickness_mm = 1
+[material]
+law = "mooney-rivlin"
+c1_pa = 160_355.0
+c2_pa = 46559
+[rest]
+pole_stretch = 2.3
+[press]
+max_indentation_mm = 2.5
+[transducer]
+kind = "ratiometric"
+range_kpa = [0, 400.0]
+resolution_pa = 10.0
+[accuracy]
+force_percent_of_reading = 0.1
+indentation_percent_of_reading = 0.2
+from_percent_of_full_scale = 1.0
+"#;
+
+fn good() -> DesignFile {
+    DesignFile::parse(GOOD, "good.toml").expect("the good file")
+}
+
+/// The error of GOOD with `from` replaced by `to`.
+fn error(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from), "{from} is not in the good file");
+    let text = DesignFile::parse(&GOOD.replacen(from, to, 1), "bad.toml")
+        .expect_err("must be refused")
+        .to_string();
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text
+}
+
+#[test]
+fn reads_every_section_and_fills_in_the_defaults() {
+    let file = good();
+    assert_eq!(file.name, "bench-tip");
+    assert_eq!(
+        file.material,
+        Law::MooneyRivlin {
+            c1: 160_355.0,
+            c2: 46_559.0
+        }
+    );
+    assert_eq!(file.rest, RestSection::PoleStretch(2.3));
+    assert!(file.compliance_mm3_per_kpa.abs() < 1e-300);
+    assert_eq!(file.max_indentation_mm, Some(2.5));
+    let transducer = file.transducer.expect("the transducer");
+    assert!(transducer.range_kpa[0].abs() < 1e-300 && (transducer.range_kpa[1] - 400.0).abs() < 1e-12);
+    assert!((transducer.noise_pa - 10.0).abs() < 1e-12);
+    assert_eq!(
+        transducer.kind,
+        TransducerKindSection::Ratiometric {
+            output_fraction_at_range: [0.1, 0.9]
+        }
+    );
+    assert_eq!(file.actuator_diameter_mm, None);
+}
+
+#[test]
+fn converts_to_si() {
+    let design = good().design();
+    assert!((design.membrane.radial_semi_axis - 4.5e-3).abs() < 1e-17);
+    assert!((design.membrane.axial_semi_axis - 2.7e-3).abs() < 1e-17);
+    assert!((design.membrane.thickness - 1e-3).abs() < 1e-17);
+    let compliant = GOOD.replace("[press]", "[fluid]\ncompliance_mm3_per_kpa = 2.0\n[press]");
+    let design = DesignFile::parse(&compliant, "c").expect("compliance").design();
+    // 2 mm^3/kPa = 2e-9 m^3 / 1e3 Pa.
+    assert!((design.compliance - 2e-12).abs() < 1e-26);
+}
+
+#[test]
+fn takes_each_kind_of_rest() {
+    let with = |rest: &str| {
+        DesignFile::parse(&GOOD.replace("pole_stretch = 2.3", rest), "rest.toml")
+            .expect(rest)
+            .design()
+            .rest
+    };
+    assert_eq!(with("pole_stretch = 1.02"), RestBy::PoleStretch(1.02));
+    assert_eq!(with("pressure_kpa = 12"), RestBy::Pressure(12_000.0));
+    assert_eq!(with("equator_radius_mm = 5.0"), RestBy::EquatorRadius(0.005));
+    assert_eq!(with("height_mm = 4.0"), RestBy::Height(0.004));
+}
+
+#[test]
+fn takes_each_law() {
+    let with = |law: &str| {
+        let text = GOOD.replace("law = \"mooney-rivlin\"\nc1_pa = 160_355.0\nc2_pa = 46559\n", law);
+        DesignFile::parse(&text, "law.toml").expect(law).material
+    };
+    assert_eq!(
+        with("law = \"neo-hookean\"\nc1_pa = 5e4\n"),
+        Law::NeoHookean { c1: 5e4 }
+    );
+    assert_eq!(
+        with("law = \"yeoh\"\nc1_pa = 5e4\nc2_pa = -1e3\nc3_pa = 20\n"),
+        Law::Yeoh {
+            c1: 5e4,
+            c2: -1e3,
+            c3: 20.0
+        }
+    );
+}
+
+#[test]
+fn takes_each_kind_of_transducer() {
+    let with = |kind: &str| {
+        let text = GOOD.replace("kind = \"ratiometric\"", kind);
+        DesignFile::parse(&text, "kind.toml")
+            .expect(kind)
+            .transducer
+            .expect("there")
+            .kind
+    };
+    assert_eq!(
+        with("kind = \"abp2\""),
+        TransducerKindSection::Abp2 {
+            address: 0x28,
+            transfer: Transfer::A
+        }
+    );
+    assert_eq!(
+        with("kind = \"abp2\"\naddress = 0x38\ntransfer = \"B\""),
+        TransducerKindSection::Abp2 {
+            address: 0x38,
+            transfer: Transfer::B
+        }
+    );
+    assert_eq!(with("kind = \"ms5837-02ba\""), TransducerKindSection::Ms5837);
+    assert_eq!(
+        with("kind = \"dps310\"\naddress = 0x76"),
+        TransducerKindSection::Dps310 { address: 0x76 }
+    );
+}
+
+#[test]
+fn reading_what_was_printed_gives_the_same_design() {
+    let kinds = [
+        "kind = \"ratiometric\"\noutput_fraction_at_range = [0.04, 0.94]",
+        "kind = \"abp2\"\ntransfer = \"B\"",
+        "kind = \"ms5837-02ba\"",
+        "kind = \"dps310\"",
+    ];
+    let rests = [
+        "pole_stretch = 1.0000000000000002",
+        "pressure_kpa = 1e-7",
+        "equator_radius_mm = 8.3",
+        "height_mm = 0.1",
+    ];
+    for kind in kinds {
+        for rest in rests {
+            let text = GOOD
+                .replace("kind = \"ratiometric\"", kind)
+                .replace("pole_stretch = 2.3", rest)
+                + "[actuator]\ndiameter_mm = 9\n[fluid]\ncompliance_mm3_per_kpa = 0.3333333333333333\n";
+            let file = DesignFile::parse(&text, "a.toml").expect("a good file");
+            let again = DesignFile::parse(&file.canonical(), "b.toml").expect("its canonical text");
+            assert_eq!(file, again);
+            assert_eq!(file.canonical(), again.canonical());
+        }
+    }
+}
+
+#[test]
+fn the_hash_follows_the_values_and_not_the_layout() {
+    let commented = GOOD.replace("[rest]", "# how it rests\n\n[rest]");
+    let same = DesignFile::parse(&commented, "other-name.toml").expect("a comment more");
+    assert_eq!(good().hash(), same.hash());
+    let other = DesignFile::parse(&GOOD.replace("2.3", "2.31"), "good.toml").expect("another stretch");
+    assert_ne!(good().hash(), other.hash());
+}
+
+#[test]
+fn names_a_missing_section() {
+    assert_eq!(
+        error("[rest]\npole_stretch = 2.3\n", ""),
+        "bad.toml: `[rest]` is missing: needs a section with exactly one of pole_stretch, pressure_kpa, \
+         equator_radius_mm, height_mm"
+    );
+}
+
+#[test]
+fn names_a_missing_key_and_the_line_of_its_section() {
+    assert_eq!(
+        error("thickness_mm = 1\n", ""),
+        "bad.toml:3: `membrane.thickness_mm` is missing: needs a number above 0 and at most 1000 mm"
+    );
+    assert!(error("name = \"bench-tip\"\n", "").starts_with("bad.toml: `name` is missing: needs 1 to 64 "));
+    assert!(error("c2_pa = 46559\n", "").contains("`material.c2_pa` is missing"));
+    assert!(error("resolution_pa = 10.0\n", "").contains("`transducer.resolution_pa` is missing"));
+    assert!(
+        error("from_percent_of_full_scale = 1.0\n", "").contains("`accuracy.from_percent_of_full_scale` is")
+    );
+    assert!(error("max_indentation_mm = 2.5\n", "").contains("`press.max_indentation_mm` is missing"));
+}
+
+#[test]
+fn names_an_unknown_key_and_its_line() {
+    assert_eq!(
+        error("thickness_mm = 1\n", "thickness_mm = 1\nwall_mm = 1\n"),
+        "bad.toml:7: `membrane.wall_mm` is not a known key: allowed are radial_semi_axis_mm, \
+         axial_semi_axis_mm, thickness_mm"
+    );
+    assert!(
+        error("[press]", "[pres]").starts_with("bad.toml:13: `pres` is not a known key: allowed are name")
+    );
+    assert!(error("pole_stretch", "pole_strech").contains("`rest.pole_strech` is not a known key"));
+    assert!(
+        error("law = \"mooney-rivlin\"", "law = \"neo-hookean\"").contains("`material.c2_pa` is not a known")
+    );
+    assert!(
+        error("resolution_pa", "address = 0x28\nresolution_pa")
+            .contains("`transducer.address` is not a known key")
+    );
+}
+
+/// What to replace in the good file, by what, and the key that the error must name.
+const IMPOSSIBLE: &[(&str, &str, &str)] = &[
+    (
+        "thickness_mm = 1\n",
+        "thickness_mm = 2.7\n",
+        "membrane.thickness_mm",
+    ),
+    (
+        "thickness_mm = 1\n",
+        "thickness_mm = nan\n",
+        "membrane.thickness_mm",
+    ),
+    (
+        "thickness_mm = 1\n",
+        "thickness_mm = \"1\"\n",
+        "membrane.thickness_mm",
+    ),
+    ("= 4.5", "= inf", "membrane.radial_semi_axis_mm"),
+    ("160_355.0", "0", "material.c1_pa"),
+    ("mooney-rivlin", "ogden", "material.law"),
+    ("\"mooney-rivlin\"", "3", "material.law"),
+    ("= 2.3", "= 1.0", "rest.pole_stretch"),
+    ("bench-tip", "../tip", "name"),
+    ("bench-tip", "", "name"),
+    (
+        "max_indentation_mm = 2.5",
+        "max_indentation_mm = 0",
+        "press.max_indentation_mm",
+    ),
+    ("[0, 400.0]", "[400, 0]", "transducer.range_kpa"),
+    ("[0, 400.0]", "[0, 400.0, 1]", "transducer.range_kpa"),
+    ("[0, 400.0]", "[-200, 400.0]", "transducer.range_kpa"),
+    ("[0, 400.0]", "400.0", "transducer.range_kpa"),
+    (
+        "resolution_pa = 10.0",
+        "resolution_pa = 0",
+        "transducer.resolution_pa",
+    ),
+    (
+        "resolution_pa = 10.0",
+        "resolution_pa = 5e5",
+        "transducer.resolution_pa",
+    ),
+    (
+        "resolution_pa = 10.0",
+        "resolution_pa = 1\nnoise_pa = -1",
+        "transducer.noise_pa",
+    ),
+    (
+        "resolution_pa",
+        "output_fraction_at_range = [0.9, 0.1]\nresolution_pa",
+        "transducer.output_fraction_at_range",
+    ),
+    (
+        "resolution_pa",
+        "output_fraction_at_range = [0.1, 1.1]\nresolution_pa",
+        "transducer.output_fraction_at_range",
+    ),
+    ("\"ratiometric\"", "\"bmp280\"", "transducer.kind"),
+    (
+        "\"ratiometric\"",
+        "\"abp2\"\naddress = 0x80",
+        "transducer.address",
+    ),
+    (
+        "\"ratiometric\"",
+        "\"abp2\"\naddress = 40.5",
+        "transducer.address",
+    ),
+    (
+        "\"ratiometric\"",
+        "\"abp2\"\ntransfer = \"C\"",
+        "transducer.transfer",
+    ),
+    (
+        "\"ratiometric\"",
+        "\"dps310\"\naddress = 0x28",
+        "transducer.address",
+    ),
+    ("= 0.1", "= 0", "accuracy.force_percent_of_reading"),
+    (
+        "[press]",
+        "[fluid]\ncompliance_mm3_per_kpa = -1\n[press]",
+        "fluid.compliance_mm3_per_kpa",
+    ),
+    (
+        "[press]",
+        "[actuator]\ndiameter_mm = 0\n[press]",
+        "actuator.diameter_mm",
+    ),
+    ("[press]", "[model]\nkind = \"beam\"\n[press]", "model.kind"),
+];
+
+#[test]
+fn names_an_impossible_value_the_line_and_what_is_allowed() {
+    assert_eq!(
+        error("thickness_mm = 1\n", "thickness_mm = -1\n"),
+        "bad.toml:6: `membrane.thickness_mm` is -1: must be a number above 0 and at most 1000 mm"
+    );
+    for (from, to, key) in IMPOSSIBLE {
+        let text = error(from, to);
+        assert!(
+            text.contains(&format!("`{key}` is ")) && text.contains(": must be "),
+            "{text}"
+        );
+        assert!(text.starts_with("bad.toml:"), "{text}");
+    }
+}
+
+#[test]
+fn wants_exactly_one_kind_of_rest() {
+    let text = error("pole_stretch = 2.3", "pole_stretch = 2.3\nheight_mm = 4");
+    assert!(
+        text.contains("`rest.height_mm` is 4: must be left out, as pole_stretch is given"),
+        "{text}"
+    );
+    let text = error("pole_stretch = 2.3\n", "");
+    assert!(
+        text.contains("`rest.pole_stretch` is missing: needs exactly one of"),
+        "{text}"
+    );
+}
+
+#[test]
+fn refuses_what_it_cannot_do_yet() {
+    let text = error("[press]", "[model]\nkind = \"solid\"\n[press]");
+    assert!(
+        text.contains("`model.kind` is not supported by this version"),
+        "{text}"
+    );
+    let text = error("[press]", "[calibration]\npressure_gain = 1.01\n[press]");
+    assert!(
+        text.contains("`calibration` is not supported by this version"),
+        "{text}"
+    );
+}
+
+#[test]
+fn reports_broken_toml_with_its_line() {
+    let text = error("thickness_mm = 1\n", "thickness_mm = \n");
+    assert!(text.starts_with("bad.toml:6: not valid TOML: "), "{text}");
+}
+
+#[test]
+fn reports_a_file_that_cannot_be_read() {
+    let text = DesignFile::read(Path::new("no/such/design.toml"))
+        .expect_err("there is no such file")
+        .to_string();
+    assert!(
+        text.starts_with("no/such/design.toml: the design file cannot be read: "),
+        "{text}"
+    );
+    assert_eq!(text.lines().count(), 1);
+}
+
+#[test]
+fn the_shipped_designs_are_complete() {
+    for name in ["index-fingertip", "paper-prestretched", "skin-analogue"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("designs")
+            .join(name)
+            .with_extension("toml");
+        let file = DesignFile::read(&path).expect("a shipped design");
+        assert_eq!(file.name, name);
+        assert!(file.max_indentation_mm.is_some() && file.transducer.is_some() && file.accuracy.is_some());
+    }
+}
