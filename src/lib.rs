@@ -1,6 +1,20 @@
 //! Contact force and indentation of a fluid-filled fingertip, from the pressure in its fluid.
+//!
+//! One sample's way: [`counts`] -> [`pressure`] -> [`tare`] -> [`filter`] -> [`contact`] -> [`report`], called
+//! in that order by [`pipeline`]; [`telemetry`] puts reports on the wire and [`design`] says for which
+//! fingertip. Integers only; nothing here knows a clock or a bus: time and samples are arguments.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
+pub mod contact;
+pub mod counts;
+pub mod design;
+pub mod filter;
+pub mod pipeline;
+pub mod pressure;
 pub mod report;
+pub mod tare;
 pub mod telemetry;
+
+#[cfg(test)]
+mod test_design;
