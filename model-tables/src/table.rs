@@ -23,24 +23,31 @@ pub struct Segment<const FORCE: usize, const INDENTATION: usize> {
     pub indentation: [i32; INDENTATION],
 }
 
-/// The tables of one design: `SEGMENTS` segments, polynomials of `FORCE` and `INDENTATION` coefficients.
+/// Where the segments lie: everything of a design's tables but the coefficients.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct Tables<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize> {
+pub struct Layout {
     /// `k`: a count of pressure rise is `1 / 2^k` pascal.
     pub pressure_fraction_bits: u32,
     /// Last input covered, counts; inputs above it read as it does, flagged. `maximum + bias < 2^31`.
     pub maximum: i32,
     /// Added to the input before its octave is taken, counts, >= 1: the first segment starts at zero input.
     pub bias: i32,
-    /// Leading zeros of `maximum + bias`: the octave of the first entry of `segments`.
-    pub top_leading_zeros: u32,
-    /// Every octave is cut into `2^split_bits` equal segments.
+    /// Every octave is cut into `2^split_bits` equal segments; 0 or 1.
     pub split_bits: u32,
+    /// Number of the first entry of the segments, counting all segments of a 32-bit word downwards from 0.
+    pub first_index: u32,
     /// Bits of the force's coefficients below one micronewton.
     pub force_shift: u32,
     /// Bits of the indentation's coefficients below one nanometre.
     pub indentation_shift: u32,
-    /// Segments, the highest octave first; inside an octave upwards.
+}
+
+/// The tables of one design: `SEGMENTS` segments, polynomials of `FORCE` and `INDENTATION` coefficients.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Tables<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize> {
+    /// Where the segments lie.
+    pub layout: Layout,
+    /// Segments downwards: the one of the largest inputs first.
     pub segments: [Segment<FORCE, INDENTATION>; SEGMENTS],
 }
 
@@ -57,16 +64,24 @@ pub struct Reading {
     pub negative: bool,
 }
 
-impl<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize>
-    Tables<SEGMENTS, FORCE, INDENTATION>
-{
-    /// Bytes of the coefficients; the other fields become immediates of the code.
-    pub const BYTES: usize = size_of::<[Segment<FORCE, INDENTATION>; SEGMENTS]>();
+/// An input's segment and its place in it.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) struct Place {
+    /// Entry of the segments.
+    pub(crate) index: usize,
+    /// `2^31 (f - 1)` at the fraction `f` of the segment.
+    pub(crate) t: i32,
+    /// The input lay above [`Layout::maximum`].
+    pub(crate) saturated: bool,
+    /// The input lay below zero.
+    pub(crate) negative: bool,
+}
 
-    /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
+impl Layout {
+    /// The pre-lookup that both outputs share.
     #[inline(always)]
-    #[allow(clippy::inline_always)] // so that the fields fold into the code of the one call site
-    pub fn lookup(&self, rise: PressureRise) -> Reading {
+    #[allow(clippy::inline_always)] // part of the lookup
+    pub(crate) fn place(&self, rise: PressureRise) -> Place {
         // Neither sum of two positive `i32` leaves the `u32`.
         let top = (self.maximum as u32).wrapping_add(self.bias as u32);
         let shifted = (rise.0.max(0) as u32).wrapping_add(self.bias as u32);
@@ -76,26 +91,51 @@ impl<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize>
         let lowest_octave = 0x8000_0000_u32.wrapping_shr(self.bias.leading_zeros());
         let leading_zeros = (y | lowest_octave).leading_zeros();
         let normalised = y.wrapping_shl(leading_zeros);
-        let octave = leading_zeros.wrapping_sub(self.top_leading_zeros);
-        let (index, place) = if self.split_bits == 0 {
-            (octave, normalised)
+        let (number, place) = if self.split_bits == 0 {
+            (leading_zeros, normalised)
         } else {
-            let part = (normalised & 0x7fff_ffff) >> (31 - self.split_bits);
+            let part = (!normalised & 0x7fff_ffff).wrapping_shr(31_u32.wrapping_sub(self.split_bits));
             let place = normalised.wrapping_shl(self.split_bits) | 0x8000_0000;
-            ((octave << self.split_bits) | part, place)
+            (leading_zeros.wrapping_shl(self.split_bits) | part, place)
         };
-        let t = place as i32;
-        // The index is in range for every input of a generated table; the fallback keeps panics out.
-        let segment = self
-            .segments
-            .get(index as usize)
-            .unwrap_or(&self.segments[SEGMENTS - 1]);
-        Reading {
-            force: Micronewtons(horner(&segment.force, t) >> self.force_shift),
-            indentation: Nanometres(horner(&segment.indentation, t) >> self.indentation_shift),
+        Place {
+            index: number.wrapping_sub(self.first_index) as usize,
+            t: place as i32,
             saturated: shifted > top,
             negative: rise.0 < 0,
         }
+    }
+
+    /// The outputs at a place, from its segment's coefficients.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // part of the lookup
+    pub(crate) fn reading(&self, place: Place, force: &[i32], indentation: &[i32]) -> Reading {
+        Reading {
+            force: Micronewtons(horner(force, place.t).wrapping_shr(self.force_shift)),
+            indentation: Nanometres(horner(indentation, place.t).wrapping_shr(self.indentation_shift)),
+            saturated: place.saturated,
+            negative: place.negative,
+        }
+    }
+}
+
+impl<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize>
+    Tables<SEGMENTS, FORCE, INDENTATION>
+{
+    /// Bytes of the coefficients; the layout becomes immediates of the code.
+    pub const BYTES: usize = size_of::<[Segment<FORCE, INDENTATION>; SEGMENTS]>();
+
+    /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // so that the layout folds into the code of the one call site
+    pub fn lookup(&self, rise: PressureRise) -> Reading {
+        let place = self.layout.place(rise);
+        // The index is in range for every input of a generated table; the fallback keeps panics out.
+        let segment = self
+            .segments
+            .get(place.index)
+            .unwrap_or(&self.segments[SEGMENTS - 1]);
+        self.layout.reading(place, &segment.force, &segment.indentation)
     }
 }
 
@@ -104,7 +144,7 @@ impl<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize>
 /// Generated coefficients stay below 2^30 in magnitude and `|u| <= 1/2`, so no sum leaves 32 bits.
 #[inline(always)]
 #[allow(clippy::inline_always)] // part of the lookup
-fn horner<const N: usize>(coefficients: &[i32; N], t: i32) -> i32 {
+fn horner(coefficients: &[i32], t: i32) -> i32 {
     let mut sum = 0;
     for &coefficient in coefficients.iter().rev() {
         let product = (i64::from(sum) * i64::from(t)) >> 32;
@@ -122,13 +162,15 @@ mod tests {
     /// Octave [4, 8): u = (y - 8) / 8, so y = 8 + 8 u. Octave [8, 16]: y = 16 + 16 u (the last, partial one
     /// ends at y = 15 with maximum 11).
     const HAND_MADE: Tables<2, 2, 3> = Tables {
-        pressure_fraction_bits: 2,
-        maximum: 11,
-        bias: 4,
-        top_leading_zeros: 28,
-        split_bits: 0,
-        force_shift: 4,
-        indentation_shift: 6,
+        layout: Layout {
+            pressure_fraction_bits: 2,
+            maximum: 11,
+            bias: 4,
+            split_bits: 0,
+            first_index: 28,
+            force_shift: 4,
+            indentation_shift: 6,
+        },
         segments: [
             // rise = 12 + 16 u; rise^2 = 144 + 384 u + 256 u^2.
             Segment {
@@ -182,14 +224,16 @@ mod tests {
             indentation: [7, 0],
         };
         let tables = Tables::<4, 2, 2> {
-            pressure_fraction_bits: 2,
-            maximum: 11,
-            bias: 4,
-            top_leading_zeros: 28,
-            split_bits: 1,
-            force_shift: 4,
-            indentation_shift: 0,
-            segments: [line(12, 4), line(16, 4), line(6, 2), line(8, 2)],
+            layout: Layout {
+                pressure_fraction_bits: 2,
+                maximum: 11,
+                bias: 4,
+                split_bits: 1,
+                first_index: 56,
+                force_shift: 4,
+                indentation_shift: 0,
+            },
+            segments: [line(16, 4), line(12, 4), line(8, 2), line(6, 2)],
         };
         for rise in 0..=11 {
             assert_eq!(tables.lookup(PressureRise(rise)).force, Micronewtons(rise));

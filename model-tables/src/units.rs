@@ -2,7 +2,7 @@
 
 /// Pressure over the rest pressure, in counts of `1 / 2^k` pascal.
 ///
-/// `k` belongs to a design and is [`crate::table::Tables::pressure_fraction_bits`]. Any `i32` is valid.
+/// `k` belongs to a design and is [`crate::table::Layout::pressure_fraction_bits`]. Any `i32` is valid.
 #[derive(Clone, Copy, Debug, Default, Eq, Ord, PartialEq, PartialOrd)]
 pub struct PressureRise(pub i32);
 
