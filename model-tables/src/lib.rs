@@ -1,7 +1,8 @@
 //! The membrane model of a soft, fluid-filled fingertip and the compact tables made from it.
 //!
-//! The way through the crate: [`design`] (what the fingertip is) -> [`material`] -> `membrane` (the
-//! equations) -> `rest` and `press` (states of equilibrium) -> [`curve`] (pressure rise -> force and
+//! The way through the crate: [`design`] (what the fingertip is) -> [`material`] -> [`membrane`] (the local
+//! equations) -> [`equilibrium`] (Newton's method over the [`solver`], which knows no physics) -> [`adapt`] (on a
+//! [`mesh`] that fits) -> [`rest`] and [`press`] ([`state`]s of equilibrium) -> [`curve`] (pressure rise -> force and
 //! indentation) -> [`table`] (integers for the chip, in the quantities of [`units`], beside the [`constants`] of
 //! the design).
 //!
@@ -10,11 +11,19 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
+pub mod adapt;
 pub mod constants;
 pub mod curve;
 pub mod design;
 #[cfg(feature = "std")]
 pub mod design_file;
+pub mod equilibrium;
 pub mod material;
+pub mod membrane;
+pub mod mesh;
+pub mod press;
+pub mod rest;
+pub mod solver;
+pub mod state;
 pub mod table;
 pub mod units;

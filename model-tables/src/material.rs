@@ -1,4 +1,35 @@
 //! Hyperelastic laws of an incompressible membrane.
+//!
+//! A law is its strain-energy density `W(l1, l2)` per undeformed volume, with the thickness stretch
+//! eliminated by incompressibility (`l3 = 1 / (l1 l2)`), and the derivatives of it. Anything that implements
+//! [`Hyperelastic`] can be solved; [`Law`] collects the laws a design file can name.
+
+/// First and second derivatives of the strain energy with respect to the principal stretches, in pascals.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Derivatives {
+    /// `dW/dl1`.
+    pub w1: f64,
+    /// `dW/dl2`.
+    pub w2: f64,
+    /// `d2W/dl1^2`.
+    pub w11: f64,
+    /// `d2W/dl1 dl2`.
+    pub w12: f64,
+    /// `d2W/dl2^2`.
+    pub w22: f64,
+}
+
+/// An isotropic, incompressible hyperelastic law in membrane form.
+pub trait Hyperelastic {
+    /// Strain-energy density, joules per cubic metre (pascals), at the in-plane stretches `l1, l2 > 0`.
+    fn energy(&self, l1: f64, l2: f64) -> f64;
+
+    /// Derivatives of the energy at the in-plane stretches `l1, l2 > 0`, in pascals.
+    fn derivatives(&self, l1: f64, l2: f64) -> Derivatives;
+
+    /// Shear modulus in the undeformed state, pascals (Young's modulus is three times it).
+    fn shear_modulus(&self) -> f64;
+}
 
 /// Strain-energy density of the membrane, with its constants in pascals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,4 +55,106 @@ pub enum Law {
         /// `C3`, pascals.
         c3: f64,
     },
+}
+
+/// `I1`, `I2` and their derivatives at the stretches `l1, l2`.
+struct Invariants {
+    i1: f64,
+    i1_1: f64,
+    i1_2: f64,
+    i1_11: f64,
+    i1_12: f64,
+    i1_22: f64,
+}
+
+impl Invariants {
+    fn first(l1: f64, l2: f64) -> Self {
+        let (a, b) = (1.0 / l1, 1.0 / l2);
+        let l3 = a * b;
+        let l3_squared = l3 * l3;
+        Self {
+            i1: l1 * l1 + l2 * l2 + l3_squared,
+            i1_1: 2.0 * (l1 - l3_squared * a),
+            i1_2: 2.0 * (l2 - l3_squared * b),
+            i1_11: 2.0 + 6.0 * l3_squared * a * a,
+            i1_12: 4.0 * l3_squared * l3,
+            i1_22: 2.0 + 6.0 * l3_squared * b * b,
+        }
+    }
+}
+
+impl Law {
+    /// The same law with every constant multiplied by `factor`.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Self::NeoHookean { c1 } => Self::NeoHookean { c1: c1 * factor },
+            Self::MooneyRivlin { c1, c2 } => Self::MooneyRivlin {
+                c1: c1 * factor,
+                c2: c2 * factor,
+            },
+            Self::Yeoh { c1, c2, c3 } => Self::Yeoh {
+                c1: c1 * factor,
+                c2: c2 * factor,
+                c3: c3 * factor,
+            },
+        }
+    }
+}
+
+impl Hyperelastic for Law {
+    fn energy(&self, l1: f64, l2: f64) -> f64 {
+        let (a, b) = (l1 * l1, l2 * l2);
+        let c = 1.0 / (a * b);
+        let i = a + b + c - 3.0;
+        match *self {
+            Self::NeoHookean { c1 } => c1 * i,
+            Self::MooneyRivlin { c1, c2 } => c1 * i + c2 * (1.0 / a + 1.0 / b + a * b - 3.0),
+            Self::Yeoh { c1, c2, c3 } => i * (c1 + i * (c2 + i * c3)),
+        }
+    }
+
+    #[inline]
+    fn derivatives(&self, l1: f64, l2: f64) -> Derivatives {
+        let i = Invariants::first(l1, l2);
+        match *self {
+            Self::NeoHookean { c1 } => Derivatives {
+                w1: c1 * i.i1_1,
+                w2: c1 * i.i1_2,
+                w11: c1 * i.i1_11,
+                w12: c1 * i.i1_12,
+                w22: c1 * i.i1_22,
+            },
+            Self::MooneyRivlin { c1, c2 } => {
+                // dI2/dl1 = l2^2 dI1/dl1: both invariants share their roots.
+                let (a, b) = (l1 * l1, l2 * l2);
+                Derivatives {
+                    w1: (c1 + c2 * b) * i.i1_1,
+                    w2: (c1 + c2 * a) * i.i1_2,
+                    w11: (c1 + c2 * b) * i.i1_11,
+                    w12: c1 * i.i1_12 + 4.0 * c2 * l1 * l2,
+                    w22: (c1 + c2 * a) * i.i1_22,
+                }
+            }
+            Self::Yeoh { c1, c2, c3 } => {
+                let e = i.i1 - 3.0;
+                let slope = c1 + e * (2.0 * c2 + 3.0 * c3 * e);
+                let curvature = 2.0 * c2 + 6.0 * c3 * e;
+                Derivatives {
+                    w1: slope * i.i1_1,
+                    w2: slope * i.i1_2,
+                    w11: slope * i.i1_11 + curvature * i.i1_1 * i.i1_1,
+                    w12: slope * i.i1_12 + curvature * i.i1_1 * i.i1_2,
+                    w22: slope * i.i1_22 + curvature * i.i1_2 * i.i1_2,
+                }
+            }
+        }
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        match *self {
+            Self::NeoHookean { c1 } | Self::Yeoh { c1, .. } => 2.0 * c1,
+            Self::MooneyRivlin { c1, c2 } => 2.0 * (c1 + c2),
+        }
+    }
 }

@@ -1,0 +1,344 @@
+//! A state of equilibrium on a mesh that fits it.
+//!
+//! Newton's method works on a fixed mesh and a fixed kind of pole. Here the mesh is graded for the solution, nodes are
+//! put where wrinkles begin or end (the equations have a kink there, and a kink inside an element costs the
+//! method its order), and a pole that has gone slack, or taut again, changes its kind.
+
+use crate::equilibrium::{Closure, Equilibrium, MAX_ELEMENTS, Outcome, Pole, Solution};
+use crate::material::Hyperelastic;
+use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, Membrane, POLE, PRESSURE, TensionField, Zone};
+use crate::mesh::{Breaks, Depth};
+use core::f64::consts::FRAC_PI_2;
+
+/// Why there is no state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Failure {
+    /// Newton's method did not converge.
+    Newton(Outcome),
+    /// The edge of a wrinkled zone, or the kind of the pole, did not settle.
+    Unsettled,
+}
+
+/// How fine a mesh is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Elements a unit of depth in the free zone (a unit of depth is a factor `e` next to a singularity).
+    pub density: f64,
+    /// Elements under the plate.
+    pub contact_elements: usize,
+}
+
+/// Rounds of mesh and pole adjustment.
+const MAX_ROUNDS: usize = 12;
+/// A kink this close to a node is on it: misplaced by `d`, it costs `d^2`.
+const KINK_TOLERANCE: f64 = 1e-8;
+/// A mesh graded for a contact or a bend that differs by more than this factor is laid anew.
+const STALE_GRADING: f64 = 1.6;
+/// Bend lengths beyond this do not shape the mesh.
+const LARGEST_BEND: f64 = 0.5;
+
+/// A solver that keeps its mesh fitting.
+#[derive(Clone, Debug)]
+pub struct Adaptive<L, const S: usize> {
+    /// Newton's method.
+    pub equilibrium: Equilibrium<L, S>,
+    /// How fine.
+    pub resolution: Resolution,
+    /// Newton iterations spent so far.
+    pub iterations: u64,
+}
+
+/// What the mesh of a solution was graded for.
+#[derive(Clone, Debug)]
+pub struct Graded<const S: usize> {
+    /// The solution.
+    pub solution: Solution<S>,
+    /// The grading.
+    pub depth: Depth,
+    /// Kinks that have a node.
+    pub breaks: Breaks,
+    /// How Newton's method ended.
+    pub outcome: Outcome,
+}
+
+impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
+    /// Ready to solve.
+    pub fn new(membrane: Membrane<L>, resolution: Resolution) -> Self {
+        Self {
+            equilibrium: Equilibrium::new(membrane),
+            resolution,
+            iterations: 0,
+        }
+    }
+
+    fn membrane(&self) -> &Membrane<L> {
+        &self.equilibrium.membrane
+    }
+
+    /// The state that `closure` asks for, from a guess on any mesh.
+    ///
+    /// # Errors
+    /// [`Failure`] when Newton's method fails, or mesh and pole do not settle.
+    pub fn settle(&mut self, mut guess: Graded<S>, closure: &Closure) -> Result<Graded<S>, Failure> {
+        let mut changed_pole = false;
+        for _ in 0..MAX_ROUNDS {
+            if Self::stale(&guess) {
+                guess = self.relay(&guess);
+            }
+            let before = guess.solution.clone();
+            let outcome = self.equilibrium.solve(&mut guess.solution, closure);
+            guess.outcome = outcome;
+            let Outcome::Converged { iterations, .. } = outcome else {
+                // Perhaps the pole is of the other kind.
+                let relaxed = self.membrane().tension_field == TensionField::Relaxed;
+                if changed_pole || !relaxed || before.contact_elements == 0 {
+                    return Err(Failure::Newton(outcome));
+                }
+                changed_pole = true;
+                guess.solution = before;
+                guess = match guess.solution.pole {
+                    Pole::Taut => self.slacken(&guess),
+                    Pole::Slack => self.lay(&guess, Pole::Taut, 1.0),
+                };
+                continue;
+            };
+            self.iterations += u64::from(iterations);
+            if self.change_pole(&mut guess) {
+                continue;
+            }
+            if Self::stale(&guess) {
+                continue;
+            }
+            let kinks = self.kinks(&guess.solution);
+            if Self::kinks_are_nodes(&guess.solution, &kinks) {
+                guess.breaks = kinks;
+                return Ok(guess);
+            }
+            guess.breaks = kinks;
+            guess = self.relay(&guess);
+        }
+        Err(Failure::Unsettled)
+    }
+
+    /// The grading that fits a solution.
+    fn depth(solution: &Solution<S>) -> Depth {
+        let contact_parameter = solution.parameters[CONTACT_PARAMETER];
+        if solution.contact_elements == 0 {
+            return Depth {
+                contact_parameter: 0.0,
+                bend: LARGEST_BEND,
+            };
+        }
+        let [u, w] = solution.nodes[solution.contact_elements];
+        let bend = w / (solution.parameters[PRESSURE] * u * u);
+        Depth {
+            contact_parameter,
+            bend: if bend > 0.0 {
+                bend.clamp(1e-6, LARGEST_BEND)
+            } else {
+                1e-6
+            },
+        }
+    }
+
+    /// The same solution on a fresh mesh.
+    fn relay(&self, from: &Graded<S>) -> Graded<S> {
+        self.lay(from, from.solution.pole, from.solution.parameters[POLE])
+    }
+
+    fn stale(graded: &Graded<S>) -> bool {
+        let wanted = Self::depth(&graded.solution);
+        let off = |a: f64, b: f64| a > STALE_GRADING * b || b > STALE_GRADING * a;
+        graded.solution.elements() == 0
+            || off(wanted.contact_parameter, graded.depth.contact_parameter)
+            || off(wanted.bend, graded.depth.bend)
+    }
+
+    /// An unpressed solution on a mesh with a contact zone up to `contact_parameter`; the values stay unpressed.
+    pub fn lay_contact(&self, from: &Graded<S>, contact_parameter: f64) -> Graded<S> {
+        let depth = Depth {
+            contact_parameter,
+            bend: LARGEST_BEND,
+        };
+        self.lay_on(from, Pole::Taut, from.solution.parameters[POLE], depth)
+    }
+
+    /// Puts a solution on a mesh graded for it, with nodes at its breaks and the given kind of pole.
+    pub fn lay(&self, from: &Graded<S>, pole: Pole, pole_parameter: f64) -> Graded<S> {
+        self.lay_on(from, pole, pole_parameter, Self::depth(&from.solution))
+    }
+
+    fn lay_on(&self, from: &Graded<S>, pole: Pole, pole_parameter: f64, depth: Depth) -> Graded<S> {
+        let old = &from.solution;
+        let contact_parameter = depth.contact_parameter;
+        let pressed = contact_parameter > 0.0;
+        let start = if pole == Pole::Slack { pole_parameter } else { 0.0 };
+        let mut positions = [0.0; MAX_ELEMENTS + 1];
+        let mut density = self.resolution.density;
+        let (contact_elements, free_elements) = loop {
+            let mut count = 0;
+            let mut take = |t: f64| {
+                count += 1;
+                if count <= MAX_ELEMENTS {
+                    positions[count] = t;
+                }
+            };
+            let breaks = from.breaks.positions().iter().copied();
+            let mut contact_elements = 0;
+            if pressed {
+                let spacing = (contact_parameter - start) / self.resolution.contact_elements as f64;
+                let mut left = start;
+                let inside = breaks.clone().filter(|&t| t > start && t < contact_parameter);
+                for right in inside.chain(core::iter::once(contact_parameter)) {
+                    let elements = libm::ceil((right - left) / spacing - 1e-9).max(1.0) as usize;
+                    for k in 1..elements {
+                        take(left + (right - left) * k as f64 / elements as f64);
+                    }
+                    take(right);
+                    contact_elements += elements;
+                    left = right;
+                }
+            }
+            let mut left = contact_parameter;
+            let mut free_elements = 0;
+            let inside = breaks.filter(|&t| t > contact_parameter && t < FRAC_PI_2);
+            for right in inside.chain(core::iter::once(FRAC_PI_2)) {
+                free_elements += depth.spread(left, right, density, &mut take);
+                left = right;
+            }
+            if contact_elements + free_elements <= MAX_ELEMENTS {
+                break (contact_elements, free_elements);
+            }
+            density *= 0.9;
+        };
+        positions[0] = start;
+        let mut solution = old.clone();
+        solution.pole = pole;
+        solution.parameters[POLE] = pole_parameter;
+        solution.contact_elements = contact_elements;
+        solution.free_elements = free_elements;
+        for k in 0..=contact_elements {
+            solution.fractions[k] = (positions[k] - start) / (contact_parameter - start);
+        }
+        let zone_start = if pressed { contact_parameter } else { start };
+        for k in 0..=free_elements {
+            solution.fractions[contact_elements + 1 + k] =
+                (positions[contact_elements + k] - zone_start) / (FRAC_PI_2 - zone_start);
+        }
+        let gauss = &self.equilibrium.gauss;
+        let elements = contact_elements + free_elements;
+        for (k, &t) in positions.iter().enumerate().take(elements + 1) {
+            (solution.nodes[k], _) = old.at(gauss, t);
+        }
+        for e in 0..elements {
+            let span = solution.span(e);
+            for j in 0..S {
+                let (state, stretch) = old.at(gauss, span.start + gauss.nodes[j] * span.length);
+                solution.stages[e][j] = state;
+                solution.stretches[e][j] = stretch;
+            }
+        }
+        Graded {
+            solution,
+            depth,
+            breaks: from.breaks,
+            outcome: from.outcome,
+        }
+    }
+
+    /// Goes over to a slack core when the pole of a relaxed membrane came out compressed.
+    fn change_pole(&self, graded: &mut Graded<S>) -> bool {
+        let solution = &graded.solution;
+        let compressed = self.membrane().tension_field == TensionField::Relaxed
+            && solution.contact_elements > 0
+            && solution.pole == Pole::Taut
+            && solution.parameters[POLE] < 1.0;
+        if compressed {
+            *graded = self.slacken(graded);
+        }
+        compressed
+    }
+
+    /// The same state with a slack core that ends where the hoop stretch passes 1.
+    fn slacken(&self, graded: &Graded<S>) -> Graded<S> {
+        let solution = &graded.solution;
+        let contact_parameter = solution.parameters[CONTACT_PARAMETER];
+        let mut edge = 0.9 * contact_parameter;
+        'search: for e in 0..solution.contact_elements {
+            let span = solution.span(e);
+            for j in 0..S {
+                if solution.stages[e][j][0] >= 1.0 {
+                    edge = span.start + self.equilibrium.gauss.nodes[j] * span.length;
+                    break 'search;
+                }
+            }
+        }
+        self.lay(graded, Pole::Slack, edge.min(0.9 * contact_parameter))
+    }
+
+    /// Where hoop wrinkles begin or end.
+    fn kinks(&self, solution: &Solution<S>) -> Breaks {
+        let mut kinks = Breaks::default();
+        if self.membrane().tension_field == TensionField::Plain {
+            return kinks;
+        }
+        let mut before: Option<(f64, bool)> = None;
+        for e in 0..solution.elements() {
+            let span = solution.span(e);
+            for j in 0..S {
+                let t = span.start + self.equilibrium.gauss.nodes[j] * span.length;
+                let wrinkled = self.wrinkle_margin(solution, t) < 0.0;
+                if let Some((left, was)) = before
+                    && was != wrinkled
+                {
+                    kinks.push(self.kink_between(solution, left, t));
+                }
+                before = Some((t, wrinkled));
+            }
+        }
+        kinks
+    }
+
+    /// Positive where the membrane is taut both ways, negative where hoop wrinkles stand.
+    fn wrinkle_margin(&self, solution: &Solution<S>, t: f64) -> f64 {
+        let ([u, w], stretch) = solution.at(&self.equilibrium.gauss, t);
+        if u >= 1.0 {
+            return u - 1.0 + f64::MIN_POSITIVE;
+        }
+        let tension = self.membrane().tension_measure(
+            if t < solution.parameters[CONTACT_PARAMETER] {
+                Zone::Contact
+            } else {
+                Zone::Free
+            },
+            t,
+            [u, w],
+            solution.parameters[PRESSURE],
+            solution.parameters[CONTACT_RADIUS],
+        );
+        match self.membrane().uniaxial(tension.max(0.0), stretch) {
+            Some((l1, _)) => u * u * l1 - 1.0,
+            None => 1.0,
+        }
+    }
+
+    /// The kink between two points of different kind, by bisection.
+    fn kink_between(&self, solution: &Solution<S>, mut left: f64, mut right: f64) -> f64 {
+        let left_wrinkled = self.wrinkle_margin(solution, left) < 0.0;
+        while right - left > 1e-3 * KINK_TOLERANCE {
+            let middle = 0.5 * (left + right);
+            if (self.wrinkle_margin(solution, middle) < 0.0) == left_wrinkled {
+                left = middle;
+            } else {
+                right = middle;
+            }
+        }
+        0.5 * (left + right)
+    }
+
+    fn kinks_are_nodes(solution: &Solution<S>, kinks: &Breaks) -> bool {
+        kinks.positions().iter().all(|&kink| {
+            (0..solution.elements()).any(|e| (solution.span(e).start - kink).abs() < KINK_TOLERANCE)
+        })
+    }
+}

@@ -1,0 +1,542 @@
+//! Newton's method for a state of equilibrium on a given mesh.
+//!
+//! Unknown are the state at every node and Gauss point, and four parameters: the pole's (its stretch, or the edge
+//! of a slack core), the pressure, the deformed contact radius and the contact parameter. Because the contact
+//! parameter is an unknown, the mesh moves with it; its derivatives are exact, so the convergence is quadratic
+//! whatever controls the press.
+
+use crate::material::Hyperelastic;
+use crate::membrane::{
+    CONTACT_PARAMETER, CONTACT_RADIUS, HEIGHT, Membrane, POLE, PRESSURE, Response, VOLUME, Zone,
+};
+use crate::solver::chain::{self, BORDERS, Chain, Row, UNKNOWNS};
+use crate::solver::collocation::{self, Condensed, Gauss, PARAMETERS, Point, STATES, Span};
+use core::f64::consts::FRAC_PI_2;
+
+/// Most elements a mesh may have.
+pub const MAX_ELEMENTS: usize = 64;
+
+/// What the membrane does at its pole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pole {
+    /// Taut: the pole parameter is the stretch of the pole.
+    Taut,
+    /// Slack up to a free boundary `t_s`, where both stretches are 1: the pole parameter is `t_s`.
+    Slack,
+}
+
+/// A mesh with values on it.
+#[derive(Clone, Debug)]
+pub struct Solution<const S: usize> {
+    /// Taut or slack.
+    pub pole: Pole,
+    /// Elements under the plate.
+    pub contact_elements: usize,
+    /// Elements of the free zone.
+    pub free_elements: usize,
+    /// Position of each node within its zone, 0 ..= 1: `contact_elements + 1` values, then `free_elements + 1`.
+    pub fractions: [f64; MAX_ELEMENTS + 2],
+    /// State at each node, the contact edge once.
+    pub nodes: [[f64; STATES]; MAX_ELEMENTS + 1],
+    /// State at each Gauss point.
+    pub stages: [[[f64; STATES]; S]; MAX_ELEMENTS],
+    /// Meridional stretch at each Gauss point.
+    pub stretches: [[f64; S]; MAX_ELEMENTS],
+    /// Pole, pressure, contact radius, contact parameter.
+    pub parameters: [f64; PARAMETERS],
+    /// Height of the dome.
+    pub height: f64,
+    /// Volume of the dome.
+    pub volume: f64,
+}
+
+impl<const S: usize> Solution<S> {
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        self.contact_elements + self.free_elements
+    }
+
+    /// Where the membrane begins to be taut: 0, or the edge of the slack core.
+    pub fn start(&self) -> f64 {
+        if self.pole == Pole::Slack {
+            self.parameters[POLE]
+        } else {
+            0.0
+        }
+    }
+
+    /// State and a guess of the meridional stretch at `t`, by the collocation polynomials; a slack core is `[1, 0]`.
+    pub fn at(&self, gauss: &Gauss<S>, t: f64) -> ([f64; STATES], f64) {
+        if t < self.start() {
+            return ([1.0, 0.0], 1.0);
+        }
+        let mut element = 0;
+        while element + 1 < self.elements() && self.span(element + 1).start <= t {
+            element += 1;
+        }
+        let span = self.span(element);
+        let theta = (t - span.start) / span.length;
+        let nearest = gauss
+            .nodes
+            .iter()
+            .position(|&node| node >= theta)
+            .unwrap_or(S - 1);
+        (
+            gauss.evaluate(self.nodes[element], &self.stages[element], theta),
+            self.stretches[element][nearest],
+        )
+    }
+
+    /// The zone of element `e`.
+    pub fn zone(&self, e: usize) -> Zone {
+        if e < self.contact_elements {
+            Zone::Contact
+        } else {
+            Zone::Free
+        }
+    }
+
+    /// Where element `e` lies.
+    pub fn span(&self, e: usize) -> Span {
+        let contact_parameter = self.parameters[CONTACT_PARAMETER];
+        let mut span = Span::default();
+        if e < self.contact_elements {
+            let (a, b) = (self.fractions[e], self.fractions[e + 1]);
+            let start = self.start();
+            span.start = start + (contact_parameter - start) * a;
+            span.length = (contact_parameter - start) * (b - a);
+            span.start_by[CONTACT_PARAMETER] = a;
+            span.length_by[CONTACT_PARAMETER] = b - a;
+            if self.pole == Pole::Slack {
+                span.start_by[POLE] = 1.0 - a;
+                span.length_by[POLE] = a - b;
+            }
+        } else {
+            let (a, b) = (self.fractions[e + 1], self.fractions[e + 2]);
+            let start = if self.contact_elements == 0 {
+                self.start()
+            } else {
+                contact_parameter
+            };
+            span.start = start + (FRAC_PI_2 - start) * a;
+            span.length = (FRAC_PI_2 - start) * (b - a);
+            span.start_by[CONTACT_PARAMETER] = 1.0 - a;
+            span.length_by[CONTACT_PARAMETER] = a - b;
+        }
+        span
+    }
+}
+
+/// What fixes a rest state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RestControl {
+    /// The stretch of the pole.
+    PoleStretch(f64),
+    /// The pressure.
+    Pressure(f64),
+    /// The hoop stretch of the equator (its radius over `a0`).
+    EquatorStretch(f64),
+    /// The height.
+    Height(f64),
+}
+
+/// What selects a pressed state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PressControl {
+    /// The contact parameter `t_c`.
+    ContactParameter(f64),
+    /// The deformed contact radius.
+    ContactRadius(f64),
+    /// The height left under the plate.
+    Height(f64),
+}
+
+/// The equations that close a chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Closure {
+    /// Not pressed: the equator's tangent is vertical.
+    Rest(RestControl),
+    /// Pressed, the equator clamped at its rest radius.
+    Press {
+        /// What selects the state.
+        control: PressControl,
+        /// Hoop stretch of the clamped equator.
+        equator_stretch: f64,
+        /// `V + compliance P` of the rest state.
+        fluid: f64,
+        /// Compliance.
+        compliance: f64,
+    },
+}
+
+/// How Newton's method ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// The step became negligible.
+    Converged {
+        /// Iterations taken.
+        iterations: u32,
+        /// Largest residual of the collocation equations before the last step.
+        residual: f64,
+        /// Size of the last step, relative to the solution.
+        step: f64,
+    },
+    /// An iterate left what a membrane can be: no tension in the free zone, or an unstable law.
+    Inadmissible {
+        /// Iterations taken.
+        iterations: u32,
+        /// Where on the meridian.
+        position: f64,
+    },
+    /// Newton's matrix is singular.
+    Singular {
+        /// Iterations taken.
+        iterations: u32,
+    },
+    /// The iterations ran out.
+    Stalled {
+        /// Size of the last step, relative to the solution.
+        step: f64,
+    },
+}
+
+impl Outcome {
+    /// Whether there is a solution.
+    pub fn converged(&self) -> bool {
+        matches!(self, Self::Converged { .. })
+    }
+}
+
+/// Iterations before Newton's method gives up.
+const MAX_ITERATIONS: u32 = 30;
+/// Predicted size of the step after the present one at which the present one is the last.
+const NEXT_STEP: f64 = 1e-14;
+/// A step this small is rounding.
+const NEGLIGIBLE_STEP: f64 = 3e-13;
+/// Steps this small that no longer shrink are rounding, amplified by the condition of the problem.
+const LARGEST_ROUNDING: f64 = 1e-7;
+/// Largest relative change of a quantity in one damped step.
+const LARGEST_CHANGE: f64 = 0.3;
+
+/// The membrane's equations, a collocation method and room to work in.
+#[derive(Clone, Debug)]
+pub struct Equilibrium<L, const S: usize> {
+    /// The membrane.
+    pub membrane: Membrane<L>,
+    /// The collocation method.
+    pub gauss: Gauss<S>,
+    condensed: [Condensed<S>; MAX_ELEMENTS],
+    chain: Chain<MAX_ELEMENTS>,
+}
+
+/// `row . x + constant = 0` with one coefficient 1.
+fn unit_row(index: usize, residual: f64) -> Row {
+    let mut row = [0.0; UNKNOWNS + 1];
+    row[index] = 1.0;
+    row[UNKNOWNS] = residual;
+    row
+}
+
+const CONTACT_EDGE: usize = 2;
+
+impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
+    /// Ready to solve.
+    pub fn new(membrane: Membrane<L>) -> Self {
+        Self {
+            membrane,
+            gauss: Gauss::new(),
+            condensed: [Condensed::default(); MAX_ELEMENTS],
+            chain: Chain::new([[0.0; PARAMETERS]; STATES]),
+        }
+    }
+
+    /// Values of the first node and their derivative by the pole parameter.
+    fn first_node(&self, pole: Pole, parameter: f64) -> ([f64; STATES], [f64; STATES]) {
+        match pole {
+            Pole::Taut => {
+                let d = self.membrane.law.derivatives(parameter, parameter);
+                ([parameter, d.w1], [1.0, d.w11 + d.w12])
+            }
+            Pole::Slack => ([1.0, 0.0], [0.0, 0.0]),
+        }
+    }
+
+    /// Condenses every element at the present iterate. The residual, or where the iterate is inadmissible.
+    fn linearise(&mut self, solution: &mut Solution<S>) -> Result<f64, LineariseError> {
+        let [_, pressure, contact_radius, _] = solution.parameters;
+        let mut residual: f64 = 0.0;
+        let mut points = [Point::default(); S];
+        for e in 0..solution.elements() {
+            let span = solution.span(e);
+            let zone = solution.zone(e);
+            for (j, point) in points.iter_mut().enumerate() {
+                let t = span.start + self.gauss.nodes[j] * span.length;
+                let guess = solution.stretches[e][j];
+                let (value, response) = self
+                    .membrane
+                    .point(zone, t, solution.stages[e][j], pressure, contact_radius, guess)
+                    .ok_or(LineariseError::Inadmissible(t))?;
+                *point = value;
+                solution.stretches[e][j] = response.l1;
+            }
+            collocation::condense(
+                &self.gauss,
+                &span,
+                solution.nodes[e],
+                solution.nodes[e + 1],
+                &solution.stages[e],
+                &points,
+                &mut self.condensed[e],
+            )
+            .ok_or(LineariseError::Singular)?;
+            residual = residual.max(self.condensed[e].residual);
+        }
+        Ok(residual)
+    }
+
+    /// Assembles chain and border, and solves for the change of the last node and the parameters.
+    fn step(&mut self, solution: &mut Solution<S>, closure: &Closure) -> Option<[f64; UNKNOWNS]> {
+        let [pole, pressure, contact_radius, contact_parameter] = solution.parameters;
+        let (first, first_by_pole) = self.first_node(solution.pole, pole);
+        solution.nodes[0] = first;
+        let mut by_parameter = [[0.0; PARAMETERS]; STATES];
+        by_parameter[0][POLE] = first_by_pole[0];
+        by_parameter[1][POLE] = first_by_pole[1];
+        self.chain = Chain::new(by_parameter);
+        let edge = self.membrane.meridian(contact_parameter);
+        for e in 0..solution.elements() {
+            if e == solution.contact_elements {
+                // rho(t_c) - rho_c = 0.
+                let u = solution.nodes[e][0];
+                let mut row = [0.0; UNKNOWNS + 1];
+                row[0] = edge.x;
+                row[STATES + CONTACT_RADIUS] = -1.0;
+                row[STATES + CONTACT_PARAMETER] = edge.x_rate * u;
+                row[UNKNOWNS] = edge.x * u - contact_radius;
+                self.chain.add_to_border(CONTACT_EDGE, &row);
+            }
+            for integral in [HEIGHT, VOLUME] {
+                self.chain
+                    .add_to_border(integral, &self.condensed[e].integrals[integral]);
+            }
+            self.chain.advance(&self.condensed[e].end)?;
+        }
+        let borders: [Row; BORDERS] = self.chain.borders;
+        let [link_0, link_1] = self.chain.link();
+        let last = solution.nodes[solution.elements()];
+        let shifted = |mut row: Row, target: f64| {
+            row[UNKNOWNS] -= target;
+            row
+        };
+        let rows = match *closure {
+            Closure::Rest(control) => [
+                link_0,
+                link_1,
+                unit_row(1, last[1]),
+                match control {
+                    RestControl::PoleStretch(stretch) => unit_row(STATES + POLE, pole - stretch),
+                    RestControl::Pressure(target) => unit_row(STATES + PRESSURE, pressure - target),
+                    RestControl::EquatorStretch(stretch) => unit_row(0, last[0] - stretch),
+                    RestControl::Height(height) => shifted(borders[HEIGHT], height),
+                },
+                unit_row(STATES + CONTACT_RADIUS, 0.0),
+                unit_row(STATES + CONTACT_PARAMETER, 0.0),
+            ],
+            Closure::Press {
+                control,
+                equator_stretch,
+                fluid,
+                compliance,
+            } => {
+                let mut volume = shifted(borders[VOLUME], fluid - compliance * pressure);
+                volume[STATES + PRESSURE] += compliance;
+                [
+                    link_0,
+                    link_1,
+                    unit_row(0, last[0] - equator_stretch),
+                    borders[CONTACT_EDGE],
+                    volume,
+                    match control {
+                        PressControl::ContactParameter(t) => {
+                            unit_row(STATES + CONTACT_PARAMETER, contact_parameter - t)
+                        }
+                        PressControl::ContactRadius(radius) => {
+                            unit_row(STATES + CONTACT_RADIUS, contact_radius - radius)
+                        }
+                        PressControl::Height(height) => shifted(borders[HEIGHT], height),
+                    },
+                ]
+            }
+        };
+        chain::solve(rows)
+    }
+
+    /// Newton's method from the values in `solution`, which it replaces.
+    pub fn solve(&mut self, solution: &mut Solution<S>, closure: &Closure) -> Outcome {
+        let mut step_before = f64::INFINITY;
+        for iterations in 1..=MAX_ITERATIONS {
+            let residual = match self.linearise(solution) {
+                Ok(residual) => residual,
+                Err(LineariseError::Inadmissible(position)) => {
+                    return Outcome::Inadmissible { iterations, position };
+                }
+                Err(LineariseError::Singular) => return Outcome::Singular { iterations },
+            };
+            let Some(change) = self.step(solution, closure) else {
+                return Outcome::Singular { iterations };
+            };
+            let (size, damping) = self.apply(solution, &change);
+            if !size.is_finite() {
+                return Outcome::Singular { iterations };
+            }
+            if damping >= 1.0 {
+                // Quadratic convergence: the next step is at most this.
+                let contraction = size / step_before;
+                let next = if contraction < 1.0 {
+                    size * contraction * contraction
+                } else {
+                    f64::INFINITY
+                };
+                // Rounding: small, and no longer shrinking.
+                let rounding = size < LARGEST_ROUNDING && size > 0.3 * step_before;
+                if size < NEGLIGIBLE_STEP || rounding || (step_before.is_finite() && next < NEXT_STEP) {
+                    self.sum_integrals(solution);
+                    return Outcome::Converged {
+                        iterations,
+                        residual,
+                        step: size,
+                    };
+                }
+                step_before = size;
+            } else {
+                step_before = f64::INFINITY;
+            }
+        }
+        Outcome::Stalled { step: step_before }
+    }
+
+    /// Adds a damped step to the solution. The undamped step's relative size, and the damping (1 = none).
+    fn apply(&mut self, solution: &mut Solution<S>, change: &[f64; UNKNOWNS]) -> (f64, f64) {
+        let elements = solution.elements();
+        let mut node_changes = [[0.0; STATES]; MAX_ELEMENTS + 1];
+        self.chain
+            .back_substitute(change, |k, node| node_changes[k] = node);
+        let tension = solution.nodes[..=elements]
+            .iter()
+            .fold(0.0_f64, |a, y| a.max(y[1].abs()));
+        let mut size: f64 = 0.0;
+        let mut shrink: f64 = 1.0;
+        for (node, by) in solution.nodes[..=elements].iter().zip(&node_changes) {
+            let relative = (by[0] / node[0]).abs();
+            size = size.max(relative).max(by[1].abs() / tension.max(1e-3));
+            shrink = shrink.max(relative / LARGEST_CHANGE);
+        }
+        let parameter_changes = &change[STATES..];
+        for (m, &by) in parameter_changes.iter().enumerate() {
+            let value = solution.parameters[m];
+            if by == 0.0 {
+                continue;
+            }
+            let scale = if m == CONTACT_PARAMETER {
+                value.min(FRAC_PI_2 - value)
+            } else {
+                value
+            };
+            let relative = (by / scale).abs();
+            size = size.max((by / value).abs());
+            shrink = shrink.max(relative / LARGEST_CHANGE);
+        }
+        let damping = 1.0 / shrink;
+        for e in 0..elements {
+            let mut x = [0.0; collocation::COLUMNS];
+            x[..STATES].copy_from_slice(&node_changes[e]);
+            x[STATES..UNKNOWNS].copy_from_slice(parameter_changes);
+            x[UNKNOWNS] = 1.0;
+            for (stage, map) in solution.stages[e].iter_mut().zip(&self.condensed[e].stages) {
+                for (value, row) in stage.iter_mut().zip(map) {
+                    *value += damping * row.iter().zip(&x).map(|(a, b)| a * b).sum::<f64>();
+                }
+            }
+        }
+        for (node, by) in solution.nodes[..=elements].iter_mut().zip(&node_changes) {
+            node[0] += damping * by[0];
+            node[1] += damping * by[1];
+        }
+        for (value, by) in solution.parameters.iter_mut().zip(parameter_changes) {
+            *value += damping * by;
+        }
+        (size, damping)
+    }
+
+    /// Height and volume at the solution, from the points themselves.
+    fn sum_integrals(&self, solution: &mut Solution<S>) {
+        let (mut height, mut volume) = (0.0, 0.0);
+        self.for_each_point(solution, |e, j, span, point, _| {
+            let _ = e;
+            let weight = self.gauss.weights[j] * span.length;
+            height += weight * point.integrand[HEIGHT];
+            volume += weight * point.integrand[VOLUME];
+        });
+        solution.height = height;
+        solution.volume = volume;
+    }
+
+    /// Height over the base at `t`.
+    pub fn height_at(&self, solution: &Solution<S>, t: f64) -> f64 {
+        let [_, pressure, contact_radius, contact_parameter] = solution.parameters;
+        if t <= contact_parameter {
+            return solution.height;
+        }
+        let mut height = 0.0;
+        for e in (0..solution.elements()).rev() {
+            let span = solution.span(e);
+            let end = span.start + span.length;
+            if end <= t {
+                break;
+            }
+            let start = span.start.max(t);
+            for (node, weight) in self.gauss.nodes.iter().zip(&self.gauss.weights) {
+                let position = start + node * (end - start);
+                let (state, guess) = solution.at(&self.gauss, position);
+                if let Some((point, _)) =
+                    self.membrane
+                        .point(solution.zone(e), position, state, pressure, contact_radius, guess)
+                {
+                    height += weight * (end - start) * point.integrand[HEIGHT];
+                }
+            }
+        }
+        height
+    }
+
+    /// Visits every Gauss point: element, index, span, what the equations say, the law's response.
+    pub fn for_each_point(
+        &self,
+        solution: &Solution<S>,
+        mut visit: impl FnMut(usize, usize, &Span, &Point, &Response),
+    ) {
+        let [_, pressure, contact_radius, _] = solution.parameters;
+        for e in 0..solution.elements() {
+            let span = solution.span(e);
+            for j in 0..S {
+                let t = span.start + self.gauss.nodes[j] * span.length;
+                let state = solution.stages[e][j];
+                if let Some((point, response)) = self.membrane.point(
+                    solution.zone(e),
+                    t,
+                    state,
+                    pressure,
+                    contact_radius,
+                    solution.stretches[e][j],
+                ) {
+                    visit(e, j, &span, &point, &response);
+                }
+            }
+        }
+    }
+}
+
+enum LineariseError {
+    Inadmissible(f64),
+    Singular,
+}

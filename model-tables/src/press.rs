@@ -1,0 +1,682 @@
+//! Pressing the fingertip: states at asked indentations, the limit, and the curve between.
+
+use crate::adapt::{Adaptive, Failure, Graded, Resolution};
+use crate::design::{Design, RestBy};
+use crate::equilibrium::{Closure, Outcome, Pole, PressControl, Solution};
+use crate::material::{Hyperelastic, Law};
+use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, Membrane, POLE, PRESSURE, TensionField};
+use crate::rest::{Branch, Quantity, RestFailure};
+use crate::state::{self, MeridianPoint, PressedState, Scale, Shape};
+use core::f64::consts::{FRAC_PI_2, PI};
+use core::fmt;
+
+/// Gauss points an element: order twelve.
+pub const STAGES: usize = 6;
+/// The mesh of the full model: errors of force and pressure below 1e-9 from an indentation of 1e-5 of the height on.
+pub const FULL: Resolution = Resolution {
+    density: 2.5,
+    contact_elements: 3,
+};
+
+/// What ends a press.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EndsBy {
+    /// The bulge becomes tangent to the base plane.
+    BulgeTouchesBase,
+    /// All fluid has been pressed into the compliance: the membrane lies flat.
+    FluidDrained,
+}
+
+impl EndsBy {
+    /// The word used in tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::BulgeTouchesBase => "bulge-touches-base",
+            Self::FluidDrained => "fluid-drained",
+        }
+    }
+}
+
+/// The end of a press.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// Largest indentation, metres.
+    pub indentation: f64,
+    /// Pressure there, pascals.
+    pub pressure: f64,
+    /// Force there, newtons.
+    pub force: f64,
+    /// Why it ends.
+    pub ends_by: EndsBy,
+}
+
+/// Why the model gives no answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ModelError {
+    /// A rest state of this pressure, radius or height does not exist; SI units.
+    NoRestState {
+        /// Which quantity was given.
+        quantity: Quantity,
+        /// Its value.
+        asked: f64,
+        /// The least value any rest state has.
+        least: f64,
+        /// The greatest value.
+        greatest: f64,
+    },
+    /// The rest state was not found.
+    RestUnsolved {
+        /// What failed.
+        failure: Failure,
+    },
+    /// The indentation lies beyond the end of the press.
+    BeyondLimit {
+        /// The indentation asked for, metres.
+        asked: f64,
+        /// The end.
+        limit: Limit,
+    },
+    /// An indentation is a length >= 0.
+    NotAnIndentation {
+        /// What was asked for, metres.
+        asked: f64,
+    },
+    /// The state was not found.
+    PressUnsolved {
+        /// The indentation asked for, metres.
+        asked: f64,
+        /// The largest indentation reached on the way, metres.
+        reached: f64,
+        /// What failed.
+        failure: Failure,
+    },
+}
+
+impl fmt::Display for ModelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NoRestState {
+                quantity,
+                asked,
+                least,
+                greatest,
+            } => {
+                let (what, unit, factor) = match quantity {
+                    Quantity::Pressure => ("pressure", "kPa", 1e-3),
+                    Quantity::EquatorRadius => ("equator radius", "mm", 1e3),
+                    Quantity::Height => ("height", "mm", 1e3),
+                };
+                write!(
+                    f,
+                    "no rest state has a {what} of {} {unit}: inflation reaches {:.6} to {:.6} {unit}; ask for a \
+                     value in between, or give the rest state by pole_stretch",
+                    asked * factor,
+                    least * factor,
+                    greatest * factor
+                )
+            }
+            Self::RestUnsolved { failure } => {
+                write!(
+                    f,
+                    "the rest state was not found ({failure}); try a smaller pole stretch"
+                )
+            }
+            Self::BeyondLimit { asked, limit } => write!(
+                f,
+                "indentation {} mm is beyond the limit of {:.6} mm, where the press ends ({}); ask for less",
+                asked * 1e3,
+                limit.indentation * 1e3,
+                limit.ends_by.word()
+            ),
+            Self::NotAnIndentation { asked } => {
+                write!(
+                    f,
+                    "indentation {} mm is not possible: it must be a number of at least 0",
+                    asked * 1e3
+                )
+            }
+            Self::PressUnsolved {
+                asked,
+                reached,
+                failure,
+            } => write!(
+                f,
+                "the state at indentation {} mm was not found ({failure}); the last one found is at {:.6} mm",
+                asked * 1e3,
+                reached * 1e3
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ModelError {}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Newton(Outcome::Converged { .. }) => write!(f, "converged"),
+            Self::Newton(Outcome::Inadmissible { position, .. }) => write!(
+                f,
+                "at parameter {position:.4} of the meridian the membrane lost its tension or its law its stability"
+            ),
+            Self::Newton(Outcome::Singular { .. }) => write!(f, "the equations became singular"),
+            Self::Newton(Outcome::Stalled { step }) => {
+                write!(f, "Newton's method did not converge, last step {step:.1e}")
+            }
+            Self::Unsettled => write!(f, "the edge of a wrinkled or slack zone did not settle"),
+        }
+    }
+}
+
+/// States kept for prediction: cubic extrapolation.
+const HISTORY: usize = 4;
+/// First indentation on the way from rest, over the height.
+const FIRST_INDENTATION: f64 = 1e-4;
+/// Largest factor between indentations on the way up.
+const LARGEST_FACTOR: f64 = 4.0;
+/// Largest step between indentations on the way up, over the height.
+const LARGEST_STEP: f64 = 0.06;
+/// Step under which the way up gives up, relative to the indentation.
+const SMALLEST_STEP: f64 = 1e-4;
+/// Contact radius over edge radius, minus one, that counts as rounding.
+const EDGE_ROUNDING: f64 = 1e-10;
+
+/// A fingertip at rest, ready to be pressed.
+#[derive(Clone, Debug)]
+pub struct Press {
+    solver: Adaptive<Law, STAGES>,
+    scale: Scale,
+    compliance: f64,
+    rest: Graded<STAGES>,
+    rest_shape: Shape,
+    branch: Branch,
+    /// The latest states, newest last.
+    history: [Option<Graded<STAGES>>; HISTORY],
+    limit: Option<Limit>,
+}
+
+impl Press {
+    /// Inflates a design to its rest state.
+    ///
+    /// # Errors
+    /// [`ModelError::NoRestState`] and [`ModelError::RestUnsolved`].
+    pub fn new(design: &Design, tension_field: TensionField) -> Result<Self, ModelError> {
+        Self::with_resolution(design, tension_field, FULL)
+    }
+
+    /// The same on a mesh of another resolution.
+    ///
+    /// # Errors
+    /// As [`Press::new`].
+    #[expect(
+        clippy::large_stack_arrays,
+        reason = "no allocation: the states live in the value itself"
+    )]
+    pub fn with_resolution(
+        design: &Design,
+        tension_field: TensionField,
+        resolution: Resolution,
+    ) -> Result<Self, ModelError> {
+        let dimensions = design.membrane;
+        let modulus = design.law.shear_modulus();
+        let scale = Scale::new(&dimensions, modulus);
+        let membrane = Membrane {
+            aspect: dimensions.axial_semi_axis / dimensions.radial_semi_axis,
+            law: design.law.scaled(1.0 / modulus),
+            tension_field,
+        };
+        let mut solver = Adaptive::new(membrane, resolution);
+        let by = |solver: &mut Adaptive<Law, STAGES>, quantity, asked, unit: f64| {
+            solver
+                .rest_by(quantity, asked / unit)
+                .map_err(|failure| match failure {
+                    RestFailure::OutOfReach { least, greatest, .. } => ModelError::NoRestState {
+                        quantity,
+                        asked,
+                        least: least * unit,
+                        greatest: greatest * unit,
+                    },
+                    RestFailure::Solver(failure) => ModelError::RestUnsolved { failure },
+                })
+        };
+        let (rest, branch) = match design.rest {
+            RestBy::PoleStretch(stretch) => {
+                let rest = solver
+                    .rest_by_pole_stretch(stretch)
+                    .map_err(|failure| ModelError::RestUnsolved { failure })?;
+                (rest, Branch::Only)
+            }
+            RestBy::Pressure(pascals) => by(&mut solver, Quantity::Pressure, pascals, scale.pressure)?,
+            RestBy::EquatorRadius(metres) => by(&mut solver, Quantity::EquatorRadius, metres, scale.length)?,
+            RestBy::Height(metres) => by(&mut solver, Quantity::Height, metres, scale.length)?,
+        };
+        let rest_shape = state::shape(&solver.equilibrium, &scale, &rest.solution);
+        Ok(Self {
+            solver,
+            scale,
+            compliance: design.compliance * scale.pressure / scale.volume(),
+            rest,
+            rest_shape,
+            branch,
+            history: [None, None, None, None],
+            limit: None,
+        })
+    }
+
+    /// The rest state.
+    pub fn rest(&self) -> &Shape {
+        &self.rest_shape
+    }
+
+    /// Which of several rest states this is.
+    pub fn branch(&self) -> Branch {
+        self.branch
+    }
+
+    /// Newton iterations spent so far.
+    pub fn iterations(&self) -> u64 {
+        self.solver.iterations
+    }
+
+    /// The pressed state at an indentation in metres, 0 ..= limit.
+    ///
+    /// # Errors
+    /// [`ModelError::NotAnIndentation`], [`ModelError::BeyondLimit`], [`ModelError::PressUnsolved`].
+    pub fn at_indentation(&mut self, indentation: f64) -> Result<PressedState, ModelError> {
+        if !(indentation >= 0.0 && indentation.is_finite()) {
+            return Err(ModelError::NotAnIndentation { asked: indentation });
+        }
+        if indentation == 0.0 {
+            return Ok(PressedState {
+                indentation: 0.0,
+                pressure_rise: 0.0,
+                force: 0.0,
+                contact_radius: 0.0,
+                contact_parameter: 0.0,
+                shape: self.rest_shape,
+            });
+        }
+        self.reach(indentation / self.scale.length)
+            .map_err(|stop| match stop {
+                Stop::BeyondLimit => match self.limit() {
+                    Ok(limit) => ModelError::BeyondLimit {
+                        asked: indentation,
+                        limit,
+                    },
+                    Err(error) => error,
+                },
+                Stop::Failed { reached, failure } => ModelError::PressUnsolved {
+                    asked: indentation,
+                    reached: reached * self.scale.length,
+                    failure,
+                },
+            })?;
+        Ok(self.latest_state(indentation))
+    }
+
+    /// The last state reached, in SI units.
+    fn latest_state(&self, indentation: f64) -> PressedState {
+        let solution = &self.latest().solution;
+        let shape = state::shape(&self.solver.equilibrium, &self.scale, solution);
+        let contact_radius = solution.parameters[CONTACT_RADIUS] * self.scale.length;
+        PressedState {
+            indentation,
+            pressure_rise: (solution.parameters[PRESSURE] - self.rest.solution.parameters[PRESSURE])
+                * self.scale.pressure,
+            force: shape.pressure * PI * contact_radius * contact_radius,
+            contact_radius,
+            contact_parameter: solution.parameters[CONTACT_PARAMETER],
+            shape,
+        }
+    }
+
+    /// The end of the press.
+    ///
+    /// # Errors
+    /// [`ModelError::PressUnsolved`] if the way there fails.
+    pub fn limit(&mut self) -> Result<Limit, ModelError> {
+        if let Some(limit) = self.limit {
+            return Ok(limit);
+        }
+        let height = self.rest.solution.height;
+        let edge = self.edge();
+        let mut step = LARGEST_STEP * height;
+        let mut at = self.history[HISTORY - 1]
+            .as_ref()
+            .map_or(0.0, |g| height - g.solution.height);
+        let limit = loop {
+            if let Some(latest) = &self.history[HISTORY - 1] {
+                // Near enough to jump to the edge?
+                let solution = &latest.solution;
+                let drained = self.compliance > 0.0 && at > 0.98 * height;
+                if drained {
+                    let pressure =
+                        self.rest.solution.parameters[PRESSURE] + self.rest.solution.volume / self.compliance;
+                    break Limit {
+                        indentation: height * self.scale.length,
+                        pressure: pressure * self.scale.pressure,
+                        force: pressure * PI * edge * edge * self.scale.tension * self.scale.length,
+                        ends_by: EndsBy::FluidDrained,
+                    };
+                }
+                if solution.parameters[CONTACT_RADIUS] > 0.6 * edge {
+                    let closure = self.closure(PressControl::ContactRadius(edge));
+                    if let Ok(end) = self.solver.settle(latest.clone(), &closure) {
+                        let [_, w] = end.solution.nodes[end.solution.elements()];
+                        let indentation = height - end.solution.height;
+                        if w < 0.0 && indentation >= at {
+                            let pressure = end.solution.parameters[PRESSURE];
+                            break Limit {
+                                indentation: indentation * self.scale.length,
+                                pressure: pressure * self.scale.pressure,
+                                force: pressure * PI * edge * edge * self.scale.tension * self.scale.length,
+                                ends_by: EndsBy::BulgeTouchesBase,
+                            };
+                        }
+                    }
+                }
+            }
+            let next = (at + step).min(height * (1.0 - 1e-6));
+            match self.reach(next) {
+                Ok(()) => at = next,
+                Err(stop) => {
+                    step *= 0.5;
+                    if step < SMALLEST_STEP * height {
+                        let failure = match stop {
+                            Stop::Failed { failure, .. } => failure,
+                            Stop::BeyondLimit => Failure::Unsettled,
+                        };
+                        return Err(ModelError::PressUnsolved {
+                            asked: next * self.scale.length,
+                            reached: at * self.scale.length,
+                            failure,
+                        });
+                    }
+                }
+            }
+        };
+        self.limit = Some(limit);
+        Ok(limit)
+    }
+
+    /// Hoop stretch of the clamped edge: its radius over `a0`.
+    fn edge(&self) -> f64 {
+        self.rest.solution.nodes[self.rest.solution.elements()][0]
+    }
+
+    fn latest(&self) -> &Graded<STAGES> {
+        self.history[HISTORY - 1].as_ref().unwrap_or(&self.rest)
+    }
+
+    fn closure(&self, control: PressControl) -> Closure {
+        let rest = &self.rest.solution;
+        Closure::Press {
+            control,
+            equator_stretch: self.edge(),
+            fluid: rest.volume + self.compliance * rest.parameters[PRESSURE],
+            compliance: self.compliance,
+        }
+    }
+
+    /// Solves the state at a dimensionless indentation, over as many states in between as it takes.
+    fn reach(&mut self, indentation: f64) -> Result<(), Stop> {
+        let height = self.rest.solution.height;
+        if indentation >= height {
+            return Err(Stop::BeyondLimit);
+        }
+        if self.history[HISTORY - 1].is_none() {
+            let mut first = indentation.min(FIRST_INDENTATION * height);
+            while let Err(stop) = self.attempt(self.first_contact(first), first) {
+                first *= 0.1;
+                if first < 1e-10 * height {
+                    return Err(stop);
+                }
+            }
+        }
+        let mut factor = LARGEST_FACTOR;
+        let mut largest_step = LARGEST_STEP * height;
+        loop {
+            let at = height - self.latest().solution.height;
+            let next = indentation
+                .clamp(at / factor, at * factor)
+                .clamp(at - largest_step, at + largest_step);
+            let arrives = next.to_bits() == indentation.to_bits();
+            let guess = self.predict(next);
+            let result = self
+                .attempt(guess, next)
+                .or_else(|_| self.attempt(self.latest().clone(), next));
+            match result {
+                Ok(()) if arrives => return Ok(()),
+                Ok(()) => {
+                    factor = libm::sqrt(factor * LARGEST_FACTOR);
+                    largest_step = (2.0 * largest_step).min(LARGEST_STEP * height);
+                }
+                Err(stop) => {
+                    let tried = (next - at).abs();
+                    largest_step = 0.5 * tried;
+                    factor = libm::sqrt((next / at).max(at / next));
+                    if tried < SMALLEST_STEP * at {
+                        return Err(match stop {
+                            Stop::Failed { failure, .. } => Stop::Failed { reached: at, failure },
+                            Stop::BeyondLimit => stop,
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    /// One solve; an admissible result becomes the latest state.
+    fn attempt(&mut self, guess: Graded<STAGES>, indentation: f64) -> Result<(), Stop> {
+        let closure = self.closure(PressControl::Height(self.rest.solution.height - indentation));
+        let state = self
+            .solver
+            .settle(guess, &closure)
+            .map_err(|failure| Stop::Failed {
+                reached: 0.0,
+                failure,
+            })?;
+        if state.solution.parameters[CONTACT_RADIUS] > self.edge() * (1.0 + EDGE_ROUNDING) {
+            return Err(Stop::BeyondLimit);
+        }
+        self.history.rotate_left(1);
+        self.history[HISTORY - 1] = Some(state);
+        Ok(())
+    }
+
+    /// A guess from the rest state: the asymptotics of first contact.
+    ///
+    /// `H = (P0 r^2 / 2 T0) ln(K / r)`, with the edge radius for the design's length `K`; under the plate the pole's
+    /// state, outside the rest state with the plate's share taken off the vertical balance.
+    fn first_contact(&self, indentation: f64) -> Graded<STAGES> {
+        let rest = &self.rest.solution;
+        let [pole_stretch, pressure, ..] = rest.parameters;
+        let tension = rest.nodes[0][1] / pole_stretch;
+        let edge = self.edge();
+        let mut radius = 0.1 * edge;
+        for _ in 0..30 {
+            let logarithm = libm::log(edge / radius).max(0.3);
+            radius = libm::sqrt(2.0 * tension * indentation / (pressure * logarithm)).min(0.5 * edge);
+        }
+        let gauss = &self.solver.equilibrium.gauss;
+        let contact_parameter = libm::asin((radius / pole_stretch).min(0.9));
+        let mut pressed = self.rest.clone();
+        pressed.depth.contact_parameter = 0.0;
+        // An unpressed solution laid on a mesh with a contact zone, then corrected.
+        pressed.solution.parameters[CONTACT_PARAMETER] = contact_parameter;
+        pressed.solution.parameters[CONTACT_RADIUS] = radius;
+        let mut laid = self.solver.lay_contact(&pressed, contact_parameter);
+        let correct = |t: f64| {
+            let ([u, w], stretch) = rest.at(gauss, t);
+            let x = libm::sin(t);
+            let k_rest = 0.5 * pressure * u * u * x;
+            let n_squared = w * w + k_rest * k_rest;
+            let k = if t > contact_parameter {
+                0.5 * pressure * (u * u * x - radius * radius / x)
+            } else {
+                0.0
+            };
+            ([u, libm::sqrt((n_squared - k * k).max(w * w))], stretch)
+        };
+        let solution = &mut laid.solution;
+        for e in 0..solution.elements() {
+            let span = solution.span(e);
+            (solution.nodes[e], _) = correct(span.start);
+            for j in 0..STAGES {
+                (solution.stages[e][j], solution.stretches[e][j]) =
+                    correct(span.start + gauss.nodes[j] * span.length);
+            }
+        }
+        (solution.nodes[solution.elements()], _) = correct(FRAC_PI_2);
+        laid
+    }
+
+    /// Extrapolates the latest states of the same mesh in the logarithm of the indentation.
+    fn predict(&self, indentation: f64) -> Graded<STAGES> {
+        let height = self.rest.solution.height;
+        let latest = self.latest();
+        let alike = |graded: &Graded<STAGES>| {
+            let (a, b) = (&graded.solution, &latest.solution);
+            a.pole == b.pole && a.contact_elements == b.contact_elements && a.free_elements == b.free_elements
+        };
+        let mut places = [0.0; HISTORY];
+        let mut states: [Option<&Solution<STAGES>>; HISTORY] = [None; HISTORY];
+        let mut count = 0;
+        for graded in self
+            .history
+            .iter()
+            .rev()
+            .map_while(Option::as_ref)
+            .take_while(|g| alike(g))
+        {
+            let place = libm::log(height - graded.solution.height);
+            if places[..count].iter().any(|p| (p - place).abs() < 1e-9) {
+                break;
+            }
+            (places[count], states[count]) = (place, Some(&graded.solution));
+            count += 1;
+        }
+        let target = libm::log(indentation);
+        let mut guess = latest.clone();
+        let mut weights = [0.0; HISTORY];
+        for i in 0..count {
+            weights[i] = (0..count)
+                .filter(|&j| j != i)
+                .map(|j| (target - places[j]) / (places[i] - places[j]))
+                .product();
+        }
+        let blend = |of: &dyn Fn(&Solution<STAGES>) -> f64| -> f64 {
+            states[..count]
+                .iter()
+                .flatten()
+                .zip(&weights)
+                .map(|(state, weight)| weight * of(state))
+                .sum()
+        };
+        let extrapolated = &mut guess.solution;
+        for p in [POLE, PRESSURE] {
+            extrapolated.parameters[p] = blend(&|s| s.parameters[p]);
+        }
+        for p in [CONTACT_RADIUS, CONTACT_PARAMETER] {
+            extrapolated.parameters[p] = libm::exp(blend(&|s| libm::log(s.parameters[p])));
+        }
+        let sane = extrapolated.parameters[CONTACT_PARAMETER] < FRAC_PI_2
+            && extrapolated.parameters[POLE] > 0.0
+            && (extrapolated.pole == Pole::Taut
+                || extrapolated.parameters[POLE] < extrapolated.parameters[CONTACT_PARAMETER]);
+        if !sane {
+            return latest.clone();
+        }
+        for k in 0..extrapolated.elements() + 2 {
+            extrapolated.fractions[k] = blend(&|s| s.fractions[k]);
+        }
+        for e in 0..extrapolated.elements() {
+            for i in 0..2 {
+                extrapolated.nodes[e][i] = blend(&|s| s.nodes[e][i]);
+                for j in 0..STAGES {
+                    extrapolated.stages[e][j][i] = blend(&|s| s.stages[e][j][i]);
+                }
+            }
+        }
+        let last = extrapolated.elements();
+        for i in 0..2 {
+            extrapolated.nodes[last][i] = blend(&|s| s.nodes[last][i]);
+        }
+        guess
+    }
+
+    /// The meridian of the latest state (`pressed`) or of the rest state, at `points + 1` parameters from pole to
+    /// equator, equally spaced. Calls `take` with each.
+    pub fn profile(&self, pressed: bool, points: usize, mut take: impl FnMut(MeridianPoint)) {
+        let graded = if pressed { self.latest() } else { &self.rest };
+        let solution = &graded.solution;
+        for i in 0..=points {
+            let t = FRAC_PI_2 * i as f64 / points as f64;
+            let height = self.solver.equilibrium.height_at(solution, t);
+            if let Some(point) =
+                state::meridian_point(&self.solver.equilibrium, &self.scale, solution, t, height)
+            {
+                take(point);
+            }
+        }
+    }
+}
+
+/// Why a state was not reached.
+#[derive(Clone, Copy, Debug)]
+enum Stop {
+    BeyondLimit,
+    Failed { reached: f64, failure: Failure },
+}
+
+#[cfg(feature = "std")]
+impl Press {
+    /// The curve of a press down to `deepest`, metres: states from `deepest * 1e-6` on.
+    ///
+    /// # Errors
+    /// As [`Press::at_indentation`], and [`CurveFailure::Shape`] if pressure or force do not grow throughout.
+    pub fn curve(&mut self, deepest: f64) -> Result<crate::curve::Curve, CurveFailure> {
+        let mut points = Vec::new();
+        for k in 0..=CURVE_STATES {
+            let ratio = k as f64 / CURVE_STATES as f64;
+            let indentation = deepest * libm::pow(CURVE_RANGE, ratio - 1.0);
+            let state = self.at_indentation(indentation).map_err(CurveFailure::Model)?;
+            points.push(crate::curve::Contact {
+                pressure_rise: state.pressure_rise,
+                force: state.force,
+                indentation,
+            });
+        }
+        crate::curve::Curve::new(points).map_err(CurveFailure::Shape)
+    }
+}
+
+/// States of a curve.
+#[cfg(feature = "std")]
+const CURVE_STATES: usize = 96;
+/// Deepest over shallowest indentation of a curve.
+#[cfg(feature = "std")]
+const CURVE_RANGE: f64 = 1e5;
+
+/// Why there is no curve.
+#[cfg(feature = "std")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CurveFailure {
+    /// A state is missing.
+    Model(ModelError),
+    /// Pressure or force do not grow with indentation.
+    Shape(crate::curve::CurveError),
+}
+
+#[cfg(feature = "std")]
+impl fmt::Display for CurveFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Model(error) => error.fmt(f),
+            Self::Shape(error) => error.fmt(f),
+        }
+    }
+}
+
+#[cfg(feature = "std")]
+impl core::error::Error for CurveFailure {}

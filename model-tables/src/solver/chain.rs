@@ -1,0 +1,180 @@
+//! Linear equations of a chain of elements with a border: the step of Newton's method.
+//!
+//! The unknowns are the states `y_0 .. y_E` at the nodes and the parameters `p`. Each element couples its two
+//! ends, `T_k y_k - y_(k+1) + C_k p + d_k = 0`; a few border rows couple everything. Nodes are eliminated from
+//! the left, the four equations on a node pivoted among themselves, so that growing and decaying solutions are
+//! both kept in check (Wright, *Stable parallel algorithms for two-point boundary value problems*, 1992). A plain
+//! march `y_(k+1) = T_k y_k` is shooting, and loses every digit on a weakly stretched membrane.
+
+use crate::solver::collocation::{COLUMNS, PARAMETERS, STATES};
+
+/// Border rows that are carried along.
+pub const BORDERS: usize = 3;
+/// Unknowns left when all nodes but the last are eliminated: the last node, then the parameters.
+pub const UNKNOWNS: usize = STATES + PARAMETERS;
+/// An equation `sum_i row[i] x_i + row[UNKNOWNS] = 0` on one node and the parameters.
+pub type Row = [f64; UNKNOWNS + 1];
+const CONSTANT: usize = UNKNOWNS;
+
+/// A node that has been eliminated: its two states from the next node's and the parameters.
+type Eliminated = [Row; STATES];
+
+/// The elimination in progress.
+#[derive(Clone, Debug)]
+pub struct Chain<const MAX: usize> {
+    eliminated: [Eliminated; MAX],
+    nodes: usize,
+    /// Two equations on the present node.
+    link: [Row; STATES],
+    /// Border rows, expressed on the present node.
+    pub borders: [Row; BORDERS],
+}
+
+impl<const MAX: usize> Chain<MAX> {
+    /// A chain whose first node obeys `y_0 = by_parameter p` in the changes.
+    pub fn new(by_parameter: [[f64; PARAMETERS]; STATES]) -> Self {
+        let mut link = [[0.0; UNKNOWNS + 1]; STATES];
+        for (i, row) in link.iter_mut().enumerate() {
+            row[i] = 1.0;
+            for (x, y) in row[STATES..CONSTANT].iter_mut().zip(&by_parameter[i]) {
+                *x = -y;
+            }
+        }
+        Self {
+            eliminated: [[[0.0; UNKNOWNS + 1]; STATES]; MAX],
+            nodes: 0,
+            link,
+            borders: [[0.0; UNKNOWNS + 1]; BORDERS],
+        }
+    }
+
+    /// Adds a term in the present node, the parameters and a constant to a border row.
+    pub fn add_to_border(&mut self, border: usize, term: &Row) {
+        for (x, y) in self.borders[border].iter_mut().zip(term) {
+            *x += y;
+        }
+    }
+
+    /// Goes on to the next node through an element: `y_next = end (y, p, 1)`. `None` if the node is undetermined.
+    pub fn advance(&mut self, end: &[[f64; COLUMNS]; STATES]) -> Option<()> {
+        // Columns: present node, next node, parameters, constant.
+        const WIDE: usize = 2 * STATES + PARAMETERS + 1;
+        let mut rows = [[0.0; WIDE]; 2 * STATES + BORDERS];
+        let widen = |narrow: &Row, wide: &mut [f64; WIDE]| {
+            wide[..STATES].copy_from_slice(&narrow[..STATES]);
+            wide[2 * STATES..].copy_from_slice(&narrow[STATES..]);
+        };
+        for i in 0..STATES {
+            widen(&self.link[i], &mut rows[i]);
+            widen(&end[i], &mut rows[STATES + i]);
+            rows[STATES + i][STATES + i] = -1.0;
+        }
+        for i in 0..BORDERS {
+            widen(&self.borders[i], &mut rows[2 * STATES + i]);
+        }
+        for k in 0..STATES {
+            let mut pivot = k;
+            for row in k + 1..2 * STATES {
+                if rows[row][k].abs() > rows[pivot][k].abs() {
+                    pivot = row;
+                }
+            }
+            rows.swap(k, pivot);
+            let reciprocal = 1.0 / rows[k][k];
+            if !reciprocal.is_finite() {
+                return None;
+            }
+            for x in &mut rows[k] {
+                *x *= reciprocal;
+            }
+            let pivot_row = rows[k];
+            for (i, row) in rows.iter_mut().enumerate() {
+                if i != k {
+                    let factor = row[k];
+                    for (x, y) in row.iter_mut().zip(&pivot_row) {
+                        *x -= factor * y;
+                    }
+                }
+            }
+        }
+        let narrow = |wide: &[f64; WIDE]| -> Row {
+            let mut row = [0.0; UNKNOWNS + 1];
+            row.copy_from_slice(&wide[STATES..]);
+            row
+        };
+        for i in 0..STATES {
+            self.eliminated[self.nodes][i] = narrow(&rows[i]);
+            self.link[i] = narrow(&rows[STATES + i]);
+        }
+        for i in 0..BORDERS {
+            self.borders[i] = narrow(&rows[2 * STATES + i]);
+        }
+        self.nodes += 1;
+        Some(())
+    }
+
+    /// The two equations that the chain leaves on the last node and the parameters.
+    pub fn link(&self) -> [Row; STATES] {
+        self.link
+    }
+
+    /// Changes of the nodes before the last, once the last (`UNKNOWNS` values: node, parameters) is known.
+    pub fn back_substitute(&self, last: &[f64; UNKNOWNS], mut take: impl FnMut(usize, [f64; STATES])) {
+        let mut known = *last;
+        take(self.nodes, [last[0], last[1]]);
+        for k in (0..self.nodes).rev() {
+            let mut node = [0.0; STATES];
+            for (value, row) in node.iter_mut().zip(&self.eliminated[k]) {
+                *value = -row[CONSTANT]
+                    - row[..CONSTANT]
+                        .iter()
+                        .zip(&known)
+                        .map(|(a, x)| a * x)
+                        .sum::<f64>();
+            }
+            known[..STATES].copy_from_slice(&node);
+            take(k, node);
+        }
+    }
+}
+
+/// Solves the equations on the last node and the parameters. `None` if they are singular.
+pub fn solve(mut rows: [Row; UNKNOWNS]) -> Option<[f64; UNKNOWNS]> {
+    // Rows of very different units: pivot on what is large within its row.
+    for row in &mut rows {
+        let scale = row[..CONSTANT].iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+        if scale == 0.0 || !scale.is_finite() {
+            return None;
+        }
+        for x in row.iter_mut() {
+            *x /= scale;
+        }
+    }
+    for k in 0..UNKNOWNS {
+        let mut pivot = k;
+        for row in k + 1..UNKNOWNS {
+            if rows[row][k].abs() > rows[pivot][k].abs() {
+                pivot = row;
+            }
+        }
+        rows.swap(k, pivot);
+        let reciprocal = 1.0 / rows[k][k];
+        if !reciprocal.is_finite() {
+            return None;
+        }
+        let pivot_row = rows[k];
+        for (i, row) in rows.iter_mut().enumerate() {
+            if i != k {
+                let factor = row[k] * reciprocal;
+                for (x, y) in row.iter_mut().zip(&pivot_row) {
+                    *x -= factor * y;
+                }
+            }
+        }
+    }
+    let mut solution = [0.0; UNKNOWNS];
+    for (k, x) in solution.iter_mut().enumerate() {
+        *x = -rows[k][CONSTANT] / rows[k][k];
+    }
+    Some(solution)
+}
