@@ -1,0 +1,257 @@
+//! The image running on the board, with the plant on its pin and a listener on its serial wire.
+
+use crate::board::Nucleo;
+use crate::image::{Image, ImageError};
+use crate::plant::Plant;
+use rigless::emulator::{Access, AccessKind, Driver, Hit, Host, Settled, Start, Stop, Watch};
+use rigless::session::{Reset, Session};
+use rigless::time::VirtualNanos;
+use std::fmt;
+use std::ops::ControlFlow;
+
+/// How often the listener gets what came over the wire, virtual nanoseconds.
+const LISTEN: u64 = 1_000_000;
+
+/// The control registers of the timers that may keep the image's time, TIM2 to TIM5 (RM0090 table 1), and the
+/// bit in them that starts the counter.
+const TIMER_CONTROL: [u64; 4] = [0x4000_0000, 0x4000_0400, 0x4000_0800, 0x4000_0c00];
+const COUNTER_ENABLE: u64 = 1;
+
+/// Hears what comes over the serial wire.
+pub trait Listener: Send + 'static {
+    /// One byte came; the run ends when this breaks.
+    fn hear(&mut self, byte: u8, moment: Moment, plant: &Plant) -> ControlFlow<()>;
+}
+
+/// When a byte came, in seconds of virtual time since power-on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moment {
+    /// The end of its stop bit.
+    pub time: f64,
+    /// When the image's own clock read zero, since the last reset.
+    pub clock_zero: f64,
+}
+
+/// What a run leaves behind.
+#[derive(Debug)]
+pub struct Outcome<L> {
+    /// The listener with what it kept.
+    pub listener: L,
+    /// Virtual time, seconds.
+    pub time: f64,
+    /// Instructions retired.
+    pub instructions: u64,
+    /// The instructions of each call of the function asked for, in order, from its first to the one that
+    /// returns, those of interrupts taken meanwhile included.
+    pub calls: Vec<u64>,
+    /// Resets after power-on, in words.
+    pub resets: Vec<String>,
+    /// What the image asked of the part that the emulator does not model, in words. Empty, or the run proves
+    /// less than it seems to.
+    pub gaps: Vec<String>,
+}
+
+/// Why there was no run, or why it ended early.
+#[derive(Debug)]
+pub enum BenchError {
+    /// Something is missing in the image.
+    Image(ImageError),
+    /// The emulator refused.
+    Emulator(String),
+}
+
+impl fmt::Display for BenchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Image(error) => error.fmt(f),
+            Self::Emulator(error) => write!(f, "the emulated board stopped: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for BenchError {}
+
+impl From<ImageError> for BenchError {
+    fn from(error: ImageError) -> Self {
+        Self::Image(error)
+    }
+}
+
+/// Runs `image` from power-on until `duration` (seconds) has passed or the listener breaks; counts the
+/// instructions of each call of `counted`, a function by its owner and name (see [`Image::function`]).
+///
+/// # Errors
+/// [`BenchError`] when the image lacks `counted`, or the emulator cannot run it.
+pub fn run<L: Listener>(
+    image: &Image,
+    plant: Plant,
+    duration: f64,
+    counted: Option<(&str, &str)>,
+    listener: L,
+) -> Result<Outcome<L>, BenchError> {
+    let counter = counted
+        .map(|(owner, name)| -> Result<CallCounter, ImageError> {
+            let entry = image.function(owner, name)?;
+            Ok(CallCounter::new(entry, image.returns_of(entry)?))
+        })
+        .transpose()?;
+    let elf = rigless::image::Image::new(image.path(), image.bytes().to_vec(), None).map_err(emulator)?;
+    let board = Box::new(Nucleo::new().map_err(emulator)?);
+    let mut session = Session::new(board, 0, VirtualNanos(LISTEN)).map_err(emulator)?;
+    if let Some(counter) = &counter {
+        for address in counter.addresses() {
+            session.watch(Watch::Instruction(address));
+        }
+    }
+    let driver = Bench {
+        plant,
+        listener,
+        counter,
+        clock_zero: None,
+        resets: 0,
+        end: VirtualNanos((duration * 1e9) as u64),
+    };
+    let images = [elf];
+    let finished = rigless::emulator::run(session, &Start::new(&images), driver).map_err(emulator)?;
+    let (time, instructions) = finished
+        .stop
+        .map_or((0.0, 0), |stop| (seconds(stop.at), stop.instruction_count));
+    Ok(Outcome {
+        listener: finished.driver.listener,
+        time,
+        instructions,
+        calls: finished
+            .driver
+            .counter
+            .map(|counter| counter.calls)
+            .unwrap_or_default(),
+        resets: finished.session.resets().iter().map(describe).collect(),
+        gaps: gaps(&finished.session),
+    })
+}
+
+fn emulator(error: impl fmt::Display) -> BenchError {
+    BenchError::Emulator(error.to_string())
+}
+
+fn seconds(at: VirtualNanos) -> f64 {
+    at.0 as f64 * 1e-9
+}
+
+fn describe(reset: &Reset) -> String {
+    format!("{:?} at {:.3} ms", reset.cause, seconds(reset.at) * 1e3)
+}
+
+/// Everything the emulator answered without a model behind it.
+fn gaps(session: &Session<Nucleo>) -> Vec<String> {
+    let unmapped = session.unmapped().into_iter().map(|gap| gap.to_string());
+    let refused = session
+        .refused()
+        .iter()
+        .map(|(address, fault)| format!("refused {address:#010x}: {fault:?}"));
+    let unimplemented = session
+        .unimplemented()
+        .iter()
+        .map(|(address, gap)| format!("unimplemented {address:#010x}: {gap:?}"));
+    let told = session
+        .told()
+        .map(|told| format!("{} {}: {}", told.instance, told.register, told.reason));
+    unmapped.chain(refused).chain(unimplemented).chain(told).collect()
+}
+
+/// What the emulator calls as it goes.
+struct Bench<L> {
+    plant: Plant,
+    listener: L,
+    counter: Option<CallCounter>,
+    clock_zero: Option<f64>,
+    resets: usize,
+    end: VirtualNanos,
+}
+
+impl<L> Bench<L> {
+    /// The first timer that is started after a reset keeps the time.
+    fn note_clock(&mut self, access: Access) {
+        let starts = access.kind == AccessKind::Write
+            && TIMER_CONTROL.contains(&access.address)
+            && access.value & COUNTER_ENABLE != 0;
+        if starts && self.clock_zero.is_none() {
+            self.clock_zero = Some(seconds(access.virtual_time));
+        }
+    }
+}
+
+impl<L: Listener> Driver<Nucleo> for Bench<L> {
+    /// Every conversion ends in a stop, so the voltage that the next one takes is set anew here, with noise of
+    /// its own.
+    fn on_settled(&mut self, session: &mut Session<Nucleo>, _host: &mut dyn Host, settled: Settled) {
+        match settled {
+            Settled::Stop(stop) => {
+                if session.resets().len() > self.resets {
+                    self.resets = session.resets().len();
+                    self.clock_zero = None;
+                }
+                let share = self.plant.output(seconds(stop.at));
+                session.board_mut().set_transducer(share);
+            }
+            Settled::Access { access, .. } => self.note_clock(access),
+            Settled::Hit(hit) => {
+                if let Some(counter) = &mut self.counter {
+                    counter.hit(hit);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn on_stop(
+        &mut self,
+        session: &mut Session<Nucleo>,
+        stop: Stop,
+        _host: &mut dyn Host,
+    ) -> Option<VirtualNanos> {
+        for (at, byte) in session.board_mut().take_bytes() {
+            let moment = Moment {
+                time: seconds(at),
+                clock_zero: self.clock_zero.unwrap_or_default(),
+            };
+            if self.listener.hear(byte, moment, &self.plant).is_break() {
+                return None;
+            }
+        }
+        (stop.at < self.end).then_some(VirtualNanos(stop.at.0 + LISTEN))
+    }
+}
+
+/// Counts instructions between a function's entry and its return.
+struct CallCounter {
+    entry: u64,
+    returns: Vec<u64>,
+    entered: Option<u64>,
+    calls: Vec<u64>,
+}
+
+impl CallCounter {
+    fn new(entry: u64, returns: Vec<u64>) -> Self {
+        Self {
+            entry,
+            returns,
+            entered: None,
+            calls: vec![],
+        }
+    }
+
+    fn addresses(&self) -> impl Iterator<Item = u64> {
+        std::iter::once(self.entry).chain(self.returns.iter().copied())
+    }
+
+    fn hit(&mut self, hit: Hit) {
+        if hit.address == self.entry {
+            self.entered = Some(hit.instruction_count);
+        } else if self.returns.contains(&hit.address)
+            && let Some(entered) = self.entered.take()
+        {
+            self.calls.push(hit.instruction_count - entered);
+        }
+    }
+}

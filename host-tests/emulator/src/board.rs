@@ -1,0 +1,137 @@
+//! The NUCLEO-F429ZI as the image sees it: the microcontroller, its clock, its converter's pins, its serial
+//! wire to the host.
+
+use rigless::chip::Timeline;
+use rigless::chip::uart::Peer;
+use rigless::cpu::armv7m::windows;
+use rigless::machine::{Board, Target, armv7m};
+use rigless::mcu::{Mcu, Operate};
+use rigless::snapshot::Store;
+use rigless::soc::Error;
+use rigless::soc::stm32f427::Stm32f427;
+use rigless::soc::stm32f427::peripherals::SERIAL_PORTS;
+use rigless::soc::stm32f427::peripherals::adc::Channel;
+use rigless::time::VirtualNanos;
+use std::num::{NonZeroU32, NonZeroU64};
+
+/// Name of the board and of its one target.
+const NAME: &str = "nucleo-f429zi";
+/// The ST-LINK's clock output on the crystal's pins, hertz (UM1974 section 6.8.1).
+const CRYSTAL: u64 = 8_000_000;
+/// No 32 kHz crystal is needed.
+const NO_CRYSTAL: u64 = 0;
+/// Supply, millivolts.
+const SUPPLY: u32 = 3300;
+/// Core clock, hertz. The emulated core retires one instruction in each of its cycles: a Cortex-M4 needs
+/// 1.2 to 1.5, so the image has a little less time here than on the part only where it waits for nothing.
+const CORE_CLOCK: u64 = 168_000_000;
+
+/// The converter's reference in the unit of its inputs. The emulated converter takes whole millivolts, 1.24 of
+/// its codes, and answers `input * 4095 / reference`: only the ratio counts, so both are given in microvolts.
+/// (Its internal channels are in millivolts; the image reads none of them.)
+const REFERENCE_MICROVOLTS: u32 = SUPPLY * 1000;
+/// Half a code. The emulated converter truncates, where the part's first transition is at half a code (DS9405,
+/// offset error): without it every reading would be half a code low.
+const HALF_CODE_MICROVOLTS: f64 = REFERENCE_MICROVOLTS as f64 / 4095.0 / 2.0;
+
+/// The transducer's pin: A0 of the Arduino header, PA3, channel 3 of ADC1.
+const TRANSDUCER_CONVERTER: usize = 0;
+const TRANSDUCER_CHANNEL: u8 = 3;
+/// The serial port that the ST-LINK carries to the host.
+const HOST_PORT: &str = "USART3";
+
+/// The board.
+#[derive(Debug)]
+pub(crate) struct Nucleo {
+    mcu: Stm32f427,
+    transducer: Channel,
+    host_port: usize,
+}
+
+impl Nucleo {
+    /// The board as it is powered on, with a host on its serial wire.
+    pub(crate) fn new() -> Result<Self, Error> {
+        let mut mcu = Stm32f427::new()?;
+        mcu.rcc.attach_crystals(CRYSTAL, NO_CRYSTAL);
+        mcu.set_supply(SUPPLY);
+        for converter in &mut mcu.adc {
+            converter.set_reference(REFERENCE_MICROVOLTS);
+        }
+        let host_port = SERIAL_PORTS
+            .iter()
+            .position(|port| port.instance == HOST_PORT)
+            .expect("the part has this port");
+        mcu.usart[host_port].attach(HostWire::default());
+        Ok(Self {
+            mcu,
+            transducer: Channel::new(TRANSDUCER_CHANNEL).expect("a pin's channel"),
+            host_port,
+        })
+    }
+
+    /// Puts a share of the reference, 0 .. 1, on the transducer's pin.
+    pub(crate) fn set_transducer(&mut self, share: f64) {
+        let microvolts = share * f64::from(REFERENCE_MICROVOLTS) + HALF_CODE_MICROVOLTS;
+        self.mcu.adc[TRANSDUCER_CONVERTER].set_input(self.transducer, microvolts as u32);
+    }
+
+    /// The bytes that have come over the serial wire since the last call, each with the end of its stop bit.
+    pub(crate) fn take_bytes(&mut self) -> Vec<(VirtualNanos, u8)> {
+        self.mcu.usart[self.host_port]
+            .chip_mut::<HostWire>()
+            .map(|wire| std::mem::take(&mut wire.bytes))
+            .unwrap_or_default()
+    }
+}
+
+// Runs start from reset: nothing of the board is ever saved.
+impl Store for Nucleo {}
+
+impl Board for Nucleo {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn target_names(&self) -> Vec<&'static str> {
+        vec![NAME]
+    }
+
+    fn mcu(&mut self, target: usize) -> Option<&mut dyn Mcu> {
+        (target == 0).then_some(&mut self.mcu)
+    }
+
+    fn targets(&mut self) -> Vec<Target<'_>> {
+        let clock = NonZeroU64::new(CORE_CLOCK).expect("a running clock");
+        let lines = u32::from(self.mcu.cpu().interrupt_lines);
+        let core = armv7m::Core {
+            variant: armv7m::Variant::M4,
+            clock_hz: clock,
+            interrupt_lines: NonZeroU32::new(lines).expect("the part has interrupts"),
+            priority_bits: 4,
+            refclk_divider: NonZeroU32::new(8).expect("eight"),
+            instructions_per_second: clock,
+            boot: "flash",
+        };
+        let windows = windows(self.mcu.bus());
+        let spec = core.spec_with_parts(&windows, armv7m::Fpu::FpV4Sp, armv7m::MpuRegions::Eight);
+        vec![Target::new(NAME, &mut self.mcu, spec)]
+    }
+}
+
+/// The host's end of the serial wire: it listens.
+#[derive(Debug, Default)]
+struct HostWire {
+    bytes: Vec<(VirtualNanos, u8)>,
+}
+
+impl Store for HostWire {}
+
+impl Peer for HostWire {
+    fn receive(&mut self, word: u16, context: &mut Timeline<'_, '_>) {
+        self.bytes.push((context.now(), word as u8));
+    }
+
+    fn transmit(&mut self, _now: VirtualNanos) -> Option<u16> {
+        None
+    }
+}

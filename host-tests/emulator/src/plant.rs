@@ -1,0 +1,171 @@
+//! The fingertip, the plate that presses it and the transducer in its fluid: time to a voltage.
+
+use crate::noise::Noise;
+use crate::scenario::Scenario;
+use crate::transducer::{Transducer, Wiring};
+use model_tables::curve::{Contact, Curve};
+
+/// The world outside the board. Its truth is the full model, solved afresh: it knows no table.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    curve: Curve,
+    /// Gauge pressure of the untouched fingertip, pascals.
+    rest_pressure: f64,
+    /// The deepest the design is made for, metres.
+    max_indentation: f64,
+    transducer: Transducer,
+    scenario: Scenario,
+    noise: Noise,
+}
+
+impl Plant {
+    /// The fingertip whose press is `curve`, going through `scenario`.
+    pub fn new(
+        curve: Curve,
+        rest_pressure: f64,
+        max_indentation: f64,
+        transducer: Transducer,
+        scenario: Scenario,
+    ) -> Self {
+        let noise = Noise::new(scenario.seed);
+        Self {
+            curve,
+            rest_pressure,
+            max_indentation,
+            transducer,
+            scenario,
+            noise,
+        }
+    }
+
+    /// The contact at a time in seconds.
+    pub fn truth(&self, time: f64) -> Contact {
+        self.curve
+            .at_indentation(self.scenario.indentation_share(time) * self.max_indentation)
+    }
+
+    /// The contact at the deepest indentation: what "full scale" means.
+    pub fn full_scale(&self) -> Contact {
+        self.curve.at_indentation(self.max_indentation)
+    }
+
+    /// The press as a function.
+    pub fn curve(&self) -> &Curve {
+        &self.curve
+    }
+
+    /// The scenario it goes through.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// The transducer in its fluid.
+    pub fn transducer(&self) -> Transducer {
+        self.transducer
+    }
+
+    /// The voltage on the converter's pin at a time in seconds, as a share of the reference, 0 .. 1.
+    /// Each call draws new noise.
+    pub fn output(&mut self, time: f64) -> f64 {
+        // Drawn in every case, so that a fault leaves the noise after it as it would have been.
+        let noise = self.transducer.noise * self.noise.deviate();
+        match self.scenario.wiring(time) {
+            Wiring::Sound => {
+                let pressure = self.rest_pressure + self.truth(time).pressure_rise;
+                self.transducer.output(pressure + noise)
+            }
+            Wiring::Open => 1.0,
+            Wiring::Short => 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::scenario::{Phase, WireFault};
+
+    /// A press with the asymptotes of a first contact, in closed form: no solver, no table.
+    pub(crate) fn closed_form(rise: f64) -> Contact {
+        Contact {
+            pressure_rise: rise,
+            force: 2e-4 * rise * (1.0 + rise / 5e4),
+            indentation: rise * (6e-7 - 4e-8 * libm::log(rise)),
+        }
+    }
+
+    pub(crate) fn press(max_rise: f64, scenario: Scenario) -> Plant {
+        let points = (0..80)
+            .map(|i| closed_form(libm::exp(libm::log(max_rise) * f64::from(i) / 79.0)))
+            .collect();
+        let curve = Curve::new(points).expect("the closed form is monotone");
+        let max_indentation = curve.end().indentation;
+        let transducer = Transducer {
+            range: [0.0, 100e3],
+            output_at_range: [0.1, 0.9],
+            noise: 10.0,
+        };
+        Plant::new(curve, 2e3, max_indentation, transducer, scenario)
+    }
+
+    pub(crate) fn ramp() -> Scenario {
+        let phase = |name: &str, duration_ms, to_percent| Phase {
+            name: name.to_owned(),
+            duration_ms,
+            to_percent,
+        };
+        Scenario {
+            about: "a ramp".to_owned(),
+            seed: 3,
+            phase: vec![
+                phase("rest", 100.0, None),
+                phase("press", 400.0, Some(100.0)),
+                phase("hold", 100.0, None),
+            ],
+            wire: vec![],
+        }
+    }
+
+    #[test]
+    fn the_truth_is_the_press_at_the_plates_indentation() {
+        let plant = press(8e3, ramp());
+        assert_eq!(plant.truth(0.05), Contact::default());
+        assert_eq!(plant.truth(0.55), plant.full_scale());
+        let middle = plant.truth(0.3);
+        assert!((middle.indentation - 0.5 * plant.full_scale().indentation).abs() < 1e-12);
+        let expected = closed_form(middle.pressure_rise);
+        assert!((middle.force / expected.force - 1.0).abs() < 1e-6);
+        assert!((middle.indentation / expected.indentation - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_output_is_the_absolute_pressure_with_its_noise() {
+        let mut plant = press(8e3, ramp());
+        let n = 20_000;
+        let mean = |plant: &mut Plant, time| (0..n).map(|_| plant.output(time)).sum::<f64>() / f64::from(n);
+        // 2 kPa at rest and 10 kPa at the end: 0.1 + 0.8 p / 100 kPa. Five standard errors of 10 Pa noise.
+        let tolerance = 5.0 * 10.0 / libm::sqrt(f64::from(n)) * 0.8 / 100e3;
+        assert!((mean(&mut plant, 0.05) - 0.116).abs() < tolerance);
+        assert!((mean(&mut plant, 0.55) - 0.18).abs() < tolerance);
+    }
+
+    #[test]
+    fn a_broken_wire_goes_to_a_rail_and_leaves_the_later_noise_alone() {
+        let mut faulty = ramp();
+        faulty.wire = vec![WireFault {
+            is: Wiring::Short,
+            from_ms: 10.0,
+            until_ms: Some(20.0),
+        }];
+        let (mut sound, mut faulty) = (press(8e3, ramp()), press(8e3, faulty));
+        for ms in 0..40 {
+            let time = f64::from(ms) * 1e-3;
+            let (sound, faulty) = (sound.output(time), faulty.output(time));
+            if (10..20).contains(&ms) {
+                assert!(faulty.abs() < 1e-15);
+            } else {
+                assert_eq!(sound.to_bits(), faulty.to_bits());
+            }
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! What happens to the fingertip: the plate's travel over time, and faults of the transducer's wire.
+
+use crate::transducer::Wiring;
+use serde::Deserialize;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// One scenario, as its file gives it. `host-tests/scenarios/README.md` explains the words.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// One sentence for the person watching.
+    pub about: String,
+    /// Seed of the transducer's noise.
+    #[serde(default)]
+    pub seed: u64,
+    /// The plate's travel, one phase after another.
+    pub phase: Vec<Phase>,
+    /// What happens to the transducer's wire, in any order; it is sound at other times.
+    #[serde(default)]
+    pub wire: Vec<WireFault>,
+}
+
+/// A stretch of the plate's travel: from where it is to another indentation, at a constant speed.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Phase {
+    /// What it is called: "rest", "press", "hold", "release", ...
+    pub name: String,
+    /// How long it takes, milliseconds, > 0.
+    pub duration_ms: f64,
+    /// Indentation at its end, percent of the largest the design is made for, 0 .. 100. Without it the plate
+    /// stays where it is.
+    pub to_percent: Option<f64>,
+}
+
+/// The transducer's wire broken or shorted for a while.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WireFault {
+    /// What is wrong: "open" or "short".
+    pub is: Wiring,
+    /// From when, milliseconds.
+    pub from_ms: f64,
+    /// Until when, milliseconds; without it to the end.
+    pub until_ms: Option<f64>,
+}
+
+/// Why there is no scenario.
+#[derive(Debug)]
+pub enum ScenarioError {
+    /// No file of this name.
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// The file cannot be read.
+    Unreadable(PathBuf, std::io::Error),
+    /// The file is not a scenario.
+    Malformed(PathBuf, toml::de::Error),
+    /// A value is impossible.
+    Value {
+        /// The key.
+        key: String,
+        /// The value found.
+        found: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// No phase at all.
+    Empty,
+}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown { name, known } => {
+                write!(
+                    f,
+                    "no scenario is called \"{name}\"; there are {}",
+                    known.join(", ")
+                )
+            }
+            Self::Unreadable(path, error) => write!(f, "cannot read {}: {error}", path.display()),
+            Self::Malformed(path, error) => {
+                // One line: where and what. The excerpt that toml adds is for a screenful.
+                let line = error.span().map(|span| span.start);
+                write!(f, "{}: {}", path.display(), error.message())?;
+                line.map_or(Ok(()), |at| write!(f, " (at byte {at})"))
+            }
+            Self::Value { key, found, allowed } => write!(f, "{key} = {found}, but it must be {allowed}"),
+            Self::Empty => write!(f, "a scenario needs at least one [[phase]]"),
+        }
+    }
+}
+
+impl std::error::Error for ScenarioError {}
+
+/// Where the scenario files are.
+pub fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios")
+}
+
+impl Scenario {
+    /// The scenario called `name` in [`folder`], or the one in the file of that path.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] when there is none, or it is impossible.
+    pub fn named(name: &str) -> Result<Self, ScenarioError> {
+        let by_name = folder().join(format!("{name}.toml"));
+        let path = if by_name.is_file() {
+            by_name
+        } else if Path::new(name).is_file() {
+            PathBuf::from(name)
+        } else {
+            return Err(ScenarioError::Unknown {
+                name: name.to_owned(),
+                known: names(),
+            });
+        };
+        let text =
+            std::fs::read_to_string(&path).map_err(|error| ScenarioError::Unreadable(path.clone(), error))?;
+        let scenario: Self =
+            toml::from_str(&text).map_err(|error| ScenarioError::Malformed(path.clone(), error))?;
+        scenario.check()?;
+        Ok(scenario)
+    }
+
+    /// Length, seconds.
+    pub fn duration(&self) -> f64 {
+        self.phase.iter().map(|phase| phase.duration_ms * 1e-3).sum()
+    }
+
+    /// Indentation at a time in seconds, as a share of the largest, 0 .. 1.
+    pub fn indentation_share(&self, time: f64) -> f64 {
+        let (mut begins, mut from) = (0.0, 0.0);
+        for phase in &self.phase {
+            let lasts = phase.duration_ms * 1e-3;
+            let to = phase.to_percent.map_or(from, |percent| percent * 1e-2);
+            if time < begins + lasts {
+                return from + (to - from) * ((time - begins) / lasts).max(0.0);
+            }
+            begins += lasts;
+            from = to;
+        }
+        from
+    }
+
+    /// The name of the phase at a time in seconds; the last one's after the end.
+    pub fn phase_at(&self, time: f64) -> &str {
+        let mut ends = 0.0;
+        self.phase
+            .iter()
+            .find(|phase| {
+                ends += phase.duration_ms * 1e-3;
+                time < ends
+            })
+            .or(self.phase.last())
+            .map_or("", |phase| phase.name.as_str())
+    }
+
+    /// What is on the transducer's wire at a time in seconds.
+    pub fn wiring(&self, time: f64) -> Wiring {
+        let ms = time * 1e3;
+        self.wire
+            .iter()
+            .find(|fault| ms >= fault.from_ms && fault.until_ms.is_none_or(|until| ms < until))
+            .map_or(Wiring::Sound, |fault| fault.is)
+    }
+
+    /// Refuses values that mean nothing.
+    fn check(&self) -> Result<(), ScenarioError> {
+        let demand = |holds: bool, key: String, found: f64, allowed: &'static str| {
+            if holds {
+                Ok(())
+            } else {
+                Err(ScenarioError::Value { key, found, allowed })
+            }
+        };
+        if self.phase.is_empty() {
+            return Err(ScenarioError::Empty);
+        }
+        for (i, phase) in self.phase.iter().enumerate() {
+            let found = phase.duration_ms;
+            let key = format!("phase[{i}].duration_ms");
+            demand(
+                found > 0.0 && found <= 3.6e6,
+                key,
+                found,
+                "above 0, up to 3600000",
+            )?;
+            if let Some(found) = phase.to_percent {
+                let key = format!("phase[{i}].to_percent");
+                demand((0.0..=100.0).contains(&found), key, found, "from 0 to 100")?;
+            }
+        }
+        for (i, fault) in self.wire.iter().enumerate() {
+            let key = format!("wire[{i}].from_ms");
+            demand(fault.from_ms >= 0.0, key, fault.from_ms, "0 or more")?;
+            if let Some(found) = fault.until_ms {
+                demand(
+                    found > fault.from_ms,
+                    format!("wire[{i}].until_ms"),
+                    found,
+                    "above from_ms",
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The names of the scenarios in [`folder`], in order.
+fn names() -> Vec<String> {
+    let files = std::fs::read_dir(folder()).into_iter().flatten().flatten();
+    let mut names: Vec<String> = files
+        .map(|file| file.path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .collect();
+    names.sort();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRAPEZIUM: &str = r#"
+        about = "up, stay, down"
+        [[phase]]
+        name = "rest"
+        duration_ms = 100
+        [[phase]]
+        name = "press"
+        duration_ms = 200
+        to_percent = 50
+        [[phase]]
+        name = "hold"
+        duration_ms = 100
+        [[phase]]
+        name = "release"
+        duration_ms = 100
+        to_percent = 0
+        [[wire]]
+        is = "open"
+        from_ms = 150
+        until_ms = 160
+    "#;
+
+    fn parsed(text: &str) -> Result<Scenario, String> {
+        let scenario: Scenario = toml::from_str(text).map_err(|error| error.message().to_owned())?;
+        scenario.check().map_err(|error| error.to_string())?;
+        Ok(scenario)
+    }
+
+    #[test]
+    fn the_plate_follows_the_phases() {
+        let scenario = parsed(TRAPEZIUM).expect("it is well formed");
+        for (time, share, phase) in [
+            (0.05, 0.0, "rest"),
+            (0.2, 0.25, "press"),
+            (0.35, 0.5, "hold"),
+            (0.475, 0.125, "release"),
+            (9.0, 0.0, "release"),
+        ] {
+            assert!(
+                (scenario.indentation_share(time) - share).abs() < 1e-12,
+                "at {time} s"
+            );
+            assert_eq!(scenario.phase_at(time), phase);
+        }
+        assert!((scenario.duration() - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_wire_is_faulty_in_its_window_alone() {
+        let scenario = parsed(TRAPEZIUM).expect("it is well formed");
+        assert_eq!(scenario.wiring(0.149), Wiring::Sound);
+        assert_eq!(scenario.wiring(0.155), Wiring::Open);
+        assert_eq!(scenario.wiring(0.160), Wiring::Sound);
+    }
+
+    #[test]
+    fn unknown_keys_and_impossible_values_are_named() {
+        let with = |from: &str, to: &str| parsed(&TRAPEZIUM.replacen(from, to, 1)).expect_err("it is wrong");
+        assert!(with("duration_ms = 100", "duration_s = 100").contains("duration_s"));
+        assert_eq!(
+            with("to_percent = 50", "to_percent = 101"),
+            "phase[1].to_percent = 101, but it must be from 0 to 100"
+        );
+        assert!(with("duration_ms = 200", "duration_ms = -1").contains("phase[1].duration_ms = -1"));
+        assert!(with("until_ms = 160", "until_ms = 150").contains("above from_ms"));
+        assert!(with("\"open\"", "\"loose\"").contains("loose"));
+    }
+
+    #[test]
+    fn every_shipped_scenario_is_well_formed() {
+        let names = names();
+        assert!(names.contains(&"press-hold-release".to_owned()));
+        for name in names {
+            Scenario::named(&name).unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+    }
+
+    #[test]
+    fn a_name_that_is_none_lists_those_there_are() {
+        let error = Scenario::named("no-such")
+            .expect_err("there is no such scenario")
+            .to_string();
+        assert!(
+            error.contains("no-such") && error.contains("press-hold-release"),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,67 @@
+//! A ratiometric pressure transducer: gauge pressure to a share of the converter's reference.
+
+/// What the transducer does to a pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transducer {
+    /// Gauge pressures at the two ends of the range, pascals, ascending.
+    pub range: [f64; 2],
+    /// Output at those ends, as a share of the reference, 0 .. 1.
+    pub output_at_range: [f64; 2],
+    /// Noise of one reading, one standard deviation, pascals, >= 0.
+    pub noise: f64,
+}
+
+/// What is on the transducer's wire.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Wiring {
+    /// The transducer.
+    #[default]
+    Sound,
+    /// Nothing: the wire is broken, and the input's pull-up takes it to the reference.
+    Open,
+    /// Ground.
+    Short,
+}
+
+impl Transducer {
+    /// The output at a gauge pressure in pascals, a share of the reference. It ends at the rails.
+    pub fn output(&self, pressure: f64) -> f64 {
+        let ([low, high], [at_low, at_high]) = (self.range, self.output_at_range);
+        (at_low + (pressure - low) / (high - low) * (at_high - at_low)).clamp(0.0, 1.0)
+    }
+
+    /// Change of pressure that changes the output by `share` of the reference, pascals.
+    pub fn pressure_of(&self, share: f64) -> f64 {
+        share * (self.range[1] - self.range[0]) / (self.output_at_range[1] - self.output_at_range[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HUNDRED_KPA: Transducer = Transducer {
+        range: [0.0, 100e3],
+        output_at_range: [0.1, 0.9],
+        noise: 10.0,
+    };
+
+    #[test]
+    fn runs_from_a_tenth_to_nine_tenths_over_its_range() {
+        assert!((HUNDRED_KPA.output(0.0) - 0.1).abs() < 1e-15);
+        assert!((HUNDRED_KPA.output(50e3) - 0.5).abs() < 1e-15);
+        assert!((HUNDRED_KPA.output(100e3) - 0.9).abs() < 1e-15);
+    }
+
+    #[test]
+    fn ends_at_the_rails() {
+        assert!(HUNDRED_KPA.output(-1e6).abs() < 1e-15);
+        assert!((HUNDRED_KPA.output(1e6) - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn one_code_of_a_twelve_bit_converter_is_thirty_and_a_half_pascals() {
+        assert!((HUNDRED_KPA.pressure_of(1.0 / 4096.0) - 30.517_578_125).abs() < 1e-9);
+    }
+}
