@@ -3,14 +3,19 @@
 //! The way of one press: [`fingertip_design`] and [`scenario`] (the plate's travel) -> [`plant`] (full model:
 //! contact and pressure) ->
 //! [`transducer`] and [`noise`] (voltage) -> `board` (the emulated microcontroller) running [`image`] ->
-//! [`bench`] (the bytes it sends).
+//! [`bench`] (the bytes it sends) -> [`record`] (reports beside the truth) -> [`accuracy`], [`chart`] and
+//! [`output`] files.
 #![forbid(unsafe_code)]
 
+pub mod accuracy;
 pub mod bench;
 mod board;
+pub mod chart;
 pub mod fingertip_design;
 pub mod image;
 pub mod noise;
+pub mod output;
 pub mod plant;
+pub mod record;
 pub mod scenario;
 pub mod transducer;

@@ -1,0 +1,173 @@
+//! How far the reports are from the truth.
+
+use crate::plant::Plant;
+use crate::record::Row;
+use fingertip::report::Status;
+use model_tables::curve::Contact;
+
+/// Errors are taken in percent of reading from this share of full scale up.
+pub const FROM_SHARE_OF_FULL_SCALE: f64 = 0.05;
+
+/// Standard deviations of the transducer's noise that a report may be off.
+const DEVIATIONS: f64 = 2.0;
+
+/// What a run comes to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Accuracy {
+    /// Reports with values.
+    pub readings: usize,
+    /// Median error of the force, share of reading, over the reports from 5 % of full scale up.
+    pub force_median: f64,
+    /// Median error of the indentation, likewise.
+    pub indentation_median: f64,
+    /// Root mean square of the pressure rise's error, pascals, over all readings.
+    pub pressure_error: f64,
+    /// Share of the readings whose pressure rise is within two standard deviations of the transducer's noise.
+    pub pressure_within: f64,
+    /// Share of the readings whose force a pressure within two standard deviations explains.
+    pub force_within: f64,
+    /// Share of the readings whose indentation a pressure within two standard deviations explains.
+    pub indentation_within: f64,
+}
+
+/// Error of the force as a share of the true force, for a row from 5 % of full scale up.
+pub fn force_error(row: &Row, full_scale: Contact) -> Option<f64> {
+    share(row.truth.force, row.reported?.force, full_scale.force)
+}
+
+/// Error of the indentation as a share of the true one, for a row from 5 % of full scale up.
+pub fn indentation_error(row: &Row, full_scale: Contact) -> Option<f64> {
+    share(
+        row.truth.indentation,
+        row.reported?.indentation,
+        full_scale.indentation,
+    )
+}
+
+fn share(truth: f64, reported: f64, full_scale: f64) -> Option<f64> {
+    (truth >= FROM_SHARE_OF_FULL_SCALE * full_scale).then(|| reported / truth - 1.0)
+}
+
+/// Whether pressure rise, force and indentation are what a pressure within `deviations` standard deviations of
+/// the transducer's noise around the truth would give.
+pub fn within(row: &Row, plant: &Plant, deviations: f64) -> Option<[bool; 3]> {
+    let reported = row.reported?;
+    let allowed = deviations * plant.transducer().noise;
+    let low = plant.curve().at_pressure_rise(row.truth.pressure_rise - allowed);
+    let high = plant.curve().at_pressure_rise(row.truth.pressure_rise + allowed);
+    Some([
+        (reported.pressure_rise - row.truth.pressure_rise).abs() <= allowed,
+        (low.force..=high.force).contains(&reported.force),
+        (low.indentation..=high.indentation).contains(&reported.indentation),
+    ])
+}
+
+impl Accuracy {
+    /// Over all rows with values that the firmware vouches for.
+    pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>, plant: &Plant) -> Self {
+        let rows: Vec<&Row> = rows.into_iter().filter(|row| row.status == Status::Ok).collect();
+        let full_scale = plant.full_scale();
+        let of_rows = |error: fn(&Row, Contact) -> Option<f64>| {
+            median(
+                rows.iter()
+                    .filter_map(|row| error(row, full_scale))
+                    .map(f64::abs)
+                    .collect(),
+            )
+        };
+        let within: Vec<[bool; 3]> = rows
+            .iter()
+            .filter_map(|row| within(row, plant, DEVIATIONS))
+            .collect();
+        let readings = within.len();
+        let inside =
+            |which: usize| within.iter().filter(|row| row[which]).count() as f64 / readings.max(1) as f64;
+        let squares: f64 = rows
+            .iter()
+            .filter_map(|row| Some(row.reported?.pressure_rise - row.truth.pressure_rise))
+            .map(|error| error * error)
+            .sum();
+        Self {
+            readings,
+            force_median: of_rows(force_error),
+            indentation_median: of_rows(indentation_error),
+            pressure_error: libm::sqrt(squares / readings.max(1) as f64),
+            pressure_within: inside(0),
+            force_within: inside(1),
+            indentation_within: inside(2),
+        }
+    }
+}
+
+/// The median, or NaN of nothing: nothing measured is nothing proved.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    if n == 0 {
+        f64::NAN
+    } else {
+        0.5 * (values[(n - 1) / 2] + values[n / 2])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plant::tests::{closed_form, press, ramp};
+    use fingertip::report::Fault;
+
+    /// A row whose force is off by `share`, with a pressure that is off by `pascals`.
+    fn row(rise: f64, share: f64, pascals: f64) -> Row {
+        let truth = closed_form(rise);
+        Row {
+            time: 0.0,
+            truth,
+            status: Status::Ok,
+            reported: Some(Contact {
+                pressure_rise: rise + pascals,
+                force: truth.force * (1.0 + share),
+                ..truth
+            }),
+        }
+    }
+
+    #[test]
+    fn the_median_is_of_the_readings_from_five_percent_up() {
+        let plant = press(8e3, ramp());
+        // Full scale is 8 kPa, force 1.856 N: 5 % of it is at about 455 Pa.
+        let mut rows = vec![row(4e3, 0.001, 0.0), row(6e3, -0.004, 0.0), row(7e3, 0.002, 0.0)];
+        rows.extend([row(300.0, 0.5, 0.0); 9]);
+        let accuracy = Accuracy::of(&rows, &plant);
+        assert!((accuracy.force_median - 0.002).abs() < 1e-12);
+        assert!(accuracy.indentation_median.abs() < 1e-12);
+        assert_eq!(accuracy.readings, 12);
+    }
+
+    #[test]
+    fn two_deviations_of_ten_pascals_are_twenty_pascals() {
+        let plant = press(8e3, ramp());
+        // dF/dP at 4 kPa is 2e-4 (1 + 2 * 4e3 / 5e4) = 2.32e-4: 20 Pa are 4.64 mN of 864 mN.
+        let rows = [row(4e3, 0.0053, 19.9), row(4e3, -0.0053, -19.9)];
+        let accuracy = Accuracy::of(&rows, &plant);
+        assert!((accuracy.pressure_within - 1.0).abs() < 1e-12);
+        assert!((accuracy.force_within - 1.0).abs() < 1e-12);
+        assert!((accuracy.pressure_error - 19.9).abs() < 1e-9);
+        let rows = [row(4e3, 0.0055, 20.1), row(4e3, 0.0, 0.0)];
+        let accuracy = Accuracy::of(&rows, &plant);
+        assert!((accuracy.pressure_within - 0.5).abs() < 1e-12);
+        assert!((accuracy.force_within - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn faults_and_qualified_readings_do_not_count() {
+        let plant = press(8e3, ramp());
+        let fault = Row {
+            status: Status::Fault(Fault::SensorOpen),
+            reported: None,
+            ..row(4e3, 0.0, 0.0)
+        };
+        let accuracy = Accuracy::of(&[fault], &plant);
+        assert_eq!(accuracy.readings, 0);
+        assert!(accuracy.force_median.is_nan());
+    }
+}

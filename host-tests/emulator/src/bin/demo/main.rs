@@ -1,0 +1,107 @@
+//! `cargo demo`: the real image on an emulated board feels a press, beside the truth.
+#![forbid(unsafe_code)]
+
+mod live;
+mod options;
+mod summary;
+
+use emulator::bench;
+use emulator::chart::{self, Caption};
+use emulator::fingertip_design::FingertipDesign;
+use emulator::image::Image;
+use emulator::output::Output;
+use emulator::record::{Recorder, write_csv};
+use emulator::scenario::Scenario;
+use options::Options;
+use std::error::Error;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Largest median error that the reports may have, percent of reading.
+const TARGET_PERCENT: f64 = 0.5;
+
+fn main() -> ExitCode {
+    let outcome = match options::parse() {
+        Ok(options) => demo(&options),
+        Err(exit) => return exit,
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
+    let scenario = Scenario::named(&options.scenario)?;
+    let design = FingertipDesign::read(&options.design)?;
+    let mut csv = Output::create(&options.csv)?;
+    let mut svg = Output::create(&options.chart)?;
+
+    println!(
+        "1/3 building the firmware image for the NUCLEO-F429ZI and {} ...",
+        design.name()
+    );
+    let image = Image::firmware(Some(&design.path))?;
+    println!(
+        "2/3 solving the full model of {} for the truth ...",
+        design.name()
+    );
+    let started = Instant::now();
+    let plant = design.plant(scenario.clone())?;
+    println!("    solved in {:.1} s", started.elapsed().as_secs_f64());
+    println!(
+        "3/3 running the image on the emulated STM32F427: {} ({:.1} s)",
+        options.scenario,
+        scenario.duration()
+    );
+    println!("    {}\n", scenario.about);
+
+    let started = Instant::now();
+    let table = live::Table::new(scenario.clone());
+    let outcome = bench::run(
+        &image,
+        plant.clone(),
+        scenario.duration(),
+        None,
+        Recorder::new(table.into_printer()),
+    )?;
+    let wall = started.elapsed().as_secs_f64();
+    let (time, instructions) = (outcome.time, outcome.instructions);
+    let (resets, gaps) = (outcome.resets, outcome.gaps);
+    let record = outcome.listener.into_record();
+    if record.rows.is_empty() {
+        return Err("the firmware sent no report".into());
+    }
+
+    let accuracy = emulator::accuracy::Accuracy::of(&record.rows, &plant);
+    let caption = Caption {
+        title: format!("{} on {}", options.scenario, design.name()),
+        subtitle: format!(
+            "{} readings; median error from 5 % of full scale up: force {:.2} %, indentation {:.2} % of reading",
+            accuracy.readings,
+            accuracy.force_median * 100.0,
+            accuracy.indentation_median * 100.0
+        ),
+        full_scale: plant.full_scale(),
+        target_percent: TARGET_PERCENT,
+    };
+    write_csv(&record.rows, &mut csv)?;
+    svg.write_all(chart::svg(&record.rows, &caption)?.as_bytes())?;
+    let files: [PathBuf; 2] = [svg.finish()?, csv.finish()?];
+
+    summary::print(&record, &plant, &accuracy);
+    println!(
+        "\n{time:.1} s on the chip ({:.0} instructions/ms) took {wall:.1} s",
+        instructions as f64 / (time * 1e3)
+    );
+    for trouble in resets.iter().map(|reset| format!("reset: {reset}")).chain(gaps) {
+        println!("note: {trouble}");
+    }
+    println!("chart   {}\nnumbers {}", files[0].display(), files[1].display());
+    Ok(())
+}

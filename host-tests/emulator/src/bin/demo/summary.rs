@@ -1,0 +1,63 @@
+//! What the run comes to.
+
+use emulator::accuracy::Accuracy;
+use emulator::plant::Plant;
+use emulator::record::{Record, Row};
+use fingertip::report::Status;
+
+/// Prints accuracy phase by phase and over all, then what else came over the wire.
+pub(crate) fn print(record: &Record, plant: &Plant, accuracy: &Accuracy) {
+    println!(
+        "\n                       median error / %        within 2 sigma of {} Pa / %      rms error",
+        plant.transducer().noise
+    );
+    println!("phase      readings   force  indentation   pressure   force  indentation   pressure / Pa");
+    for phase in phases(plant) {
+        let of_phase = |row: &&Row| plant.scenario().phase_at(row.time) == phase;
+        print_line(phase, &Accuracy::of(record.rows.iter().filter(of_phase), plant));
+    }
+    print_line("all", accuracy);
+    println!("(median errors: percent of reading, from 5 % of full scale up)");
+    let count = |wanted: fn(&Status) -> bool| record.rows.iter().filter(|row| wanted(&row.status)).count();
+    println!(
+        "\n{} reports: {} ok, {} with a warning, {} faults without values; {} frames lost, {} broken",
+        record.rows.len(),
+        count(|status| *status == Status::Ok),
+        count(|status| matches!(status, Status::Warning(_))),
+        count(|status| matches!(status, Status::Fault(_))),
+        record.lost,
+        record.broken.len()
+    );
+}
+
+fn print_line(name: &str, accuracy: &Accuracy) {
+    let percent = |share: f64, decimals: usize| {
+        if share.is_nan() {
+            "-".to_owned()
+        } else {
+            format!("{:.decimals$}", share * 100.0)
+        }
+    };
+    let within = |share: f64| percent(if accuracy.readings == 0 { f64::NAN } else { share }, 1);
+    println!(
+        "{name:<9} {:>9}  {:>6}  {:>11}   {:>8}  {:>6}  {:>11}   {:>13.2}",
+        accuracy.readings,
+        percent(accuracy.force_median, 3),
+        percent(accuracy.indentation_median, 3),
+        within(accuracy.pressure_within),
+        within(accuracy.force_within),
+        within(accuracy.indentation_within),
+        accuracy.pressure_error
+    );
+}
+
+/// The names of the scenario's phases, each once, in order.
+fn phases(plant: &Plant) -> Vec<&str> {
+    let mut names: Vec<&str> = vec![];
+    for phase in &plant.scenario().phase {
+        if !names.contains(&phase.name.as_str()) {
+            names.push(&phase.name);
+        }
+    }
+    names
+}

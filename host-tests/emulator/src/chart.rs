@@ -1,0 +1,428 @@
+//! The chart of a run: pressure, force and indentation over time with the truth behind the reports, and the
+//! errors below.
+
+use crate::accuracy::{force_error, indentation_error};
+use crate::record::Row;
+use fingertip::report::Status;
+use model_tables::curve::Contact;
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::{
+    BLACK, Cartesian2d, ChartBuilder, ChartContext, Color, DrawingArea, IntoDrawingArea, IntoFont,
+    LineSeries, Polygon, RGBAColor, RGBColor, Rectangle, SVGBackend, Text, WHITE,
+};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::fmt;
+
+/// Width and height in pixels.
+const SIZE: (u32, u32) = (1000, 1270);
+/// Left of the panels, pixels.
+const MARGIN: u32 = 14;
+/// Left of the data, pixels.
+const LABELS: u32 = 96;
+/// More points than this are thinned out: the eye sees no more.
+const POINTS: usize = 1500;
+/// Gap that ends a line, seconds.
+const GAP: f64 = 0.02;
+
+// Colours that the colour-blind tell apart (Okabe and Ito 2008).
+const TRUTH: RGBColor = RGBColor(150, 150, 150);
+const REPORT: RGBColor = RGBColor(0, 114, 178);
+const SECOND: RGBColor = RGBColor(213, 94, 0);
+const FAULT: RGBColor = RGBColor(204, 121, 167);
+const WARNING: RGBColor = RGBColor(230, 159, 0);
+/// Opacity of the shades behind the data.
+const SHADE: f64 = 0.28;
+const BAND_SHADE: f64 = 0.09;
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Panel<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// What stands over the chart and how its scales are set.
+#[derive(Clone, Debug)]
+pub struct Caption {
+    /// The first line.
+    pub title: String,
+    /// The second line.
+    pub subtitle: String,
+    /// The contact at the end of the range: errors are shown from 5 % of it up.
+    pub full_scale: Contact,
+    /// Largest error that the median may have, percent of reading: the band in the lowest panel.
+    pub target_percent: f64,
+}
+
+/// The drawing failed.
+#[derive(Debug)]
+pub struct ChartError(String);
+
+impl fmt::Display for ChartError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "cannot draw the chart: {}", self.0)
+    }
+}
+
+impl std::error::Error for ChartError {}
+
+fn drawing(error: impl fmt::Display) -> ChartError {
+    ChartError(error.to_string())
+}
+
+/// One of the upper panels.
+struct Quantity {
+    label: &'static str,
+    of: fn(&Contact) -> f64,
+}
+
+const QUANTITIES: [Quantity; 3] = [
+    Quantity {
+        label: "pressure rise / kPa",
+        of: |contact| contact.pressure_rise * 1e-3,
+    },
+    Quantity {
+        label: "force / N",
+        of: |contact| contact.force,
+    },
+    Quantity {
+        label: "indentation / mm",
+        of: |contact| contact.indentation * 1e3,
+    },
+];
+
+/// The chart as SVG.
+///
+/// # Errors
+/// [`ChartError`] when there is nothing to draw or the drawing fails.
+pub fn svg(rows: &[Row], caption: &Caption) -> Result<String, ChartError> {
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+        root.fill(&WHITE).map_err(drawing)?;
+        draw(&root, rows, caption)?;
+        root.present().map_err(drawing)?;
+    }
+    Ok(text)
+}
+
+fn draw(root: &Area<'_>, rows: &[Row], caption: &Caption) -> Result<(), ChartError> {
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
+        return Err(drawing("the firmware sent no report"));
+    };
+    let time = first.time..last.time;
+    let (head, body) = root.split_vertically(106);
+    heading(&head, caption)?;
+    let panels = body.split_evenly((4, 1));
+    let spells = spells(rows);
+    for (quantity, area) in QUANTITIES.iter().zip(&panels) {
+        let values = rows.iter().map(|row| (quantity.of)(&row.truth));
+        let reported = rows
+            .iter()
+            .filter_map(|row| row.reported.as_ref())
+            .map(quantity.of);
+        let top = values.chain(reported).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+        let mut panel = panel(area, quantity.label, time.clone(), -0.04 * top..1.08 * top, "")?;
+        shade(&mut panel, &spells, -0.04 * top..1.08 * top)?;
+        let truth: Vec<(f64, f64)> = thinned(rows)
+            .map(|row| (row.time, (quantity.of)(&row.truth)))
+            .collect();
+        let wide = TRUTH.stroke_width(6);
+        panel.draw_series(LineSeries::new(truth, wide)).map_err(drawing)?;
+        let points = thinned(rows).map(|row| (row.time, row.reported.as_ref().map(quantity.of)));
+        line(&mut panel, points, REPORT)?;
+    }
+    errors(&panels[3], rows, caption, time, &spells)
+}
+
+fn heading(area: &Area<'_>, caption: &Caption) -> Result<(), ChartError> {
+    let title = ("sans-serif", 24).into_font().color(&BLACK);
+    let subtitle = ("sans-serif", 16).into_font().color(&RGBColor(70, 70, 70));
+    area.draw(&Text::new(caption.title.clone(), (24, 18), title))
+        .map_err(drawing)?;
+    area.draw(&Text::new(caption.subtitle.clone(), (24, 48), subtitle))
+        .map_err(drawing)?;
+    let entries = [
+        Entry::line("truth: full model", TRUTH, 6),
+        Entry::line("reported by the firmware", REPORT, 3),
+        Entry::area("warning", WARNING.mix(SHADE)),
+        Entry::area("fault: no values", FAULT.mix(SHADE)),
+    ];
+    key(area, (LABELS as i32, 90), &entries)
+}
+
+/// An empty panel with its axes.
+fn panel<'a, 'b>(
+    area: &Area<'b>,
+    label: &str,
+    time: std::ops::Range<f64>,
+    values: std::ops::Range<f64>,
+    time_label: &str,
+) -> Result<Panel<'a, 'b>, ChartError> {
+    let mut panel = ChartBuilder::on(area)
+        .margin_right(28)
+        .margin_left(MARGIN)
+        .margin_top(6)
+        .set_left_and_bottom_label_area_size(if time_label.is_empty() { 34 } else { 52 })
+        .y_label_area_size(LABELS - MARGIN)
+        .build_cartesian_2d(time, values)
+        .map_err(drawing)?;
+    panel
+        .configure_mesh()
+        .y_desc(label)
+        .x_desc(time_label)
+        .x_labels(9)
+        .y_labels(6)
+        .x_label_formatter(&|seconds| format!("{seconds:.1}"))
+        .label_style(("sans-serif", 15))
+        .axis_desc_style(("sans-serif", 16))
+        .light_line_style(WHITE)
+        .bold_line_style(BLACK.mix(0.12))
+        .draw()
+        .map_err(drawing)?;
+    Ok(panel)
+}
+
+/// One entry of a key: a swatch and what it stands for.
+struct Entry {
+    name: String,
+    colour: RGBAColor,
+    /// Height of the swatch in pixels.
+    height: i32,
+}
+
+impl Entry {
+    fn line(name: &str, colour: RGBColor, height: i32) -> Self {
+        Self {
+            name: name.to_owned(),
+            colour: colour.to_rgba(),
+            height,
+        }
+    }
+
+    fn area(name: &str, colour: RGBAColor) -> Self {
+        Self {
+            name: name.to_owned(),
+            colour,
+            height: 14,
+        }
+    }
+}
+
+/// Draws the entries side by side from `at` on, outside the data.
+fn key(area: &Area<'_>, at: (i32, i32), entries: &[Entry]) -> Result<(), ChartError> {
+    let middle = Pos::new(HPos::Left, VPos::Center);
+    let style = ("sans-serif", 15).into_font().color(&BLACK).pos(middle);
+    let (mut x, y) = at;
+    for entry in entries {
+        let corners = [(x, y - entry.height / 2), (x + 24, y + (entry.height + 1) / 2)];
+        let swatch = Rectangle::new(corners, entry.colour.filled());
+        area.draw(&swatch).map_err(drawing)?;
+        area.draw(&Text::new(entry.name.clone(), (x + 31, y), style.clone()))
+            .map_err(drawing)?;
+        // The font's true width is the viewer's business: eight pixels a letter are enough.
+        x += 31 + 8 * entry.name.chars().count() as i32 + 24;
+    }
+    Ok(())
+}
+
+/// A line with gaps where there is no value.
+fn line(
+    panel: &mut Panel<'_, '_>,
+    points: impl Iterator<Item = (f64, Option<f64>)>,
+    colour: RGBColor,
+) -> Result<(), ChartError> {
+    let style = colour.stroke_width(2);
+    let mut pieces: Vec<Vec<(f64, f64)>> = vec![vec![]];
+    for (time, value) in points {
+        let Some(value) = value else {
+            pieces.push(vec![]);
+            continue;
+        };
+        if let Some(piece) = pieces.last_mut() {
+            piece.push((time, value));
+        }
+    }
+    for piece in pieces.into_iter().filter(|piece| !piece.is_empty()) {
+        panel
+            .draw_series(LineSeries::new(piece, style))
+            .map_err(drawing)?;
+    }
+    Ok(())
+}
+
+/// A stretch of time with one status that is not `ok`.
+struct Spell {
+    time: std::ops::Range<f64>,
+    status: Status,
+}
+
+fn spells(rows: &[Row]) -> Vec<Spell> {
+    let mut spells: Vec<Spell> = vec![];
+    for row in rows.iter().filter(|row| row.status != Status::Ok) {
+        match spells.last_mut() {
+            Some(last) if last.status == row.status && row.time - last.time.end < GAP => {
+                last.time.end = row.time;
+            }
+            _ => spells.push(Spell {
+                time: row.time..row.time,
+                status: row.status,
+            }),
+        }
+    }
+    spells
+}
+
+/// Shades the spells over the height of a panel.
+fn shade(
+    panel: &mut Panel<'_, '_>,
+    spells: &[Spell],
+    values: std::ops::Range<f64>,
+) -> Result<(), ChartError> {
+    let boxes = spells.iter().map(|spell| {
+        let corners = [(spell.time.start, values.start), (spell.time.end, values.end)];
+        let colour = match spell.status {
+            Status::Fault(_) => FAULT,
+            Status::Warning(_) | Status::Ok => WARNING,
+        };
+        Rectangle::new(corners, colour.mix(SHADE).filled())
+    });
+    panel.draw_series(boxes).map_err(drawing)?;
+    Ok(())
+}
+
+type Error = fn(&Row, Contact) -> Option<f64>;
+
+/// The lines of the lowest panel.
+const ERRORS: [(Error, RGBColor, &str); 2] = [
+    (indentation_error, SECOND, "indentation"),
+    (force_error, REPORT, "force"),
+];
+
+/// The lowest panel: errors in percent of reading, with the band they should keep to.
+fn errors(
+    area: &Area<'_>,
+    rows: &[Row],
+    caption: &Caption,
+    time: std::ops::Range<f64>,
+    spells: &[Spell],
+) -> Result<(), ChartError> {
+    let full_scale = caption.full_scale;
+    let target = caption.target_percent;
+    let mut sizes: Vec<f64> = rows
+        .iter()
+        .flat_map(|row| [force_error(row, full_scale), indentation_error(row, full_scale)])
+        .flatten()
+        .map(|share| (100.0 * share).abs())
+        .collect();
+    sizes.sort_by(f64::total_cmp);
+    // A few wild points do not set the scale.
+    let usual = sizes.get(sizes.len() * 99 / 100).copied().unwrap_or(0.0);
+    let limit = (1.3 * usual).max(2.0 * target);
+    let label = "error / % of reading";
+    let (strip, area) = area.split_vertically(24);
+    let mut panel = panel(&area, label, time.clone(), -limit..limit, "time / s")?;
+    shade(&mut panel, spells, -limit..limit)?;
+    let band = vec![
+        (time.start, -target),
+        (time.end, -target),
+        (time.end, target),
+        (time.start, target),
+    ];
+    let band = Polygon::new(band, BLACK.mix(BAND_SHADE).filled());
+    panel.draw_series([band]).map_err(drawing)?;
+    for (error, colour, _) in ERRORS {
+        let points = thinned(rows).map(|row| {
+            let percent = error(row, full_scale).map(|share| (100.0 * share).clamp(-limit, limit));
+            (row.time, percent)
+        });
+        line(&mut panel, points, colour)?;
+    }
+    let mut entries: Vec<Entry> = ERRORS
+        .iter()
+        .map(|(_, colour, name)| Entry::line(name, *colour, 3))
+        .collect();
+    let band = format!("\u{b1}{target} %");
+    entries.push(Entry::area(&band, BLACK.mix(BAND_SHADE)));
+    entries.push(Entry::area("shown from 5 % of full scale up", WHITE.mix(0.0)));
+    key(&strip, (LABELS as i32, 12), &entries)
+}
+
+/// Every n-th row, few enough to draw.
+fn thinned(rows: &[Row]) -> impl Iterator<Item = &Row> {
+    rows.iter().step_by(rows.len().div_ceil(POINTS).max(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::Noise;
+    use crate::plant::tests::{press, ramp};
+    use fingertip::report::{Fault, Warnings};
+
+    fn rows() -> (Vec<Row>, Contact) {
+        let plant = press(8e3, ramp());
+        let mut noise = Noise::new(1);
+        let rows = (0..600).map(|ms| {
+            let time = f64::from(ms) * 1e-3;
+            let truth = plant.truth(time);
+            let rise = truth.pressure_rise + 3.0 * noise.deviate();
+            let status = match ms {
+                0..80 => Status::Fault(Fault::Zeroing),
+                300..340 => Status::Warning(Warnings::SATURATED),
+                _ => Status::Ok,
+            };
+            Row {
+                time,
+                truth,
+                status,
+                reported: (ms >= 80).then(|| plant.curve().at_pressure_rise(rise)),
+            }
+        });
+        (rows.collect(), plant.full_scale())
+    }
+
+    fn caption(full_scale: Contact) -> Caption {
+        Caption {
+            title: "press-hold-release on index-fingertip".to_owned(),
+            subtitle: "median error: force 0.1 %, indentation 0.1 %".to_owned(),
+            full_scale,
+            target_percent: 0.5,
+        }
+    }
+
+    #[test]
+    fn names_every_axis_with_its_unit_and_every_line() {
+        let (rows, full_scale) = rows();
+        let svg = svg(&rows, &caption(full_scale)).expect("it can be drawn");
+        for words in [
+            "pressure rise / kPa",
+            "force / N",
+            "indentation / mm",
+            "error / % of reading",
+            "time / s",
+            "truth: full model",
+            "reported by the firmware",
+            "fault: no values",
+            "warning",
+            "press-hold-release on index-fingertip",
+        ] {
+            assert!(svg.contains(words), "{words}");
+        }
+        if let Some(path) = std::env::var_os("CHART_TO_LOOK_AT") {
+            std::fs::write(path, svg).expect("it can be written");
+        }
+    }
+
+    #[test]
+    fn a_line_has_a_gap_where_there_is_no_value_and_spells_end_with_their_status() {
+        let (rows, _) = rows();
+        let spells = spells(&rows);
+        assert_eq!(spells.len(), 2);
+        assert!((spells[0].time.end - 0.079).abs() < 1e-9);
+        assert!((spells[1].time.start - 0.3).abs() < 1e-9);
+    }
+
+    #[test]
+    fn refuses_to_draw_nothing() {
+        let caption = caption(Contact::default());
+        assert!(svg(&[], &caption).is_err());
+    }
+}

@@ -1,0 +1,237 @@
+//! What the firmware reported, each report beside the truth of the instant it refers to.
+
+use crate::bench::{Listener, Moment};
+use crate::plant::Plant;
+use fingertip::report::{Report, Status};
+use fingertip::telemetry::{DecodeError, Decoder, Frame, Hello, Message};
+use model_tables::curve::Contact;
+use std::io::Write;
+use std::ops::ControlFlow;
+
+/// One report and the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// The instant the report refers to, seconds since power-on.
+    pub time: f64,
+    /// The contact at that instant.
+    pub truth: Contact,
+    /// How far the firmware believes itself.
+    pub status: Status,
+    /// What it reports, unless it reports a fault.
+    pub reported: Option<Contact>,
+}
+
+/// Everything that came over the wire in one run.
+#[derive(Debug, Default)]
+pub struct Record {
+    /// The reports in order.
+    pub rows: Vec<Row>,
+    /// The greetings in order.
+    pub hellos: Vec<Hello>,
+    /// What did not read as a frame.
+    pub broken: Vec<DecodeError>,
+    /// Frames that the sequence numbers say are missing.
+    pub lost: u64,
+}
+
+/// Listens to the firmware's telemetry and keeps the record of it.
+pub struct Recorder<F> {
+    decoder: Decoder,
+    sequence: Option<u16>,
+    record: Record,
+    on_row: F,
+}
+
+impl<F: FnMut(&Row) + Send + 'static> Recorder<F> {
+    /// A recorder that shows each row to `on_row` as it comes.
+    pub fn new(on_row: F) -> Self {
+        Self {
+            decoder: Decoder::default(),
+            sequence: None,
+            record: Record::default(),
+            on_row,
+        }
+    }
+
+    /// The record.
+    pub fn into_record(self) -> Record {
+        self.record
+    }
+
+    fn take(&mut self, frame: &Frame, moment: Moment, plant: &Plant) {
+        if let Some(before) = self.sequence.replace(frame.sequence) {
+            self.record.lost += u64::from(frame.sequence.wrapping_sub(before).wrapping_sub(1));
+        }
+        match &frame.message {
+            Message::Report {
+                report,
+                pressure_fraction_bits,
+            } => {
+                let time = moment.clock_zero + report.time.0 as f64 * 1e-6;
+                let row = Row {
+                    time,
+                    truth: plant.truth(time),
+                    status: report.status(),
+                    reported: contact(report, *pressure_fraction_bits),
+                };
+                (self.on_row)(&row);
+                self.record.rows.push(row);
+            }
+            Message::Hello(hello) => self.record.hellos.push(*hello),
+        }
+    }
+}
+
+impl<F: FnMut(&Row) + Send + 'static> Listener for Recorder<F> {
+    fn hear(&mut self, byte: u8, moment: Moment, plant: &Plant) -> ControlFlow<()> {
+        match self.decoder.push(byte) {
+            Some(Ok(frame)) => self.take(&frame, moment, plant),
+            Some(Err(error)) => self.record.broken.push(error),
+            None => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// The values of a report in SI units.
+fn contact(report: &Report, pressure_fraction_bits: u8) -> Option<Contact> {
+    let measurement = report.outcome.ok()?;
+    Some(Contact {
+        pressure_rise: measurement
+            .pressure_rise
+            .pascals(u32::from(pressure_fraction_bits)),
+        force: measurement.force.newtons(),
+        indentation: measurement.indentation.metres(),
+    })
+}
+
+/// The columns of the CSV file: a contract with scripts.
+pub const COLUMNS: [&str; 8] = [
+    "time_ms",
+    "true_pressure_rise_pa",
+    "true_force_n",
+    "true_indentation_mm",
+    "status",
+    "pressure_rise_pa",
+    "force_n",
+    "indentation_mm",
+];
+
+/// Writes the rows as CSV with [`COLUMNS`]; the last three are empty where there is no reading.
+///
+/// # Errors
+/// What the writer answers.
+pub fn write_csv(rows: &[Row], to: impl Write) -> csv::Result<()> {
+    let mut writer = csv::Writer::from_writer(to);
+    writer.write_record(COLUMNS)?;
+    for row in rows {
+        let reported = row.reported.map_or([const { String::new() }; 3], |reported| {
+            [
+                format!("{:.6}", reported.pressure_rise),
+                format!("{:.6}", reported.force),
+                format!("{:.6}", reported.indentation * 1e3),
+            ]
+        });
+        let truth = [
+            format!("{:.3}", row.time * 1e3),
+            format!("{:.9}", row.truth.pressure_rise),
+            format!("{:.12}", row.truth.force),
+            format!("{:.12}", row.truth.indentation * 1e3),
+            row.status.to_string(),
+        ];
+        writer.write_record(truth.iter().chain(&reported))?;
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plant::tests::{press, ramp};
+    use fingertip::report::{Fault, Measurement, Microseconds, Warnings};
+    use fingertip::telemetry::encode;
+    use model_tables::units::{Micronewtons, Nanometres, PressureRise};
+
+    fn frame(sequence: u16, time: u64, outcome: Result<Measurement, Fault>) -> Frame {
+        Frame {
+            sequence,
+            message: Message::Report {
+                report: Report {
+                    time: Microseconds(time),
+                    outcome,
+                },
+                pressure_fraction_bits: 8,
+            },
+        }
+    }
+
+    fn recorded(frames: &[Frame]) -> Record {
+        let plant = press(8e3, ramp());
+        let mut recorder = Recorder::new(|_| {});
+        let moment = Moment {
+            time: 9.0,
+            clock_zero: 0.01,
+        };
+        for frame in frames {
+            for &byte in encode(frame).as_bytes() {
+                assert!(recorder.hear(byte, moment, &plant).is_continue());
+            }
+        }
+        recorder.into_record()
+    }
+
+    const READING: Measurement = Measurement {
+        pressure_rise: PressureRise(256_128),
+        force: Micronewtons(1_234_567),
+        indentation: Nanometres(1_500_001),
+        warnings: Warnings::NONE,
+    };
+
+    #[test]
+    fn a_report_stands_beside_the_truth_of_its_own_instant() {
+        let record = recorded(&[frame(0, 290_000, Ok(READING))]);
+        // 10 ms to the zero of its clock, 290 ms on it: the plate is half way down its ramp.
+        let row = record.rows[0];
+        assert!((row.time - 0.3).abs() < 1e-12);
+        assert_eq!(row.truth, press(8e3, ramp()).truth(row.time));
+        let reported = row.reported.expect("it is a reading");
+        assert!((reported.pressure_rise - 1000.5).abs() < 1e-9);
+        assert!((reported.force - 1.234_567).abs() < 1e-12);
+        assert!((reported.indentation - 1.500_001e-3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn missing_frames_are_counted_across_the_wrap() {
+        let record = recorded(&[65_534, 65_535, 2, 3].map(|sequence| frame(sequence, 0, Ok(READING))));
+        assert_eq!(record.lost, 2);
+        assert_eq!(record.rows.len(), 4);
+    }
+
+    #[test]
+    fn the_file_has_the_columns_of_the_contract_and_no_number_with_a_fault() {
+        let record = recorded(&[
+            frame(0, 290_000, Ok(READING)),
+            frame(1, 90_000, Err(Fault::SensorOpen)),
+        ]);
+        let mut file = vec![];
+        write_csv(&record.rows, &mut file).expect("a vector takes everything");
+        let text = String::from_utf8(file).expect("it is text");
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(
+            lines[0],
+            "time_ms,true_pressure_rise_pa,true_force_n,true_indentation_mm,status,pressure_rise_pa,force_n,indentation_mm"
+        );
+        assert!(lines[1].starts_with("300.000,"), "{}", lines[1]);
+        assert!(
+            lines[1].ends_with(",ok,1000.500000,1.234567,1.500001"),
+            "{}",
+            lines[1]
+        );
+        assert_eq!(
+            lines[2],
+            "100.000,0.000000000,0.000000000000,0.000000000000,fault: sensor open,,,"
+        );
+        assert_eq!(lines.len(), 3);
+    }
+}
