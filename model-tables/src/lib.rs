@@ -18,6 +18,8 @@ pub mod design;
 #[cfg(feature = "std")]
 pub mod design_file;
 pub mod equilibrium;
+#[cfg(feature = "std")]
+pub mod generate;
 pub mod material;
 pub mod membrane;
 pub mod mesh;

@@ -1,0 +1,228 @@
+//! From a design to its tables: the full model, and every refusal on the way.
+
+use super::{Certified, NoTables, emit, tables};
+use crate::constants::{Transducer, TransducerKind};
+use crate::curve::Contact;
+use crate::design_file::{DesignFile, DesignFileError, TransducerKindSection, TransducerSection, Transfer};
+use crate::membrane::TensionField;
+use crate::press::{CurveFailure, ModelError, Press};
+use std::fmt;
+use std::path::Path;
+
+/// Tables of a design, with everything that is written beside them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Generated {
+    /// The design.
+    pub design: DesignFile,
+    /// Its transducer.
+    pub transducer: TransducerSection,
+    /// Gauge pressure at rest, pascals.
+    pub rest_pressure: f64,
+    /// The end of the press that the tables cover.
+    pub end: Contact,
+    /// Tables and certificate.
+    pub certified: Certified,
+}
+
+/// Why a design has no tables. `Display` is one line that names the design's key, the numbers and the remedy.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GenerateError {
+    /// The design file cannot be used.
+    File(DesignFileError),
+    /// Making tables needs a section that is not there.
+    MissingSection {
+        /// The section.
+        section: &'static str,
+    },
+    /// The model gives no answer, or ends before `max_indentation_mm`.
+    Model(ModelError),
+    /// Pressure or force do not grow throughout.
+    Curve(CurveFailure),
+    /// A pressure lies outside the transducer's range.
+    OutOfRange {
+        /// Which pressure.
+        state: State,
+        /// The gauge pressure, kilopascals.
+        pressure: f64,
+        /// The range, kilopascals.
+        range: [f64; 2],
+    },
+    /// No tables meet the accuracy.
+    NoTables(NoTables),
+}
+
+/// A state whose pressure the transducer has to read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum State {
+    /// At rest.
+    Rest,
+    /// At `max_indentation_mm`.
+    Pressed {
+        /// The indentation, millimetres.
+        indentation: f64,
+    },
+}
+
+impl fmt::Display for GenerateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(error) => error.fmt(f),
+            Self::MissingSection { section } => {
+                write!(f, "`[{section}]` is missing: tables cannot be made without it")
+            }
+            Self::Model(error) => error.fmt(f),
+            Self::Curve(error) => error.fmt(f),
+            Self::OutOfRange {
+                state,
+                pressure,
+                range: [low, high],
+            } => {
+                match state {
+                    State::Rest => write!(f, "the rest pressure")?,
+                    State::Pressed { indentation } => {
+                        write!(f, "the pressure at press.max_indentation_mm = {indentation}")?;
+                    }
+                }
+                let (by, side) = if pressure > high {
+                    (pressure - high, "above")
+                } else {
+                    (low - pressure, "below")
+                };
+                write!(
+                    f,
+                    " is {pressure:.3} kPa, {by:.3} kPa {side} transducer.range_kpa = [{low}, {high}]: "
+                )?;
+                match state {
+                    State::Rest => write!(f, "choose another transducer or rest state"),
+                    State::Pressed { .. } => {
+                        write!(f, "choose another transducer, or press less deep")
+                    }
+                }
+            }
+            Self::NoTables(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for GenerateError {}
+
+/// Reads a design file and makes its tables. Build scripts call this.
+///
+/// # Errors
+/// [`GenerateError`]; nothing is written anywhere.
+pub fn from_design_file(path: &Path) -> Result<Generated, GenerateError> {
+    from_design(DesignFile::read(path).map_err(GenerateError::File)?)
+}
+
+/// Solves a design with the full model and makes its tables.
+///
+/// # Errors
+/// [`GenerateError`].
+pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
+    let missing = |section| GenerateError::MissingSection { section };
+    let indentation = design.max_indentation_mm.ok_or(missing("press"))?;
+    let transducer = design.transducer.ok_or(missing("transducer"))?;
+    let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
+    let deepest = indentation * 1e-3;
+    let mut press = Press::new(&design.design(), TensionField::Relaxed).map_err(GenerateError::Model)?;
+    let rest_pressure = press.rest().pressure;
+    in_range(&transducer, State::Rest, rest_pressure)?;
+    let end = press.at_indentation(deepest).map_err(GenerateError::Model)?;
+    in_range(
+        &transducer,
+        State::Pressed { indentation },
+        rest_pressure + end.pressure_rise,
+    )?;
+    let curve = press.curve(deepest).map_err(GenerateError::Curve)?;
+    let certified = tables(&curve, &accuracy, transducer.resolution_pa).map_err(GenerateError::NoTables)?;
+    Ok(Generated {
+        rest_pressure,
+        end: curve.end(),
+        certified,
+        transducer,
+        design,
+    })
+}
+
+fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Result<(), GenerateError> {
+    let pressure = pascals * 1e-3;
+    let range = transducer.range_kpa;
+    if pressure >= range[0] && pressure <= range[1] {
+        return Ok(());
+    }
+    Err(GenerateError::OutOfRange {
+        state,
+        pressure,
+        range,
+    })
+}
+
+impl Generated {
+    /// First eight bytes of the design's hash, big-endian: [`crate::constants::DesignConstants::hash`].
+    pub fn hash(&self) -> u64 {
+        let [a, b, c, d, e, f, g, h, ..] = self.design.hash();
+        u64::from_be_bytes([a, b, c, d, e, f, g, h])
+    }
+
+    /// The transducer as the firmware knows it.
+    pub fn transducer(&self) -> Transducer {
+        let section = &self.transducer;
+        Transducer {
+            range: section.range_kpa.map(|kilopascals| integer(kilopascals * 1e3)),
+            resolution: integer(section.resolution_pa * 1e3),
+            noise: integer(section.noise_pa * 1e3),
+            kind: kind(section.kind),
+        }
+    }
+
+    /// Rust source of `TABLES` and `DESIGN`, for `include!`.
+    pub fn rust_source(&self) -> String {
+        emit::rust_source(self)
+    }
+
+    /// The tables as bytes; little-endian: `FTIP`, `u32` table version, `u64` design hash, the fields of
+    /// [`crate::table::Layout`] (four bytes each), `u32` numbers of segments, force coefficients and indentation
+    /// coefficients, then the coefficients.
+    pub fn binary(&self) -> Vec<u8> {
+        emit::binary(self)
+    }
+
+    /// The tables as CSV: one row a coefficient.
+    pub fn csv(&self) -> String {
+        emit::csv(self)
+    }
+
+    /// The certificate as TOML.
+    pub fn certificate(&self) -> String {
+        emit::certificate(self)
+    }
+}
+
+/// The nearest integer; a float to integer cast saturates.
+pub(super) fn integer(value: f64) -> i32 {
+    libm::round(value) as i32
+}
+
+fn kind(section: TransducerKindSection) -> TransducerKind {
+    const COUNTS: f64 = 16_777_216.0;
+    match section {
+        TransducerKindSection::Ratiometric {
+            output_fraction_at_range,
+        } => TransducerKind::Ratiometric {
+            output: output_fraction_at_range.map(|fraction| libm::round(fraction * 65536.0) as u32),
+        },
+        TransducerKindSection::Abp2 { address, transfer } => TransducerKind::Abp2 {
+            address,
+            counts: match transfer {
+                Transfer::A => [0.1, 0.9],
+                Transfer::B => [0.3, 0.7],
+            }
+            .map(|fraction| libm::round(fraction * COUNTS) as u32),
+        },
+        TransducerKindSection::Ms5837 => TransducerKind::Ms5837 { address: 0x76 },
+        TransducerKindSection::Dps310 { address } => TransducerKind::Dps310 { address },
+    }
+}
+
+#[cfg(test)]
+mod tests;

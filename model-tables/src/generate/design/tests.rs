@@ -1,0 +1,153 @@
+use super::*;
+use crate::generate::tables as make_tables;
+use crate::units::PressureRise;
+
+fn shipped(name: &str) -> DesignFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("designs")
+        .join(name)
+        .with_extension("toml");
+    DesignFile::read(&path).expect("a shipped design")
+}
+
+/// Fresh full-model states, not the curve that the tables were made from, at indentations of their own.
+#[test]
+fn tables_of_the_shipped_designs_agree_with_fresh_states_of_the_model() {
+    for name in ["index-fingertip", "paper-prestretched", "skin-analogue"] {
+        let generated = from_design(shipped(name)).expect("tables");
+        let certificate = &generated.certified.certificate;
+        assert!(certificate.holds());
+        assert_eq!(
+            (
+                certificate.force.falling_steps,
+                certificate.indentation.falling_steps
+            ),
+            (0, 0)
+        );
+        assert_eq!(
+            certificate.inputs,
+            generated.certified.tables.layout.maximum as u64 + 1
+        );
+        let bits = generated.certified.tables.layout.pressure_fraction_bits;
+        let mut press =
+            Press::new(&generated.design.design(), TensionField::Relaxed).expect("the rest state");
+        let end = press.at_indentation(2.5e-3).expect("the end");
+        for indentation in [2.0e-5, 7.7e-5, 3.1e-4, 9.3e-4, 1.61e-3, 2.4e-3] {
+            let state = press.at_indentation(indentation).expect("a state");
+            let rise = PressureRise::from_pascals(state.pressure_rise, bits);
+            // Rounding the input moves it by up to half a count, which the certificate does not cover.
+            let rounding = (rise.pascals(bits) / state.pressure_rise - 1.0).abs();
+            let reading = generated.certified.tables.lookup(rise);
+            for (got, truth, full) in [
+                (reading.force.newtons(), state.force, end.force),
+                (reading.indentation.metres(), indentation, 2.5e-3),
+            ] {
+                let allowed = 1e-3 * truth.max(0.01 * full) + 1.05 * rounding * truth;
+                assert!(
+                    (got - truth).abs() <= allowed,
+                    "{name} at {indentation}: {got} for {truth}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn two_runs_write_the_same_bytes() {
+    let run = || {
+        let generated = from_design(shipped("skin-analogue")).expect("tables");
+        (
+            generated.rust_source(),
+            generated.binary(),
+            generated.csv(),
+            generated.certificate(),
+        )
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn refuses_a_design_whose_rest_pressure_leaves_the_range_and_says_by_how_much() {
+    let mut design = shipped("paper-prestretched");
+    design.transducer.as_mut().expect("there").range_kpa = [0.0, 100.0];
+    let error = from_design(design)
+        .expect_err("it rests at 179.06 kPa")
+        .to_string();
+    // 179.061844 kPa is the reference state's pressure.
+    assert!(
+        error.contains("the rest pressure is 179.062 kPa, 79.062 kPa above transducer.range_kpa = [0, 100]"),
+        "{error}"
+    );
+    assert_eq!(error.lines().count(), 1);
+}
+
+#[test]
+fn refuses_a_press_that_leaves_the_range() {
+    let mut design = shipped("paper-prestretched");
+    design.transducer.as_mut().expect("there").range_kpa = [0.0, 200.0];
+    let error = from_design(design).expect_err("278 kPa at 2.5 mm").to_string();
+    assert!(
+        error.contains("press.max_indentation_mm = 2.5 is 278."),
+        "{error}"
+    );
+    assert!(error.contains("above transducer.range_kpa = [0, 200]"), "{error}");
+}
+
+#[test]
+fn refuses_a_press_beyond_the_limit() {
+    let mut design = shipped("paper-prestretched");
+    design.max_indentation_mm = Some(4.2);
+    let error = from_design(design)
+        .expect_err("the press ends at 4.166 mm")
+        .to_string();
+    assert!(
+        error.contains("4.2 mm is beyond the limit of 4.166107 mm"),
+        "{error}"
+    );
+}
+
+#[test]
+fn refuses_a_design_without_the_sections_tables_need() {
+    for section in ["press", "transducer", "accuracy"] {
+        let mut design = shipped("skin-analogue");
+        match section {
+            "press" => design.max_indentation_mm = None,
+            "transducer" => design.transducer = None,
+            _ => design.accuracy = None,
+        }
+        assert_eq!(
+            from_design(design),
+            Err(GenerateError::MissingSection { section })
+        );
+    }
+}
+
+#[test]
+fn writes_what_the_chip_includes() {
+    let generated = from_design(shipped("skin-analogue")).expect("tables");
+    let source = generated.rust_source();
+    assert!(source.contains("name: \"skin-analogue\""));
+    // 8.269 kPa is the reference state's pressure; 10 % and 90 % of 65536.
+    assert!(source.contains("rest_pressure: 8269,"));
+    assert!(source.contains("Ratiometric { output: [6554, 58982] }"));
+    let tables = &generated.certified.tables;
+    let binary = generated.binary();
+    assert_eq!(&binary[..4], b"FTIP");
+    assert_eq!(binary.len(), 4 + 4 + 8 + 7 * 4 + 3 * 4 + tables.bytes());
+    let rows = generated.csv().lines().count();
+    assert_eq!(rows, 1 + tables.words.len());
+}
+
+#[test]
+fn a_coarse_accuracy_is_met_with_less() {
+    let mut design = shipped("index-fingertip");
+    let accuracy = design.accuracy.as_mut().expect("there");
+    accuracy.force_percent_of_reading = 1.0;
+    accuracy.indentation_percent_of_reading = 1.0;
+    let coarse = from_design(design).expect("tables");
+    let mut press = Press::new(&coarse.design.design(), TensionField::Relaxed).expect("rest");
+    let curve = press.curve(2.5e-3).expect("curve");
+    let fine = shipped("index-fingertip").accuracy.expect("there");
+    let fine = make_tables(&curve, &fine, 10.0).expect("tables");
+    assert!(coarse.certified.tables.bytes() < fine.tables.bytes());
+}

@@ -1,0 +1,231 @@
+//! The forms in which tables are written.
+//!
+//! Binary, little-endian: `FTIP`; `u32` table version; `u64` design hash; the seven fields of
+//! [`crate::table::Layout`] in their order, four bytes each; `u32` segments, coefficients of the force,
+//! coefficients of the indentation; then the coefficients, `i32`, force and indentation segment by segment.
+
+use super::TABLE_VERSION;
+use super::certify::Errors;
+use super::design::{Generated, integer};
+use super::owned::OwnedTables;
+use crate::table::Layout;
+use crate::units::PressureRise;
+use std::fmt::{self, Write as _};
+
+const NEVER: &str = "writing to a string does not fail";
+
+pub(super) fn rust_source(generated: &Generated) -> String {
+    let mut text = String::new();
+    write_rust(generated, &mut text).expect(NEVER);
+    text
+}
+
+fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
+    let tables = &generated.certified.tables;
+    let transducer = generated.transducer();
+    let layout = &tables.layout;
+    let shape = format!(
+        "model_tables::table::Tables<{}, {}, {}>",
+        tables.segments(),
+        tables.force_order,
+        tables.indentation_order
+    );
+    writeln!(
+        out,
+        "// Tables of the design `{}`, {} bytes. Generated: change the design, not this file.\n",
+        generated.design.name,
+        tables.bytes()
+    )?;
+    writeln!(
+        out,
+        "/// What the firmware needs to know of the design beside its tables.\n\
+         pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {{\n\
+         \x20   name: {:?},\n\
+         \x20   hash: {:#018x},\n\
+         \x20   table_version: {},\n\
+         \x20   rest_pressure: {},\n\
+         \x20   maximum_pressure: {},\n\
+         \x20   transducer: model_tables::constants::Transducer {{\n\
+         \x20       range: {:?},\n\
+         \x20       resolution: {},\n\
+         \x20       noise: {},\n\
+         \x20       kind: model_tables::constants::TransducerKind::{:?},\n\
+         \x20   }},\n\
+         }};\n",
+        generated.design.name,
+        generated.hash(),
+        TABLE_VERSION,
+        integer(generated.rest_pressure),
+        integer(generated.rest_pressure + generated.end.pressure_rise),
+        transducer.range,
+        transducer.resolution,
+        transducer.noise,
+        transducer.kind,
+    )?;
+    writeln!(
+        out,
+        "/// The type of [`TABLES`].\npub type DesignTables = {shape};\n"
+    )?;
+    writeln!(
+        out,
+        "/// Pressure rise -> force and indentation.\n\
+         pub const TABLES: DesignTables = model_tables::table::Tables {{\n\
+         \x20   layout: model_tables::table::{layout:?},\n\
+         \x20   segments: ["
+    )?;
+    for index in 0..tables.segments() {
+        let (force, indentation) = tables.segment(index);
+        writeln!(
+            out,
+            "        model_tables::table::Segment {{ force: {force:?}, indentation: {indentation:?} }},"
+        )?;
+    }
+    writeln!(out, "    ],\n}};")
+}
+
+pub(super) fn binary(generated: &Generated) -> Vec<u8> {
+    let tables = &generated.certified.tables;
+    let mut bytes = Vec::from(*b"FTIP");
+    bytes.extend(TABLE_VERSION.to_le_bytes());
+    bytes.extend(generated.hash().to_le_bytes());
+    for field in fields(&tables.layout) {
+        bytes.extend((field.1 as i32).to_le_bytes());
+    }
+    for size in [tables.segments(), tables.force_order, tables.indentation_order] {
+        bytes.extend((size as u32).to_le_bytes());
+    }
+    for word in &tables.words {
+        bytes.extend(word.to_le_bytes());
+    }
+    bytes
+}
+
+/// Names and values of a layout, in the order of its fields.
+fn fields(layout: &Layout) -> [(&'static str, i64); 7] {
+    [
+        ("pressure_fraction_bits", layout.pressure_fraction_bits.into()),
+        ("maximum", layout.maximum.into()),
+        ("bias", layout.bias.into()),
+        ("split_bits", layout.split_bits.into()),
+        ("first_index", layout.first_index.into()),
+        ("force_shift", layout.force_shift.into()),
+        ("indentation_shift", layout.indentation_shift.into()),
+    ]
+}
+
+pub(super) fn csv(generated: &Generated) -> String {
+    let tables = &generated.certified.tables;
+    let mut text = String::from("segment,from_count,output,power,coefficient\n");
+    let from = first_counts(tables);
+    for (index, from) in from.iter().enumerate() {
+        let (force, indentation) = tables.segment(index);
+        for (output, coefficients) in [("force", force), ("indentation", indentation)] {
+            for (power, coefficient) in coefficients.iter().enumerate() {
+                writeln!(text, "{index},{from},{output},{power},{coefficient}").expect(NEVER);
+            }
+        }
+    }
+    text
+}
+
+/// First input of every segment, in the order of the table, by bisection: the index never rises with it.
+fn first_counts(tables: &OwnedTables) -> Vec<i32> {
+    let layout = &tables.layout;
+    (0..tables.segments())
+        .map(|index| {
+            let (mut low, mut high) = (0, layout.maximum);
+            while low < high {
+                let middle = low + (high - low) / 2;
+                if layout.place(PressureRise(middle)).index <= index {
+                    high = middle;
+                } else {
+                    low = middle + 1;
+                }
+            }
+            low
+        })
+        .collect()
+}
+
+pub(super) fn certificate(generated: &Generated) -> String {
+    let mut text = String::new();
+    write_certificate(generated, &mut text).expect(NEVER);
+    text
+}
+
+fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
+    let tables = &generated.certified.tables;
+    let certificate = &generated.certified.certificate;
+    let mut hash = String::new();
+    for byte in generated.design.hash() {
+        write!(hash, "{byte:02x}")?;
+    }
+    writeln!(
+        out,
+        "# What holds of the tables of this design. Every representable input was evaluated with the lookup\n\
+         # that runs on the chip, and compared with the curve of the full model.\n\
+         design = \"{}\"\n\
+         design_sha256 = \"{hash}\"\n\
+         table_version = {}\n\
+         inputs_checked = {}\n\
+         bytes = {}\n\
+         rest_pressure_pa = {:?}\n\
+         maximum_pressure_rise_pa = {:?}\n\
+         # Relative error of the comparison: local polynomials of degree five stand for the curve.\n\
+         comparison_error = {:.1e}\n",
+        generated.design.name,
+        TABLE_VERSION,
+        certificate.inputs,
+        tables.bytes(),
+        generated.rest_pressure,
+        PressureRise(tables.layout.maximum).pascals(tables.layout.pressure_fraction_bits),
+        certificate.comparison_error,
+    )?;
+    writeln!(
+        out,
+        "[layout] # an input count is 2^-pressure_fraction_bits pascal"
+    )?;
+    for (name, value) in fields(&tables.layout) {
+        writeln!(out, "{name} = {value}")?;
+    }
+    writeln!(out, "segments = {}", tables.segments())?;
+    writeln!(out, "force_coefficients = {}", tables.force_order)?;
+    writeln!(out, "indentation_coefficients = {}", tables.indentation_order)?;
+    write_errors("force", "un", &certificate.force, out)?;
+    write_errors("indentation", "nm", &certificate.indentation, out)
+}
+
+fn write_errors(name: &str, unit: &str, errors: &Errors, out: &mut String) -> fmt::Result {
+    writeln!(
+        out,
+        "\n[{name}]\n\
+         full_scale_{unit} = {:.3}\n\
+         reading_from_{unit} = {:.3}\n\
+         allowed_percent_of_reading = {:?}\n\
+         max_percent_of_reading = {:.6}\n\
+         rms_percent_of_reading = {:.6}\n\
+         mean_percent_of_reading = {:.6}\n\
+         max_below_percent_of_reading_from = {:.6}\n\
+         max_percent_of_full_scale = {:.6}\n\
+         rms_percent_of_full_scale = {:.6}\n\
+         mean_percent_of_full_scale = {:.6}\n\
+         falling_steps = {}\n\
+         equal_steps = {}\n\
+         smallest_{unit} = {}\n\
+         largest_{unit} = {}",
+        errors.full_scale,
+        errors.from,
+        errors.allowed_percent,
+        errors.of_reading.max,
+        errors.of_reading.rms,
+        errors.of_reading.mean,
+        errors.below_percent_of_from,
+        errors.of_full_scale.max,
+        errors.of_full_scale.rms,
+        errors.of_full_scale.mean,
+        errors.falling_steps,
+        errors.equal_steps,
+        errors.range[0],
+        errors.range[1],
+    )
+}

@@ -1,0 +1,143 @@
+//! The curve at every count, fast: local polynomials through exact evaluations, with the error they add.
+
+use crate::curve::{Contact, Curve};
+
+/// Inputs below this many counts are evaluated exactly, one by one.
+const EXACT: i32 = 64;
+/// Blocks an octave of the input is cut into, beyond that.
+const BLOCKS_PER_OCTAVE: i32 = 32;
+/// Nodes of a block's polynomial: degree five.
+const NODES: usize = 6;
+/// Chebyshev points of [-1, 1]: `cos((2 i + 1) pi / 12)`, increasing.
+const CHEBYSHEV: [f64; NODES] = [
+    -0.965_925_826_289_068_3,
+    -0.707_106_781_186_547_5,
+    -0.258_819_045_102_520_74,
+    0.258_819_045_102_520_74,
+    0.707_106_781_186_547_5,
+    0.965_925_826_289_068_3,
+];
+
+/// Consecutive counts with one polynomial.
+struct Block {
+    /// First count.
+    start: i32,
+    /// Counts to map: the place of a count is `2 (count - start) / width - 1`.
+    width: f64,
+    /// Force in micronewtons and indentation in nanometres, powers of the place, constant term first.
+    powers: [[f64; NODES]; 2],
+}
+
+/// Force in micronewtons and indentation in nanometres at every count of `0..=maximum`.
+pub(super) struct Truth {
+    exact: Vec<[f64; 2]>,
+    blocks: Vec<Block>,
+    /// Last count.
+    pub(super) maximum: i32,
+    /// Largest deviation of a polynomial from the curve, relative to the curve, seen at the points farthest
+    /// from its nodes.
+    pub(super) deviation: f64,
+}
+
+impl Truth {
+    /// Prepares the curve at counts of `2^-fraction_bits` pascal.
+    pub(super) fn new(curve: &Curve, fraction_bits: u32, maximum: i32) -> Self {
+        let unit = libm::ldexp(1.0, -(fraction_bits as i32));
+        let at = |count: f64| outputs(curve.at_pressure_rise(count * unit));
+        let exact = (0..EXACT.min(maximum + 1))
+            .map(|count| at(f64::from(count)))
+            .collect();
+        let mut blocks = Vec::new();
+        let mut deviation = 0.0_f64;
+        let mut octave = EXACT;
+        while octave <= maximum {
+            let step = (octave / BLOCKS_PER_OCTAVE).max(1);
+            let mut start = octave;
+            while start < octave.saturating_mul(2) && start <= maximum {
+                let width = f64::from(step.min(maximum - start).max(1));
+                let place = |z: f64| f64::from(start) + 0.5 * width * (z + 1.0);
+                let values = CHEBYSHEV.map(|z| at(place(z)));
+                let block = Block {
+                    start,
+                    width,
+                    powers: [0, 1].map(|output| powers(values.map(|value| value[output]))),
+                };
+                for z in [-1.0, -0.5, 0.0, 0.5, 1.0] {
+                    let truth = at(place(z));
+                    for (output, &value) in truth.iter().enumerate() {
+                        let got = evaluate(&block.powers[output], z);
+                        deviation = deviation.max((got / value - 1.0).abs());
+                    }
+                }
+                blocks.push(block);
+                start = start.saturating_add(step);
+            }
+            octave = octave.saturating_mul(2);
+        }
+        Self {
+            exact,
+            blocks,
+            maximum,
+            deviation,
+        }
+    }
+
+    /// Force in micronewtons and indentation in nanometres at a count.
+    pub(super) fn at(&self, count: i32) -> [f64; 2] {
+        if let Some(&value) = self.exact.get(count.max(0) as usize) {
+            return value;
+        }
+        let block = self.blocks.partition_point(|block| block.start <= count) - 1;
+        self.blocks[block].at(count)
+    }
+
+    /// Calls `visit` with every count and its outputs, in order.
+    pub(super) fn for_each(&self, mut visit: impl FnMut(i32, [f64; 2])) {
+        for (count, &value) in self.exact.iter().enumerate() {
+            visit(count as i32, value);
+        }
+        for (i, block) in self.blocks.iter().enumerate() {
+            let end = self.blocks.get(i + 1).map_or(self.maximum + 1, |next| next.start);
+            for count in block.start..end {
+                visit(count, block.at(count));
+            }
+        }
+    }
+}
+
+impl Block {
+    #[inline]
+    fn at(&self, count: i32) -> [f64; 2] {
+        let z = 2.0 * f64::from(count - self.start) / self.width - 1.0;
+        [evaluate(&self.powers[0], z), evaluate(&self.powers[1], z)]
+    }
+}
+
+/// Micronewtons and nanometres of a contact.
+fn outputs(contact: Contact) -> [f64; 2] {
+    [contact.force * 1e6, contact.indentation * 1e9]
+}
+
+#[inline]
+fn evaluate(powers: &[f64; NODES], z: f64) -> f64 {
+    powers.iter().rev().fold(0.0, |sum, &power| sum * z + power)
+}
+
+/// Coefficients of the polynomial through `values` at [`CHEBYSHEV`]: Newton's divided differences, expanded.
+fn powers(values: [f64; NODES]) -> [f64; NODES] {
+    let mut differences = values;
+    for level in 1..NODES {
+        for i in (level..NODES).rev() {
+            differences[i] = (differences[i] - differences[i - 1]) / (CHEBYSHEV[i] - CHEBYSHEV[i - level]);
+        }
+    }
+    let mut powers = [0.0; NODES];
+    for i in (0..NODES).rev() {
+        // powers := powers (z - node) + difference
+        for j in (1..NODES).rev() {
+            powers[j] = powers[j - 1] - CHEBYSHEV[i] * powers[j];
+        }
+        powers[0] = differences[i] - CHEBYSHEV[i] * powers[0];
+    }
+    powers
+}
