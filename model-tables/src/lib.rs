@@ -17,6 +17,8 @@ pub mod curve;
 pub mod design;
 #[cfg(feature = "std")]
 pub mod design_file;
+#[cfg(feature = "cli")]
+pub mod designer;
 pub mod equilibrium;
 #[cfg(feature = "std")]
 pub mod generate;

@@ -1,0 +1,139 @@
+//! The `designer` command line: one module a subcommand.
+//!
+//! Exit status 0 only if everything asked for was given. Otherwise one line on standard error that names what
+//! was asked, the limit or the key, and the remedy; nothing on standard output, nothing half-written left behind.
+
+mod estimate;
+mod rest;
+mod rows;
+mod solve;
+mod table;
+
+use crate::design_file::{DesignFile, DesignFileError};
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+use rows::{Format, Rows};
+use std::fmt::Display;
+use std::io::{IsTerminal as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Solves fingertip designs and makes their tables.
+#[derive(Debug, Parser)]
+#[command(name = "designer", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// How rows are printed [default: table on a terminal, csv otherwise]
+    #[arg(long, global = true)]
+    format: Option<Format>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// The rest state and the limits of a design
+    Rest {
+        /// The design file
+        design: PathBuf,
+    },
+    /// Pressed states of a design, one row each, in the order asked
+    Solve(solve::Arguments),
+    /// The tables of a design: Rust source, binary, CSV, and the certificate
+    Table(table::Arguments),
+    /// What the chip would say at pressure rises, bit for bit
+    Estimate(estimate::Arguments),
+}
+
+/// What a subcommand gives.
+struct Answer {
+    rows: Rows,
+    /// Remarks for a person, one line each, on standard error.
+    notes: Vec<String>,
+}
+
+/// One line that says what is wrong and what to do.
+struct Refusal(String);
+
+impl Refusal {
+    /// About a file.
+    fn about(file: &Path, reason: &dyn Display) -> Self {
+        Self(format!("{}: {reason}", file.display()))
+    }
+}
+
+impl From<DesignFileError> for Refusal {
+    fn from(error: DesignFileError) -> Self {
+        // It names the file itself.
+        Self(error.to_string())
+    }
+}
+
+/// Reads the arguments, runs the subcommand, prints its answer.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
+            // A closed pipe is no reason to complain.
+            let _ = error.print();
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => return refuse(&usage(&error)),
+    };
+    let format = arguments.format.unwrap_or(if std::io::stdout().is_terminal() {
+        Format::Table
+    } else {
+        Format::Csv
+    });
+    match run(&arguments.command).and_then(|answer| {
+        let text = answer.rows.print(format).map_err(Refusal)?;
+        std::io::stdout()
+            .write_all(text.as_bytes())
+            .map_err(|error| Refusal(format!("standard output: {error}")))?;
+        Ok(answer.notes)
+    }) {
+        Ok(notes) => {
+            for note in notes {
+                eprintln!("note: {note}");
+            }
+            ExitCode::SUCCESS
+        }
+        Err(Refusal(reason)) => refuse(&reason),
+    }
+}
+
+fn run(command: &Command) -> Result<Answer, Refusal> {
+    match command {
+        Command::Rest { design } => rest::run(design),
+        Command::Solve(arguments) => solve::run(arguments),
+        Command::Table(arguments) => table::run(arguments),
+        Command::Estimate(arguments) => estimate::run(arguments),
+    }
+}
+
+fn refuse(reason: &str) -> ExitCode {
+    eprintln!("error: {reason}");
+    ExitCode::FAILURE
+}
+
+/// What is wrong with the arguments, on one line.
+fn usage(error: &clap::Error) -> String {
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return "a subcommand is needed: rest, solve, table or estimate (see `designer --help`)".to_owned();
+    }
+    let text = error.to_string();
+    let first = text.split("\n\n").next().unwrap_or_default();
+    let first: Vec<&str> = first.trim_start_matches("error: ").split_whitespace().collect();
+    format!("{} (see `designer --help`)", first.join(" "))
+}
+
+fn read(design: &Path) -> Result<DesignFile, Refusal> {
+    Ok(DesignFile::read(design)?)
+}
+
+/// A finite number; `inf` and `nan` are words that a float would take.
+fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("not a finite number".to_owned()),
+    }
+}

@@ -1,0 +1,82 @@
+//! `designer solve`: pressed states.
+
+use super::rows::{Cell, Rows};
+use super::{Answer, Refusal, finite, read};
+use crate::membrane::TensionField;
+use crate::press::Press;
+use crate::state::PressedState;
+use clap::ValueEnum;
+use std::path::PathBuf;
+
+const COLUMNS: &[&str] = &[
+    "indentation_mm",
+    "pressure_kpa",
+    "pressure_rise_kpa",
+    "force_n",
+    "contact_radius_mm",
+    "contact_area_mm2",
+    "pole_stretch",
+    "edge_angle_deg",
+    "min_tension_n_per_m",
+    "wrinkled",
+];
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The design file
+    design: PathBuf,
+    /// Indentations in millimetres, separated by commas
+    #[arg(long, value_name = "LIST", required = true, value_delimiter = ',',
+          value_parser = finite, allow_hyphen_values = true)]
+    indentation_mm: Vec<f64>,
+    /// What the membrane does where it would have to push
+    #[arg(long, value_name = "FIELD", value_enum, default_value_t = Field::Relaxed)]
+    tension_field: Field,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Field {
+    /// It wrinkles or goes slack
+    Relaxed,
+    /// It pushes, as in the paper
+    Plain,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+    let file = &arguments.design;
+    let field = match arguments.tension_field {
+        Field::Relaxed => TensionField::Relaxed,
+        Field::Plain => TensionField::Plain,
+    };
+    let design = read(file)?.design();
+    let mut press = Press::new(&design, field).map_err(|error| Refusal::about(file, &error))?;
+    // Solved from shallow to deep, given in the order asked.
+    let mut order: Vec<usize> = (0..arguments.indentation_mm.len()).collect();
+    order.sort_by(|&a, &b| arguments.indentation_mm[a].total_cmp(&arguments.indentation_mm[b]));
+    let mut states: Vec<Option<PressedState>> = vec![None; order.len()];
+    for i in order {
+        let state = press
+            .at_indentation(arguments.indentation_mm[i] / 1e3)
+            .map_err(|error| Refusal::about(file, &error))?;
+        states[i] = Some(state);
+    }
+    let mut rows = Rows::new(COLUMNS);
+    for (state, &asked) in states.iter().flatten().zip(&arguments.indentation_mm) {
+        rows.push(vec![
+            Cell::Number(asked),
+            Cell::Number(state.shape.pressure * 1e-3),
+            Cell::Number(state.pressure_rise * 1e-3),
+            Cell::Number(state.force),
+            Cell::Number(state.contact_radius * 1e3),
+            Cell::Number(state.contact_area() * 1e6),
+            Cell::Number(state.shape.pole_stretch),
+            Cell::Number(state.shape.edge_angle.to_degrees()),
+            Cell::Number(state.shape.least_tension()),
+            Cell::word(state.shape.wrinkling.word()),
+        ]);
+    }
+    Ok(Answer {
+        rows,
+        notes: Vec::new(),
+    })
+}

@@ -1,0 +1,311 @@
+//! The `designer` binary from outside: columns, values, errors, exit status, files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn shipped(name: &str) -> String {
+    format!("{}/designs/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn designer(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_designer"))
+        .args(arguments)
+        .output()
+        .expect("the binary runs")
+}
+
+/// Header and rows of a run that must succeed.
+fn csv(arguments: &[&str]) -> (String, Vec<Vec<String>>) {
+    let output = designer(arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
+    let mut reader = csv::Reader::from_reader(output.stdout.as_slice());
+    let header = reader
+        .headers()
+        .expect("a header")
+        .iter()
+        .collect::<Vec<_>>()
+        .join(",");
+    let rows = reader
+        .records()
+        .map(|row| row.expect("a row").iter().map(str::to_owned).collect())
+        .collect();
+    (header, rows)
+}
+
+/// The one line of a run that must fail, with nothing on standard output.
+fn refusal(arguments: &[&str]) -> String {
+    let output = designer(arguments);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    let text = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text
+}
+
+fn near(text: &str, truth: f64, tolerance: f64) {
+    let number: f64 = text.parse().expect("a number");
+    assert!((number / truth - 1.0).abs() < tolerance, "{number} for {truth}");
+}
+
+/// An empty folder of its own for a test.
+fn scratch(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the test folder");
+    folder
+}
+
+#[test]
+fn rest_gives_the_reference_state_and_its_limit() {
+    let (header, rows) = csv(&["rest", &shipped("paper-prestretched")]);
+    assert_eq!(
+        header,
+        "rest_pressure_kpa,pole_stretch,equator_radius_mm,height_mm,volume_mm3,max_indentation_mm,ends_by"
+    );
+    // Independent reference: collocation cross-checked by shooting.
+    let reference = [
+        179.061_844_088_872,
+        2.3,
+        8.575_201_058_739,
+        8.081_810_613_014,
+        1_242.150_374_427,
+        4.166_107_072,
+    ];
+    for (text, truth) in rows[0].iter().zip(reference) {
+        near(text, truth, 1e-8);
+    }
+    assert_eq!(rows[0][6], "bulge-touches-base");
+}
+
+#[test]
+fn solve_gives_reference_states_in_the_order_asked() {
+    let design = shipped("paper-prestretched");
+    let (header, rows) = csv(&["solve", &design, "--indentation-mm", "2.083053536,0.208305354,0"]);
+    assert_eq!(
+        header,
+        "indentation_mm,pressure_kpa,pressure_rise_kpa,force_n,contact_radius_mm,contact_area_mm2,pole_stretch,\
+         edge_angle_deg,min_tension_n_per_m,wrinkled"
+    );
+    for (row, pressure, force) in [
+        (&rows[0], 245.419_207_392_746, 16.492_035_788_469),
+        (&rows[1], 181.027_546_477_086, 0.459_166_627_275),
+    ] {
+        near(&row[1], pressure, 1e-7);
+        near(&row[3], force, 1e-6);
+        // F = P pi rc^2.
+        let [pressure, radius] = [1, 4].map(|i| row[i].parse::<f64>().expect("a number"));
+        near(
+            &row[3],
+            pressure * 1e-3 * core::f64::consts::PI * radius * radius,
+            1e-12,
+        );
+        assert_eq!(row[9], "no");
+    }
+    near(&rows[2][1], 179.061_844_088_872, 1e-9);
+    assert!(rows[2][3].parse::<f64>().expect("a number").abs() < 1e-300);
+}
+
+#[test]
+fn solve_knows_both_tension_fields() {
+    let folder = scratch("wrinkled");
+    let file = folder.join("oblate.toml");
+    let text = fs::read_to_string(shipped("skin-analogue"))
+        .expect("the design")
+        .replace("axial_semi_axis_mm = 7.0", "axial_semi_axis_mm = 4.05")
+        .replace("pole_stretch = 1.1", "pole_stretch = 1.05")
+        .replace("c1_pa = 13400.0", "c1_pa = 160355.0")
+        .replace("c2_pa = 29500.0", "c2_pa = 46559.0");
+    fs::write(&file, text).expect("written");
+    let at = |field: &str| {
+        let arguments = [
+            "solve",
+            file.to_str().expect("utf-8"),
+            "--indentation-mm",
+            "0.5",
+            "--tension-field",
+            field,
+        ];
+        csv(&arguments).1[0].clone()
+    };
+    // Rest pressures of the two differ: 17919 Pa relaxed, 17659 Pa plain (9 x 4.05 mm at 1.05).
+    let (relaxed, plain) = (at("relaxed"), at("plain"));
+    assert_eq!(relaxed[9], "wrinkled");
+    assert_eq!(plain[9], "wrinkled");
+    let force = |row: &[String]| row[3].parse::<f64>().expect("a number");
+    assert!(force(&relaxed) < 0.98 * force(&plain));
+}
+
+#[test]
+fn numbers_have_twelve_significant_digits() {
+    let (_, rows) = csv(&["rest", &shipped("skin-analogue")]);
+    for text in &rows[0][..6] {
+        let digits = text
+            .trim_start_matches(['0', '.'])
+            .chars()
+            .filter(char::is_ascii_digit)
+            .count();
+        assert!(digits >= 12, "{text}");
+    }
+}
+
+#[test]
+fn estimate_agrees_with_the_model_and_flags_both_ends() {
+    let design = shipped("index-fingertip");
+    let (_, solved) = csv(&["solve", &design, "--indentation-mm", "0.3,1.0,2.4"]);
+    let rises: Vec<f64> = solved
+        .iter()
+        .map(|row| 1e3 * row[2].parse::<f64>().expect("a number"))
+        .collect();
+    let list = format!("{},{},{},1e6,-5", rises[0], rises[1], rises[2]);
+    let (header, rows) = csv(&["estimate", &design, "--pressure-rise-pa", &list]);
+    assert_eq!(header, "pressure_rise_pa,force_n,indentation_mm,status");
+    for (row, solved) in rows.iter().zip(&solved) {
+        near(&row[1], solved[3].parse().expect("a number"), 1.2e-3);
+        near(&row[2], solved[0].parse().expect("a number"), 1.2e-3);
+        assert_eq!(row[3], "ok");
+    }
+    assert!(rows[3][3].starts_with("warning: saturated"));
+    near(&rows[3][2], 2.5, 1e-3);
+    assert!(rows[4][3].starts_with("warning: negative"));
+}
+
+#[test]
+fn table_writes_four_files_and_the_same_ones_again() {
+    let folder = scratch("tables");
+    let run = |name: &str| {
+        let out = folder.join(name);
+        let (_, rows) = csv(&[
+            "table",
+            &shipped("skin-analogue"),
+            "--out",
+            out.to_str().expect("utf-8"),
+        ]);
+        assert_eq!(rows.len(), 4);
+        let mut files: Vec<_> = fs::read_dir(&out)
+            .expect("the folder")
+            .map(|entry| entry.expect("an entry").path())
+            .collect();
+        files.sort();
+        files
+            .iter()
+            .map(|file| {
+                let name = file.file_name().expect("a name").to_owned();
+                (name, fs::read(file).expect("the file"))
+            })
+            .collect::<Vec<_>>()
+    };
+    let first = run("first");
+    let names: Vec<_> = first
+        .iter()
+        .map(|(name, _)| name.to_str().expect("utf-8"))
+        .collect();
+    assert_eq!(
+        names,
+        ["certificate.toml", "tables.bin", "tables.csv", "tables.rs"]
+    );
+    assert_eq!(first, run("second"));
+}
+
+#[test]
+fn a_refused_table_leaves_nothing_behind() {
+    let folder = scratch("refused");
+    let file = folder.join("narrow.toml");
+    let text = fs::read_to_string(shipped("paper-prestretched"))
+        .expect("the design")
+        .replace("range_kpa = [0.0, 400.0]", "range_kpa = [0.0, 200.0]");
+    fs::write(&file, text).expect("written");
+    let out = folder.join("out");
+    let line = refusal(&[
+        "table",
+        file.to_str().expect("utf-8"),
+        "--out",
+        out.to_str().expect("utf-8"),
+    ]);
+    assert!(
+        line.contains("narrow.toml") && line.contains("kPa above transducer.range_kpa = [0, 200]"),
+        "{line}"
+    );
+    assert!(!out.exists());
+}
+
+#[test]
+fn an_indentation_beyond_the_limit_names_the_limit_and_gives_no_rows() {
+    let design = shipped("paper-prestretched");
+    let line = refusal(&["solve", &design, "--indentation-mm", "1.0,4.3"]);
+    assert!(
+        line.contains("4.3 mm is beyond the limit of 4.166107 mm"),
+        "{line}"
+    );
+}
+
+#[test]
+fn bad_input_is_one_line() {
+    let design = shipped("skin-analogue");
+    for (arguments, part) in [
+        (
+            &["rest", "no-such.toml"][..],
+            "no-such.toml: the design file cannot be read",
+        ),
+        (&["solve", &design][..], "--indentation-mm"),
+        (&["solve", &design, "--indentation-mm", "deep"][..], "'deep'"),
+        (&["solve", &design, "--indentation-mm", "nan"][..], "'nan'"),
+        (
+            &["solve", &design, "--indentation-mm", "-1"][..],
+            "must be a number of at least 0",
+        ),
+        (
+            &[
+                "solve",
+                &design,
+                "--indentation-mm",
+                "1",
+                "--tension-field",
+                "soft",
+            ][..],
+            "'soft'",
+        ),
+        (&["estimate", &design, "--pressure-rise-pa", "inf"][..], "'inf'"),
+        (&["rest", &design, "--format", "xml"][..], "'xml'"),
+        (&["press", &design][..], "'press'"),
+        (&[][..], "a subcommand is needed"),
+    ] {
+        let line = refusal(arguments);
+        assert!(line.starts_with("error: ") && line.contains(part), "{line}");
+    }
+}
+
+#[test]
+fn a_bad_design_names_file_line_and_key() {
+    let folder = scratch("bad");
+    let file = folder.join("thin.toml");
+    let text = fs::read_to_string(shipped("skin-analogue"))
+        .expect("the design")
+        .replace("thickness_mm = 1.0", "thickness_mm = -1.0");
+    fs::write(&file, text).expect("written");
+    for command in [
+        &["rest"][..],
+        &["solve", "--indentation-mm", "1"][..],
+        &["estimate", "--pressure-rise-pa", "1"][..],
+    ] {
+        let mut arguments = command.to_vec();
+        arguments.insert(1, file.to_str().expect("utf-8"));
+        let line = refusal(&arguments);
+        assert!(
+            line.contains("thin.toml:7: `membrane.thickness_mm` is -1.0: must be"),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn json_and_tables_are_printed_on_request() {
+    let design = shipped("skin-analogue");
+    let output = designer(&["rest", &design, "--format", "json"]);
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
+    assert!((value[0]["rest_pressure_kpa"].as_f64().expect("a number") - 8.269).abs() < 1e-3);
+    let output = designer(&["rest", &design, "--format", "table"]);
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.lines().count() == 2 && text.contains("8.269174"), "{text}");
+}
