@@ -28,12 +28,15 @@ pub struct Resolution {
     pub contact_elements: usize,
 }
 
+/// How much finer the mesh of the rest state is than that of a press. It is solved once, and the first indentations
+/// are small differences against its height.
+pub(crate) const REST_FINENESS: f64 = 3.0;
 /// Rounds of mesh and pole adjustment.
 const MAX_ROUNDS: usize = 12;
 /// A kink this close to a node is on it: misplaced by `d`, it costs `d^2`.
 const KINK_TOLERANCE: f64 = 1e-8;
 /// A mesh graded for a contact or a bend that differs by more than this factor is laid anew.
-const STALE_GRADING: f64 = 1.6;
+const STALE_GRADING: f64 = 1.4;
 /// Bend lengths beyond this do not shape the mesh.
 const LARGEST_BEND: f64 = 0.5;
 
@@ -174,7 +177,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         let pressed = contact_parameter > 0.0;
         let start = if pole == Pole::Slack { pole_parameter } else { 0.0 };
         let mut positions = [0.0; MAX_ELEMENTS + 1];
-        let mut density = self.resolution.density;
+        let mut density = self.resolution.density * if pressed { 1.0 } else { REST_FINENESS };
         let (contact_elements, free_elements) = loop {
             let mut count = 0;
             let mut take = |t: f64| {

@@ -16,6 +16,9 @@ use core::f64::consts::FRAC_PI_2;
 /// Most elements a mesh may have.
 pub const MAX_ELEMENTS: usize = 64;
 
+/// Shift of a node, over the spacing there, up to which two meshes count as nearly the same.
+const LARGEST_SHIFT: f64 = 0.1;
+
 /// What the membrane does at its pole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pole {
@@ -63,6 +66,23 @@ impl<const S: usize> Solution<S> {
         } else {
             0.0
         }
+    }
+
+    /// Whether the meshes differ so little (a moving kink) that values on them can be combined one by one.
+    pub fn has_nearly_the_mesh_of(&self, other: &Self) -> bool {
+        let count = self.elements() + 2;
+        self.pole == other.pole
+            && self.contact_elements == other.contact_elements
+            && self.free_elements == other.free_elements
+            && (0..count).all(|k| {
+                let neighbour = if k == 0 || k == self.contact_elements + 1 {
+                    k + 1
+                } else {
+                    k - 1
+                };
+                let spacing = (other.fractions[k] - other.fractions[neighbour]).abs();
+                (self.fractions[k] - other.fractions[k]).abs() <= LARGEST_SHIFT * spacing
+            })
     }
 
     /// State and a guess of the meridional stretch at `t`, by the collocation polynomials; a slack core is `[1, 0]`.
@@ -214,7 +234,7 @@ const NEXT_STEP: f64 = 1e-14;
 /// A step this small is rounding.
 const NEGLIGIBLE_STEP: f64 = 3e-13;
 /// Steps this small that no longer shrink are rounding, amplified by the condition of the problem.
-const LARGEST_ROUNDING: f64 = 1e-7;
+const LARGEST_ROUNDING: f64 = 2e-9;
 /// Largest relative change of a quantity in one damped step.
 const LARGEST_CHANGE: f64 = 0.3;
 

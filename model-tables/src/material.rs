@@ -158,3 +158,70 @@ impl Hyperelastic for Law {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAWS: [Law; 4] = [
+        Law::NeoHookean { c1: 3.0 },
+        Law::MooneyRivlin { c1: 2.0, c2: 0.7 },
+        Law::Yeoh {
+            c1: 1.0,
+            c2: -0.05,
+            c3: 0.02,
+        },
+        Law::Yeoh {
+            c1: 1.0,
+            c2: 0.3,
+            c3: 0.0,
+        },
+    ];
+    const STRETCHES: [(f64, f64); 5] = [(1.0, 1.0), (1.3, 0.9), (0.8, 1.7), (2.4, 2.1), (1.02, 1.01)];
+
+    /// Central difference of fourth order.
+    fn slope(of: impl Fn(f64) -> f64, at: f64) -> f64 {
+        let h = 1e-3;
+        (8.0 * (of(at + h) - of(at - h)) - (of(at + 2.0 * h) - of(at - 2.0 * h))) / (12.0 * h)
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_energy() {
+        for law in LAWS {
+            for (l1, l2) in STRETCHES {
+                let d = law.derivatives(l1, l2);
+                let check = |found: f64, expected: f64| {
+                    assert!(
+                        (found - expected).abs() < 1e-9 * (1.0 + expected.abs()),
+                        "{law:?} {l1} {l2}"
+                    );
+                };
+                check(d.w1, slope(|x| law.energy(x, l2), l1));
+                check(d.w2, slope(|x| law.energy(l1, x), l2));
+                check(d.w11, slope(|x| law.derivatives(x, l2).w1, l1));
+                check(d.w12, slope(|x| law.derivatives(l1, x).w1, l2));
+                check(d.w22, slope(|x| law.derivatives(l1, x).w2, l2));
+            }
+        }
+    }
+
+    #[test]
+    fn undeformed_state_is_free_of_energy_and_tension() {
+        for law in LAWS {
+            let d = law.derivatives(1.0, 1.0);
+            assert!(law.energy(1.0, 1.0).abs() < 1e-15 && d.w1.abs() < 1e-15 && d.w2.abs() < 1e-15);
+            // Plane stress, incompressible: W_11 = 4/3 E = 4 mu.
+            assert!((d.w11 - 4.0 * law.shear_modulus()).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn isotropic_laws_are_symmetric() {
+        for law in LAWS {
+            let (a, b) = (law.derivatives(1.4, 0.9), law.derivatives(0.9, 1.4));
+            assert!(
+                (a.w1 - b.w2).abs() < 1e-13 && (a.w11 - b.w22).abs() < 1e-12 && (a.w12 - b.w12).abs() < 1e-13
+            );
+        }
+    }
+}

@@ -170,6 +170,8 @@ impl fmt::Display for Failure {
 
 /// States kept for prediction: cubic extrapolation.
 const HISTORY: usize = 4;
+/// Largest sum of the weights of an extrapolation.
+const LARGEST_WEIGHT: f64 = 30.0;
 /// First indentation on the way from rest, over the height.
 const FIRST_INDENTATION: f64 = 1e-4;
 /// Largest factor between indentations on the way up.
@@ -340,59 +342,59 @@ impl Press {
         }
         let height = self.rest.solution.height;
         let edge = self.edge();
-        let mut step = LARGEST_STEP * height;
+        let scale = self.scale;
+        let unit = scale.length;
+        let end = |indentation: f64, pressure: f64, ends_by: EndsBy| Limit {
+            indentation: indentation * unit,
+            pressure: pressure * scale.pressure,
+            force: pressure * PI * edge * edge * scale.tension * unit,
+            ends_by,
+        };
         let mut at = self.history[HISTORY - 1]
             .as_ref()
             .map_or(0.0, |g| height - g.solution.height);
+        let mut step = LARGEST_STEP * height;
         let limit = loop {
-            if let Some(latest) = &self.history[HISTORY - 1] {
-                // Near enough to jump to the edge?
-                let solution = &latest.solution;
-                let drained = self.compliance > 0.0 && at > 0.98 * height;
-                if drained {
-                    let pressure =
-                        self.rest.solution.parameters[PRESSURE] + self.rest.solution.volume / self.compliance;
-                    break Limit {
-                        indentation: height * self.scale.length,
-                        pressure: pressure * self.scale.pressure,
-                        force: pressure * PI * edge * edge * self.scale.tension * self.scale.length,
-                        ends_by: EndsBy::FluidDrained,
-                    };
+            let next = at + step;
+            if next >= height {
+                // Nothing but the base is left under the plate.
+                let rest = &self.rest.solution;
+                let pressure = rest.parameters[PRESSURE] + rest.volume / self.compliance;
+                break end(height, pressure, EndsBy::FluidDrained);
+            }
+            let stop = match self.reach(next) {
+                Ok(()) => {
+                    at = next;
+                    continue;
                 }
-                if solution.parameters[CONTACT_RADIUS] > 0.6 * edge {
-                    let closure = self.closure(PressControl::ContactRadius(edge));
-                    if let Ok(end) = self.solver.settle(latest.clone(), &closure) {
-                        let [_, w] = end.solution.nodes[end.solution.elements()];
-                        let indentation = height - end.solution.height;
-                        if w < 0.0 && indentation >= at {
-                            let pressure = end.solution.parameters[PRESSURE];
-                            break Limit {
-                                indentation: indentation * self.scale.length,
-                                pressure: pressure * self.scale.pressure,
-                                force: pressure * PI * edge * edge * self.scale.tension * self.scale.length,
-                                ends_by: EndsBy::BulgeTouchesBase,
-                            };
-                        }
-                    }
+                Err(stop) => stop,
+            };
+            // The edge lies between: land on it.
+            let closure = self.closure(PressControl::ContactRadius(edge));
+            if let (Stop::BeyondLimit, Some(latest)) = (stop, &self.history[HISTORY - 1])
+                && let Ok(landed) = self.solver.settle(latest.clone(), &closure)
+            {
+                let [_, w] = landed.solution.nodes[landed.solution.elements()];
+                let indentation = height - landed.solution.height;
+                if w < 0.0 && indentation >= at && indentation <= next {
+                    break end(
+                        indentation,
+                        landed.solution.parameters[PRESSURE],
+                        EndsBy::BulgeTouchesBase,
+                    );
                 }
             }
-            let next = (at + step).min(height * (1.0 - 1e-6));
-            match self.reach(next) {
-                Ok(()) => at = next,
-                Err(stop) => {
-                    step *= 0.5;
-                    if step < SMALLEST_STEP * height {
-                        let failure = match stop {
-                            Stop::Failed { failure, .. } => failure,
-                            Stop::BeyondLimit => Failure::Unsettled,
-                        };
-                        return Err(ModelError::PressUnsolved {
-                            asked: next * self.scale.length,
-                            reached: at * self.scale.length,
-                            failure,
-                        });
-                    }
-                }
+            step *= 0.5;
+            if step < SMALLEST_STEP * height {
+                let failure = match stop {
+                    Stop::Failed { failure, .. } => failure,
+                    Stop::BeyondLimit => Failure::Unsettled,
+                };
+                return Err(ModelError::PressUnsolved {
+                    asked: next * unit,
+                    reached: at * unit,
+                    failure,
+                });
             }
         };
         self.limit = Some(limit);
@@ -535,10 +537,7 @@ impl Press {
     fn predict(&self, indentation: f64) -> Graded<STAGES> {
         let height = self.rest.solution.height;
         let latest = self.latest();
-        let alike = |graded: &Graded<STAGES>| {
-            let (a, b) = (&graded.solution, &latest.solution);
-            a.pole == b.pole && a.contact_elements == b.contact_elements && a.free_elements == b.free_elements
-        };
+        let alike = |graded: &Graded<STAGES>| graded.solution.has_nearly_the_mesh_of(&latest.solution);
         let mut places = [0.0; HISTORY];
         let mut states: [Option<&Solution<STAGES>>; HISTORY] = [None; HISTORY];
         let mut count = 0;
@@ -558,13 +557,20 @@ impl Press {
         }
         let target = libm::log(indentation);
         let mut guess = latest.clone();
-        let mut weights = [0.0; HISTORY];
-        for i in 0..count {
-            weights[i] = (0..count)
-                .filter(|&j| j != i)
-                .map(|j| (target - places[j]) / (places[i] - places[j]))
-                .product();
-        }
+        let weights = loop {
+            let mut weights = [0.0; HISTORY];
+            for i in 0..count {
+                weights[i] = (0..count)
+                    .filter(|&j| j != i)
+                    .map(|j| (target - places[j]) / (places[i] - places[j]))
+                    .product();
+            }
+            // Far from states that lie close together, fewer of them say more.
+            if count == 1 || weights.iter().map(|w: &f64| w.abs()).sum::<f64>() < LARGEST_WEIGHT {
+                break weights;
+            }
+            count -= 1;
+        };
         let blend = |of: &dyn Fn(&Solution<STAGES>) -> f64| -> f64 {
             states[..count]
                 .iter()

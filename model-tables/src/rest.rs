@@ -1,6 +1,6 @@
 //! The rest state: inflated, not pressed.
 
-use crate::adapt::{Adaptive, Failure, Graded};
+use crate::adapt::{Adaptive, Failure, Graded, REST_FINENESS};
 use crate::equilibrium::{Closure, MAX_ELEMENTS, Outcome, Pole, RestControl, Solution};
 use crate::material::Hyperelastic;
 use crate::membrane::{POLE, PRESSURE, TensionField};
@@ -52,13 +52,18 @@ pub enum RestFailure {
     Solver(Failure),
 }
 
-/// How much finer the mesh of the rest state is than that of a press. It is solved once, and the first
-/// indentations are small differences against its height.
-const REST_FINENESS: f64 = 3.0;
 /// Largest pole stretch at which a rest state of given pressure, radius or height is looked for.
 pub const LARGEST_POLE_STRETCH: f64 = 6.0;
 /// First step of the scan, in pole stretch over 1.
 const FIRST_STEP: f64 = 2e-3;
+/// The golden section.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Pole stretch within which an extreme is located; the quantity is flat there.
+const EXTREME_TOLERANCE: f64 = 1e-6;
+/// A root whose last correction is this small, relative to the pole stretch, is found.
+const ROOT_TOLERANCE: f64 = 1e-14;
+/// Corrections of a root at most.
+const MAX_ROOT_STEPS: usize = 60;
 /// Growth of the scan's steps.
 const STEP_GROWTH: f64 = 1.15;
 
@@ -153,56 +158,31 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     ///
     /// None of the three is one-to-one. The pole stretch is scanned upward from 1; of two states of one pressure the
     /// less stretched is taken (inflation reaches it first), of two states of one radius or height the more
-    /// stretched (the other lies where the membrane still shrinks as it is inflated).
+    /// stretched (the other lies where the membrane still shrinks as it is inflated). Roots are found in the pole
+    /// stretch, which stays well posed at a limit point.
     ///
     /// # Errors
     /// [`RestFailure`] with the reachable values if there is no such state.
     pub fn rest_by(&mut self, quantity: Quantity, value: f64) -> Result<(Graded<S>, Branch), RestFailure> {
-        let of = |state: &Graded<S>| match quantity {
-            Quantity::Pressure => state.solution.parameters[PRESSURE],
-            Quantity::EquatorRadius => state.solution.nodes[state.solution.elements()][0],
-            Quantity::Height => state.solution.height,
-        };
-        let control = match quantity {
-            Quantity::Pressure => RestControl::Pressure(value),
-            Quantity::EquatorRadius => RestControl::EquatorStretch(value),
-            Quantity::Height => RestControl::Height(value),
+        let mut scan = Scan {
+            quantity,
+            value,
+            before: [None, None],
+            roots: [None, None],
         };
         let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-        let mut crossings: [Option<Graded<S>>; 2] = [None, None];
-        let mut before: Option<Graded<S>> = None;
         let mut step = FIRST_STEP;
         let mut pole_stretch = 1.0 + FIRST_STEP;
-        while pole_stretch <= LARGEST_POLE_STRETCH {
-            let state = match &before {
-                None => self.rest_by_pole_stretch(pole_stretch),
-                Some(from) => {
-                    let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
-                    self.settle(from.clone(), &closure)
-                        .or_else(|_| self.rest_by_pole_stretch(pole_stretch))
-                }
+        while pole_stretch <= LARGEST_POLE_STRETCH && scan.roots[1].is_none() {
+            let Ok(state) = self.rest_near(scan.before[1].as_ref(), pole_stretch) else {
+                break;
             };
-            let Ok(state) = state else { break };
-            let (low, high) = (before.as_ref().map_or(f64::NAN, of), of(&state));
-            let below_first = before.is_none() && quantity == Quantity::Pressure && value <= high;
-            if below_first || (low <= value && value < high) || (high < value && value <= low) {
-                let nearer = match before {
-                    Some(from) if (low - value).abs() < (high - value).abs() => from,
-                    _ => state.clone(),
-                };
-                let slot = usize::from(crossings[0].is_some());
-                crossings[slot] = self.settle(nearer, &Closure::Rest(control)).ok();
-                if slot == 1 && crossings[1].is_some() {
-                    break;
-                }
-            }
-            (least, greatest) = (least.min(high), greatest.max(high));
-            before = Some(state);
+            scan.visit(self, state, &mut least, &mut greatest);
             pole_stretch += step;
             step *= STEP_GROWTH;
         }
         let stretch = |state: &Graded<S>| state.solution.parameters[POLE];
-        match (crossings, quantity) {
+        match (scan.roots, quantity) {
             ([None, _], _) => Err(RestFailure::OutOfReach {
                 quantity,
                 least,
@@ -218,5 +198,156 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                 Ok((upper, Branch::Upper { other }))
             }
         }
+    }
+
+    /// The rest state of a pole stretch, from a neighbour if there is one.
+    fn rest_near(&mut self, from: Option<&Graded<S>>, pole_stretch: f64) -> Result<Graded<S>, Failure> {
+        let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
+        match from {
+            Some(from) => self
+                .settle(from.clone(), &closure)
+                .or_else(|_| self.rest_by_pole_stretch(pole_stretch)),
+            None => self.rest_by_pole_stretch(pole_stretch),
+        }
+    }
+}
+
+/// A scan of the pole stretch for a value of a quantity.
+struct Scan<const S: usize> {
+    quantity: Quantity,
+    value: f64,
+    /// The last two states, newest last.
+    before: [Option<Graded<S>>; 2],
+    roots: [Option<Graded<S>>; 2],
+}
+
+impl<const S: usize> Scan<S> {
+    /// The quantity of a state, less the value looked for.
+    fn excess(&self, state: &Graded<S>) -> f64 {
+        let solution = &state.solution;
+        let found = match self.quantity {
+            Quantity::Pressure => solution.parameters[PRESSURE],
+            Quantity::EquatorRadius => solution.nodes[solution.elements()][0],
+            Quantity::Height => solution.height,
+        };
+        found - self.value
+    }
+
+    /// Takes the next state of the scan: looks for a crossing, or an extreme between samples that crosses.
+    fn visit<L: Hyperelastic>(
+        &mut self,
+        solver: &mut Adaptive<L, S>,
+        state: Graded<S>,
+        least: &mut f64,
+        greatest: &mut f64,
+    ) {
+        let excess = self.excess(&state);
+        let mut note = |excess: f64, value: f64| {
+            *least = least.min(excess + value);
+            *greatest = greatest.max(excess + value);
+        };
+        note(excess, self.value);
+        if let [Some(oldest), Some(middle)] = &self.before {
+            let (first, second) = (self.excess(oldest), self.excess(middle));
+            let same_side = first * second > 0.0 && second * excess > 0.0;
+            let turns = (second - first) * (excess - second) < 0.0;
+            if same_side && turns && (second - first) * second < 0.0 {
+                // The extreme points towards the value: does it reach it?
+                let (oldest, middle) = (oldest.clone(), middle.clone());
+                if let Some(extreme) = self.extreme(solver, &oldest, &state) {
+                    let reached = self.excess(&extreme);
+                    note(reached, self.value);
+                    if reached * second <= 0.0 {
+                        self.root_between(solver, oldest, extreme.clone());
+                        self.root_between(solver, extreme, state.clone());
+                        self.before = [Some(middle), Some(state)];
+                        return;
+                    }
+                }
+            }
+        }
+        match &self.before[1] {
+            Some(middle) if self.excess(middle) * excess <= 0.0 => {
+                let middle = middle.clone();
+                self.root_between(solver, middle, state.clone());
+            }
+            // Below the first stretch looked at, pressure falls to nothing.
+            None if self.quantity == Quantity::Pressure && excess >= 0.0 => {
+                let closure = Closure::Rest(RestControl::Pressure(self.value));
+                if let Ok(root) = solver.settle(state.clone(), &closure) {
+                    self.roots[0] = Some(root);
+                }
+            }
+            _ => {}
+        }
+        self.before.swap(0, 1);
+        self.before[1] = Some(state);
+    }
+
+    /// Extreme of the quantity between two states, by golden section in the pole stretch.
+    fn extreme<L: Hyperelastic>(
+        &self,
+        solver: &mut Adaptive<L, S>,
+        from: &Graded<S>,
+        to: &Graded<S>,
+    ) -> Option<Graded<S>> {
+        let sign = self.excess(from).signum();
+        let (mut left, mut right) = (from.solution.parameters[POLE], to.solution.parameters[POLE]);
+        let mut best: Option<Graded<S>> = None;
+        let mut take = |solver: &mut Adaptive<L, S>, stretch: f64| {
+            let state = solver.rest_near(Some(from), stretch).ok()?;
+            let depth = sign * self.excess(&state);
+            if best.as_ref().is_none_or(|b| depth < sign * self.excess(b)) {
+                best = Some(state);
+            }
+            Some(depth)
+        };
+        let (mut a, mut b) = (right - GOLDEN * (right - left), left + GOLDEN * (right - left));
+        let (mut of_a, mut of_b) = (take(solver, a)?, take(solver, b)?);
+        while right - left > EXTREME_TOLERANCE {
+            if of_a < of_b {
+                (right, b, of_b) = (b, a, of_a);
+                a = right - GOLDEN * (right - left);
+                of_a = take(solver, a)?;
+            } else {
+                (left, a, of_a) = (a, b, of_b);
+                b = left + GOLDEN * (right - left);
+                of_b = take(solver, b)?;
+            }
+        }
+        best
+    }
+
+    /// Root between two states of opposite excess, by the Illinois method in the pole stretch.
+    fn root_between<L: Hyperelastic>(
+        &mut self,
+        solver: &mut Adaptive<L, S>,
+        mut low: Graded<S>,
+        mut high: Graded<S>,
+    ) {
+        let stretch = |state: &Graded<S>| state.solution.parameters[POLE];
+        let (mut of_low, mut of_high) = (self.excess(&low), self.excess(&high));
+        for _ in 0..MAX_ROOT_STEPS {
+            let (a, b) = (stretch(&low), stretch(&high));
+            let next = (a * of_high - b * of_low) / (of_high - of_low);
+            let Ok(state) = solver.rest_near(Some(&low), next) else {
+                return;
+            };
+            let of_next = self.excess(&state);
+            let arrived = of_next.abs() < 1e-15 * self.value.abs() || (b - a).abs() < 1e-14 * b;
+            let moved = (next - a).abs().min((next - b).abs());
+            if of_next * of_high <= 0.0 {
+                (low, of_low) = (core::mem::replace(&mut high, state), of_high);
+            } else {
+                of_low *= 0.5;
+                high = state;
+            }
+            of_high = of_next;
+            if arrived || moved < ROOT_TOLERANCE * b {
+                break;
+            }
+        }
+        let slot = usize::from(self.roots[0].is_some());
+        self.roots[slot] = Some(high);
     }
 }

@@ -178,3 +178,69 @@ pub fn solve(mut rows: [Row; UNKNOWNS]) -> Option<[f64; UNKNOWNS]> {
     }
     Some(solution)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain with one solution growing and one decaying by `1e4` an element: shooting through eight elements
+    /// would lose 32 digits.
+    #[test]
+    fn growing_and_decaying_solutions_are_kept_apart() {
+        const ELEMENTS: usize = 8;
+        // y_(k+1) = diag(g, 1/g) y_k + (1, 1) p_1; y_0 = (p_0, 2) in its first component, last node (3, .).
+        let g = 1e4;
+        let mut element = [[0.0; COLUMNS]; STATES];
+        element[0][0] = g;
+        element[1][1] = 1.0 / g;
+        element[0][STATES + 1] = 1.0;
+        element[1][STATES + 1] = 1.0;
+        let mut chain = Chain::<ELEMENTS>::new([[1.0, 0.0, 0.0, 0.0], [0.0; 4]]);
+        // Border 0: the sum of all second components, less 5.
+        for _ in 0..ELEMENTS {
+            let mut row = [0.0; UNKNOWNS + 1];
+            row[1] = 1.0;
+            chain.add_to_border(0, &row);
+            chain.advance(&element).expect("regular");
+        }
+        let [a, b] = chain.link();
+        let unit = |i: usize, constant: f64| {
+            let mut row = [0.0; UNKNOWNS + 1];
+            row[i] = 1.0;
+            row[UNKNOWNS] = constant;
+            row
+        };
+        let mut border = chain.borders[0];
+        border[UNKNOWNS] -= 5.0;
+        let solution = solve([
+            a,
+            b,
+            unit(0, -3.0),
+            border,
+            unit(STATES + 2, 0.0),
+            unit(STATES + 3, 0.0),
+        ])
+        .expect("regular");
+        let mut nodes = [[0.0; STATES]; ELEMENTS + 1];
+        chain.back_substitute(&solution, |k, node| nodes[k] = node);
+        let p = solution[STATES + 1];
+        assert!((nodes[ELEMENTS][0] - 3.0).abs() < 1e-14);
+        assert!((nodes[..ELEMENTS].iter().map(|n| n[1]).sum::<f64>() - 5.0).abs() < 1e-12);
+        for k in 0..ELEMENTS {
+            // Backward stable: the recurrence holds relative to its largest term.
+            let first = nodes[k + 1][0] - g * nodes[k][0] - p;
+            assert!(
+                first.abs() < 1e-12 * (1.0 + (g * nodes[k][0]).abs()),
+                "node {k}: {first:e}"
+            );
+            assert!((nodes[k + 1][1] - nodes[k][1] / g - p).abs() < 1e-13, "node {k}");
+        }
+    }
+
+    #[test]
+    fn singular_equations_are_refused() {
+        assert!(solve([[0.0; UNKNOWNS + 1]; UNKNOWNS]).is_none());
+        assert!(solve([[1.0; UNKNOWNS + 1]; UNKNOWNS]).is_none());
+        assert!(solve([[f64::NAN; UNKNOWNS + 1]; UNKNOWNS]).is_none());
+    }
+}
