@@ -130,27 +130,32 @@ impl<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize>
     #[allow(clippy::inline_always)] // so that the layout folds into the code of the one call site
     pub fn lookup(&self, rise: PressureRise) -> Reading {
         let place = self.layout.place(rise);
-        // The index is in range for every input of a generated table; the fallback keeps panics out.
-        let segment = self
-            .segments
-            .get(place.index)
-            .unwrap_or(&self.segments[SEGMENTS - 1]);
+        // The index is in range for every input of a generated table; the limit keeps panics out.
+        let segment = &self.segments[place.index.min(SEGMENTS - 1)];
         self.layout.reading(place, &segment.force, &segment.indentation)
     }
 }
 
-/// `c0 + u (c1 + u (c2 + ...))` with `u = t / 2^32`, every product rounded down.
+/// `c0 + u (c1 + u (c2 + u c3))` with `u = t / 2^32`, every product rounded down; up to four coefficients.
 ///
 /// Generated coefficients stay below 2^30 in magnitude and `|u| <= 1/2`, so no sum leaves 32 bits.
 #[inline(always)]
 #[allow(clippy::inline_always)] // part of the lookup
 fn horner(coefficients: &[i32], t: i32) -> i32 {
+    let coefficient = |power: usize| coefficients.get(power).copied().unwrap_or(0);
+    let times_u = |sum: i32| ((i64::from(sum) * i64::from(t)) >> 32) as i32;
+    // Written out, as a loop would stay one where the compiler is told to save space.
     let mut sum = 0;
-    for &coefficient in coefficients.iter().rev() {
-        let product = (i64::from(sum) * i64::from(t)) >> 32;
-        sum = coefficient.wrapping_add(product as i32);
+    if coefficients.len() > 3 {
+        sum = coefficient(3);
     }
-    sum
+    if coefficients.len() > 2 {
+        sum = coefficient(2).wrapping_add(times_u(sum));
+    }
+    if coefficients.len() > 1 {
+        sum = coefficient(1).wrapping_add(times_u(sum));
+    }
+    coefficient(0).wrapping_add(times_u(sum))
 }
 
 #[cfg(test)]

@@ -38,6 +38,8 @@ pub struct Errors {
     pub equal_steps: u64,
     /// Steps up by one count where the output falls.
     pub falling_steps: u64,
+    /// Largest step up by one count: what a count of input is worth where the output is steepest.
+    pub largest_step: i32,
     /// Smallest and largest output.
     pub range: [i32; 2],
 }
@@ -129,6 +131,7 @@ struct Tally {
     previous: i32,
     equal: u64,
     falling: u64,
+    largest_step: i32,
     range: [i32; 2],
 }
 
@@ -169,9 +172,11 @@ impl Tally {
             all: Sums::default(),
             reading: Sums::default(),
             below: 0.0,
-            previous: i32::MIN,
+            // Zero input reads zero, or the certificate does not hold.
+            previous: 0,
             equal: 0,
             falling: 0,
+            largest_step: 0,
             range: [i32::MAX, i32::MIN],
         }
     }
@@ -185,8 +190,10 @@ impl Tally {
         } else {
             self.below = self.below.max(error.abs());
         }
-        self.equal += u64::from(got == self.previous);
-        self.falling += u64::from(got < self.previous);
+        let step = got.saturating_sub(self.previous);
+        self.equal += u64::from(step == 0 && self.all.count > 1);
+        self.falling += u64::from(step < 0);
+        self.largest_step = self.largest_step.max(step);
         self.previous = got;
         self.range = [self.range[0].min(got), self.range[1].max(got)];
     }
@@ -201,6 +208,7 @@ impl Tally {
             allowed_percent,
             equal_steps: self.equal,
             falling_steps: self.falling,
+            largest_step: self.largest_step,
             range: self.range,
         }
     }

@@ -192,7 +192,25 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     writeln!(out, "force_coefficients = {}", tables.force_order)?;
     writeln!(out, "indentation_coefficients = {}", tables.indentation_order)?;
     write_errors("force", "un", &certificate.force, out)?;
-    write_errors("indentation", "nm", &certificate.indentation, out)
+    write_errors("indentation", "nm", &certificate.indentation, out)?;
+    write_transducer(generated, out)
+}
+
+/// What the transducer leaves undecided, beside which the errors of the tables are to be seen.
+fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
+    let tables = &generated.certified.tables;
+    let transducer = &generated.transducer;
+    let bits = tables.layout.pressure_fraction_bits;
+    let touch = tables.lookup(PressureRise::from_pascals(transducer.resolution_pa, bits));
+    writeln!(
+        out,
+        "\n[transducer] # at first contact, where the indentation is steepest, it cannot tell less than this\n\
+         resolution_pa = {:?}\n\
+         noise_pa = {:?}\n\
+         resolution_moves_force_un = {}\n\
+         resolution_moves_indentation_nm = {}",
+        transducer.resolution_pa, transducer.noise_pa, touch.force.0, touch.indentation.0
+    )
 }
 
 fn write_errors(name: &str, unit: &str, errors: &Errors, out: &mut String) -> fmt::Result {
@@ -211,6 +229,7 @@ fn write_errors(name: &str, unit: &str, errors: &Errors, out: &mut String) -> fm
          mean_percent_of_full_scale = {:.6}\n\
          falling_steps = {}\n\
          equal_steps = {}\n\
+         largest_step_{unit} = {}\n\
          smallest_{unit} = {}\n\
          largest_{unit} = {}",
         errors.full_scale,
@@ -225,6 +244,7 @@ fn write_errors(name: &str, unit: &str, errors: &Errors, out: &mut String) -> fm
         errors.of_full_scale.mean,
         errors.falling_steps,
         errors.equal_steps,
+        errors.largest_step,
         errors.range[0],
         errors.range[1],
     )

@@ -1,5 +1,6 @@
 use super::*;
-use crate::generate::tables as make_tables;
+use crate::generate::{OwnedTables, tables as make_tables};
+use crate::table::{Reading, Segment, Tables};
 use crate::units::PressureRise;
 
 fn shipped(name: &str) -> DesignFile {
@@ -50,6 +51,62 @@ fn tables_of_the_shipped_designs_agree_with_fresh_states_of_the_model() {
             }
         }
     }
+}
+
+/// The tables as the chip holds them, if they have this shape.
+fn fixed<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize>(
+    tables: &OwnedTables,
+) -> Option<Tables<SEGMENTS, FORCE, INDENTATION>> {
+    let segments: Vec<_> = (0..tables.segments())
+        .map(|index| {
+            let (force, indentation) = tables.segment(index);
+            Some(Segment {
+                force: force.try_into().ok()?,
+                indentation: indentation.try_into().ok()?,
+            })
+        })
+        .collect::<Option<_>>()?;
+    Some(Tables {
+        layout: tables.layout,
+        segments: segments.try_into().ok()?,
+    })
+}
+
+#[test]
+fn the_chip_reads_every_input_as_the_generator_does() {
+    let generated = from_design(shipped("skin-analogue")).expect("tables");
+    let tables = &generated.certified.tables;
+    let same = |lookup: &dyn Fn(PressureRise) -> Reading| {
+        (-1000..=tables.layout.maximum + 1000)
+            .map(PressureRise)
+            .all(|rise| lookup(rise) == tables.lookup(rise))
+    };
+    // One arm a number of segments, so that a change of the generator need not change the test.
+    macro_rules! compare {
+        ($($segments:literal)*) => {
+            $(if let Some(fixed) = fixed::<$segments, 3, 4>(tables) { Some(same(&|rise| fixed.lookup(rise))) } else)*
+            { None }
+        };
+    }
+    assert_eq!(compare!(6 7 8 9 10 11 12 13 14 15 16), Some(true));
+}
+
+#[test]
+fn the_certificate_is_toml_and_states_what_was_checked() {
+    let generated = from_design(shipped("skin-analogue")).expect("tables");
+    let text = generated.certificate();
+    let table: toml::de::DeTable<'_> = toml::de::DeTable::parse(&text).expect("TOML").into_inner();
+    for section in ["layout", "force", "indentation", "transducer"] {
+        assert!(
+            table.get(section).is_some_and(|value| value.get_ref().is_table()),
+            "{section}"
+        );
+    }
+    assert!(text.contains(&format!(
+        "inputs_checked = {}",
+        generated.certified.tables.layout.maximum + 1
+    )));
+    assert!(text.contains("falling_steps = 0"));
 }
 
 #[test]
