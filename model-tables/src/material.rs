@@ -57,7 +57,38 @@ pub enum Law {
     },
 }
 
-/// `I1`, `I2` and their derivatives at the stretches `l1, l2`.
+/// A law in other units: every energy multiplied by `factor`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scaled<L> {
+    /// The law.
+    pub law: L,
+    /// What its energies are multiplied by.
+    pub factor: f64,
+}
+
+impl<L: Hyperelastic> Hyperelastic for Scaled<L> {
+    fn energy(&self, l1: f64, l2: f64) -> f64 {
+        self.factor * self.law.energy(l1, l2)
+    }
+
+    #[inline]
+    fn derivatives(&self, l1: f64, l2: f64) -> Derivatives {
+        let d = self.law.derivatives(l1, l2);
+        Derivatives {
+            w1: self.factor * d.w1,
+            w2: self.factor * d.w2,
+            w11: self.factor * d.w11,
+            w12: self.factor * d.w12,
+            w22: self.factor * d.w22,
+        }
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        self.factor * self.law.shear_modulus()
+    }
+}
+
+/// `I1` and its derivatives at the stretches `l1, l2`.
 struct Invariants {
     i1: f64,
     i1_1: f64,
@@ -79,25 +110,6 @@ impl Invariants {
             i1_11: 2.0 + 6.0 * l3_squared * a * a,
             i1_12: 4.0 * l3_squared * l3,
             i1_22: 2.0 + 6.0 * l3_squared * b * b,
-        }
-    }
-}
-
-impl Law {
-    /// The same law with every constant multiplied by `factor`.
-    #[must_use]
-    pub fn scaled(self, factor: f64) -> Self {
-        match self {
-            Self::NeoHookean { c1 } => Self::NeoHookean { c1: c1 * factor },
-            Self::MooneyRivlin { c1, c2 } => Self::MooneyRivlin {
-                c1: c1 * factor,
-                c2: c2 * factor,
-            },
-            Self::Yeoh { c1, c2, c3 } => Self::Yeoh {
-                c1: c1 * factor,
-                c2: c2 * factor,
-                c3: c3 * factor,
-            },
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Pressing the fingertip: states at asked indentations, the limit, and the curve between.
 
 use crate::adapt::{Adaptive, Failure, Graded, Resolution};
+use crate::design::Membrane as Dimensions;
 use crate::design::{Design, RestBy};
 use crate::equilibrium::{Closure, Outcome, Pole, PressControl, Solution};
-use crate::material::{Hyperelastic, Law};
+use crate::material::{Hyperelastic, Law, Scaled};
 use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, Membrane, POLE, PRESSURE, TensionField};
 use crate::rest::{Branch, Quantity, RestFailure};
 use crate::state::{self, MeridianPoint, PressedState, Scale, Shape};
@@ -183,52 +184,75 @@ const SMALLEST_STEP: f64 = 1e-4;
 /// Contact radius over edge radius, minus one, that counts as rounding.
 const EDGE_ROUNDING: f64 = 1e-10;
 
-/// A fingertip at rest, ready to be pressed.
+/// A fingertip at rest, ready to be pressed: of the law `L`, solved with `S` Gauss points an element.
 #[derive(Clone, Debug)]
-pub struct Press {
-    solver: Adaptive<Law, STAGES>,
+pub struct Press<L = Law, const S: usize = STAGES> {
+    solver: Adaptive<Scaled<L>, S>,
     scale: Scale,
     compliance: f64,
-    rest: Graded<STAGES>,
+    rest: Graded<S>,
     rest_shape: Shape,
     branch: Branch,
     /// The latest states, newest last.
-    history: [Option<Graded<STAGES>>; HISTORY],
+    history: [Option<Graded<S>>; HISTORY],
     limit: Option<Limit>,
 }
 
 impl Press {
-    /// Inflates a design to its rest state.
+    /// Inflates a design to its rest state, on the mesh of the full model.
     ///
     /// # Errors
     /// [`ModelError::NoRestState`] and [`ModelError::RestUnsolved`].
     pub fn new(design: &Design, tension_field: TensionField) -> Result<Self, ModelError> {
         Self::with_resolution(design, tension_field, FULL)
     }
+}
 
-    /// The same on a mesh of another resolution.
+impl<const S: usize> Press<Law, S> {
+    /// Inflates a design to its rest state, on a mesh of a given resolution.
     ///
     /// # Errors
-    /// As [`Press::new`].
-    #[expect(
-        clippy::large_stack_arrays,
-        reason = "no allocation: the states live in the value itself"
-    )]
+    /// [`ModelError::NoRestState`] and [`ModelError::RestUnsolved`].
     pub fn with_resolution(
         design: &Design,
         tension_field: TensionField,
         resolution: Resolution,
     ) -> Result<Self, ModelError> {
-        let dimensions = design.membrane;
-        let modulus = design.law.shear_modulus();
-        let scale = Scale::new(&dimensions, modulus);
+        let Design {
+            membrane,
+            law,
+            rest,
+            compliance,
+        } = design;
+        Self::inflate(membrane, *law, *rest, *compliance, tension_field, resolution)
+    }
+}
+
+impl<L: Hyperelastic, const S: usize> Press<L, S> {
+    /// Inflates a membrane of any law to its rest state; `compliance` in cubic metres per pascal.
+    ///
+    /// # Errors
+    /// [`ModelError::NoRestState`] and [`ModelError::RestUnsolved`].
+    pub fn inflate(
+        dimensions: &Dimensions,
+        law: L,
+        rest: RestBy,
+        compliance: f64,
+        tension_field: TensionField,
+        resolution: Resolution,
+    ) -> Result<Self, ModelError> {
+        let modulus = law.shear_modulus();
+        let scale = Scale::new(dimensions, modulus);
         let membrane = Membrane {
             aspect: dimensions.axial_semi_axis / dimensions.radial_semi_axis,
-            law: design.law.scaled(1.0 / modulus),
+            law: Scaled {
+                law,
+                factor: 1.0 / modulus,
+            },
             tension_field,
         };
         let mut solver = Adaptive::new(membrane, resolution);
-        let by = |solver: &mut Adaptive<Law, STAGES>, quantity, asked, unit: f64| {
+        let by = |solver: &mut Adaptive<Scaled<L>, S>, quantity, asked, unit: f64| {
             solver
                 .rest_by(quantity, asked / unit)
                 .map_err(|failure| match failure {
@@ -241,7 +265,7 @@ impl Press {
                     RestFailure::Solver(failure) => ModelError::RestUnsolved { failure },
                 })
         };
-        let (rest, branch) = match design.rest {
+        let (rest, branch) = match rest {
             RestBy::PoleStretch(stretch) => {
                 let rest = solver
                     .rest_by_pole_stretch(stretch)
@@ -256,7 +280,7 @@ impl Press {
         Ok(Self {
             solver,
             scale,
-            compliance: design.compliance * scale.pressure / scale.volume(),
+            compliance: compliance * scale.pressure / scale.volume(),
             rest,
             rest_shape,
             branch,
@@ -406,7 +430,7 @@ impl Press {
         self.rest.solution.nodes[self.rest.solution.elements()][0]
     }
 
-    fn latest(&self) -> &Graded<STAGES> {
+    fn latest(&self) -> &Graded<S> {
         self.history[HISTORY - 1].as_ref().unwrap_or(&self.rest)
     }
 
@@ -469,7 +493,7 @@ impl Press {
     }
 
     /// One solve; an admissible result becomes the latest state.
-    fn attempt(&mut self, guess: Graded<STAGES>, indentation: f64) -> Result<(), Stop> {
+    fn attempt(&mut self, guess: Graded<S>, indentation: f64) -> Result<(), Stop> {
         let closure = self.closure(PressControl::Height(self.rest.solution.height - indentation));
         let state = self
             .solver
@@ -490,7 +514,7 @@ impl Press {
     ///
     /// `H = (P0 r^2 / 2 T0) ln(K / r)`, with the edge radius for the design's length `K`; under the plate the pole's
     /// state, outside the rest state with the plate's share taken off the vertical balance.
-    fn first_contact(&self, indentation: f64) -> Graded<STAGES> {
+    fn first_contact(&self, indentation: f64) -> Graded<S> {
         let rest = &self.rest.solution;
         let [pole_stretch, pressure, ..] = rest.parameters;
         let tension = rest.nodes[0][1] / pole_stretch;
@@ -524,7 +548,7 @@ impl Press {
         for e in 0..solution.elements() {
             let span = solution.span(e);
             (solution.nodes[e], _) = correct(span.start);
-            for j in 0..STAGES {
+            for j in 0..S {
                 (solution.stages[e][j], solution.stretches[e][j]) =
                     correct(span.start + gauss.nodes[j] * span.length);
             }
@@ -534,12 +558,12 @@ impl Press {
     }
 
     /// Extrapolates the latest states of the same mesh in the logarithm of the indentation.
-    fn predict(&self, indentation: f64) -> Graded<STAGES> {
+    fn predict(&self, indentation: f64) -> Graded<S> {
         let height = self.rest.solution.height;
         let latest = self.latest();
-        let alike = |graded: &Graded<STAGES>| graded.solution.has_nearly_the_mesh_of(&latest.solution);
+        let alike = |graded: &Graded<S>| graded.solution.has_nearly_the_mesh_of(&latest.solution);
         let mut places = [0.0; HISTORY];
-        let mut states: [Option<&Solution<STAGES>>; HISTORY] = [None; HISTORY];
+        let mut states: [Option<&Solution<S>>; HISTORY] = [None; HISTORY];
         let mut count = 0;
         for graded in self
             .history
@@ -571,7 +595,7 @@ impl Press {
             }
             count -= 1;
         };
-        let blend = |of: &dyn Fn(&Solution<STAGES>) -> f64| -> f64 {
+        let blend = |of: &dyn Fn(&Solution<S>) -> f64| -> f64 {
             states[..count]
                 .iter()
                 .flatten()
@@ -599,7 +623,7 @@ impl Press {
         for e in 0..extrapolated.elements() {
             for i in 0..2 {
                 extrapolated.nodes[e][i] = blend(&|s| s.nodes[e][i]);
-                for j in 0..STAGES {
+                for j in 0..S {
                     extrapolated.stages[e][j][i] = blend(&|s| s.stages[e][j][i]);
                 }
             }
@@ -636,7 +660,7 @@ enum Stop {
 }
 
 #[cfg(feature = "std")]
-impl Press {
+impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// The curve of a press down to `deepest`, metres: states from `deepest * 1e-6` on.
     ///
     /// # Errors

@@ -141,7 +141,8 @@ fn mesh_refinement_converges_fast() {
             density,
             contact_elements: 6,
         };
-        let mut press = Press::with_resolution(&design, TensionField::Relaxed, resolution).expect("rest");
+        let mut press: Press =
+            Press::with_resolution(&design, TensionField::Relaxed, resolution).expect("rest");
         press.at_indentation(1e-3).expect("state").force
     };
     let exact = force(5.0);
