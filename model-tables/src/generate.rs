@@ -14,6 +14,7 @@ mod truth;
 
 use crate::curve::Curve;
 use crate::design_file::Accuracy;
+use std::ops::RangeInclusive;
 use truth::Truth;
 
 pub use certify::{Certificate, Errors, Spread};
@@ -67,31 +68,41 @@ pub enum NoTables {
 ///
 /// # Errors
 /// [`NoTables`], with the numbers.
+///
+/// # Panics
+/// Never: there is always a unit to try.
 pub fn tables(curve: &Curve, accuracy: &Accuracy, resolution: f64) -> Result<Certified, NoTables> {
     let end = curve.end();
     let output = (end.force * 1e6).max(end.indentation * 1e9);
     if output >= f64::from(1 << 28) {
         return Err(NoTables::TooLarge { output });
     }
-    let fraction_bits = fraction_bits(curve, accuracy, resolution);
-    let counts = libm::floor(libm::ldexp(end.pressure_rise, fraction_bits as i32));
-    if counts >= f64::from(1 << 30) {
-        return Err(NoTables::TooWide { counts });
+    let units = fraction_bits(curve, accuracy, resolution);
+    let mut failure = None;
+    for fraction_bits in units {
+        let counts = libm::floor(libm::ldexp(end.pressure_rise, fraction_bits as i32));
+        if counts >= f64::from(1 << 30) {
+            return Err(failure.unwrap_or(NoTables::TooWide { counts }));
+        }
+        let truth = Truth::new(curve, fraction_bits, counts as i32);
+        match search::smallest(&truth, fraction_bits, accuracy) {
+            Ok(found) => {
+                return Ok(Certified {
+                    tables: found.tables,
+                    certificate: found.certificate,
+                    tried: found.tried,
+                });
+            }
+            Err(share_of_allowed) => failure = Some(NoTables::Inaccurate { share_of_allowed }),
+        }
     }
-    let truth = Truth::new(curve, fraction_bits, counts as i32);
-    match search::smallest(&truth, fraction_bits, accuracy) {
-        Ok(found) => Ok(Certified {
-            tables: found.tables,
-            certificate: found.certificate,
-            tried: found.tried,
-        }),
-        Err(share_of_allowed) => Err(NoTables::Inaccurate { share_of_allowed }),
-    }
+    Err(failure.expect("there is at least one unit"))
 }
 
-/// `k` of the input's unit, `2^-k` pascal: as fine as the tolerance asks where the outputs are steepest, but
-/// not finer than the transducer has a use for.
-fn fraction_bits(curve: &Curve, accuracy: &Accuracy, resolution: f64) -> u32 {
+/// Values of `k` to try for the input's unit, `2^-k` pascal, the coarsest first: from what the transducer has a
+/// use for up to what the tolerance asks where the outputs are steepest. Segments have to hold several counts, so
+/// the finer ones are there for tables that would otherwise miss the accuracy in the first counts.
+fn fraction_bits(curve: &Curve, accuracy: &Accuracy, resolution: f64) -> RangeInclusive<u32> {
     let end = curve.end();
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let tolerance = |percent: f64, value: f64, full: f64| percent / 100.0 * value.max(from * full);
@@ -114,10 +125,12 @@ fn fraction_bits(curve: &Curve, accuracy: &Accuracy, resolution: f64) -> u32 {
         }
         before = point;
     }
-    let coarsest = wanted.max(resolution / COUNTS_PER_RESOLUTION);
-    (0..MOST_FRACTION_BITS)
-        .find(|&bits| libm::ldexp(1.0, -(bits as i32)) <= coarsest)
-        .unwrap_or(MOST_FRACTION_BITS)
+    let bits = |unit: f64| {
+        (0..MOST_FRACTION_BITS)
+            .find(|&bits| libm::ldexp(1.0, -(bits as i32)) <= unit)
+            .unwrap_or(MOST_FRACTION_BITS)
+    };
+    bits(wanted.max(resolution / COUNTS_PER_RESOLUTION))..=bits(wanted)
 }
 
 impl std::fmt::Display for NoTables {

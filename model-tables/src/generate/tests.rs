@@ -135,7 +135,7 @@ fn two_runs_give_the_same_tables() {
 #[test]
 fn the_unit_is_as_fine_as_the_tolerance_asks_and_the_transducer_has_use_for() {
     let curve = PRESSES[0].curve();
-    let bits = |percent, resolution| fraction_bits(&curve, &accuracy(percent), resolution);
+    let bits = |percent, resolution| *fraction_bits(&curve, &accuracy(percent), resolution).start();
     // 1/128 of the resolution: 1/2 Pa of 64 Pa, 1/16 Pa of 8 Pa.
     assert_eq!((bits(0.01, 64.0), bits(0.01, 8.0)), (1, 4));
     // Force: 2.3e-4 N/Pa, full scale 44.2 N; indentation: about 6e-7 m/Pa, full scale 2 mm. 10 % of 1 % of full
@@ -172,4 +172,21 @@ fn refuses_outputs_that_do_not_fit_their_word() {
         .collect();
     let error = tables(&Curve::new(points).expect("grows"), &accuracy(0.1), 10.0);
     assert!(matches!(error, Err(NoTables::TooLarge { .. })));
+}
+
+/// A transducer so coarse that the first count alone is far beyond the tolerance.
+#[test]
+fn a_finer_unit_is_taken_where_the_first_counts_need_it() {
+    let press = Press {
+        end: 1200.0,
+        newtons_per_pascal: 1.5e-4,
+        stiffening: 4e3,
+        metres_per_pascal: 2e-5,
+        bend: 40.0,
+    };
+    let curve = press.curve();
+    let first = *fraction_bits(&curve, &accuracy(0.1), 200.0).start();
+    let certified = tables(&curve, &accuracy(0.1), 200.0).expect("tables");
+    assert!(certified.certificate.holds());
+    assert!(certified.tables.layout.pressure_fraction_bits > first);
 }
