@@ -3,7 +3,7 @@
 //! The way through the crate: [`design`] (what the fingertip is) -> [`material`] -> [`membrane`] (the local
 //! equations) -> [`equilibrium`] (Newton's method over the [`solver`], which knows no physics) -> [`adapt`] (on a
 //! [`mesh`] that fits) -> [`rest`] and [`press`] ([`state`]s of equilibrium) -> [`curve`] (pressure rise -> force and
-//! indentation) -> [`table`] (integers for the chip, in the quantities of [`units`], beside the [`constants`] of
+//! indentation) -> `generate` (fits and certifies) -> [`table`] (integers for the chip, in the quantities of [`units`], beside the [`constants`] of
 //! the design).
 //!
 //! Host mathematics is `f64` in SI units; transcendental functions come from `libm`, so that every host

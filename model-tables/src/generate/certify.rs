@@ -67,9 +67,11 @@ impl Errors {
 }
 
 impl Certificate {
-    /// Whether the tables may be used: accurate, never falling, zero at zero, flagged at both ends.
+    /// Whether the tables may be used: accurate, never falling, zero at zero, flagged at both ends; and the
+    /// comparison itself a hundred times finer than what it is to show.
     pub fn holds(&self) -> bool {
-        self.force.holds() && self.indentation.holds()
+        let allowed = self.force.allowed_percent.min(self.indentation.allowed_percent);
+        self.force.holds() && self.indentation.holds() && 100.0 * self.comparison_error <= 0.01 * allowed
     }
 }
 

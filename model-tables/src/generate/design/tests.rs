@@ -208,3 +208,26 @@ fn a_coarse_accuracy_is_met_with_less() {
     let fine = make_tables(&curve, &fine, 10.0).expect("tables");
     assert!(coarse.certified.tables.bytes() < fine.tables.bytes());
 }
+
+/// The curve between its states, at the places farthest from them, against fresh states.
+#[test]
+fn the_curve_is_far_finer_than_the_tables() {
+    for name in ["index-fingertip", "paper-prestretched", "skin-analogue"] {
+        let design = shipped(name).design();
+        let mut press = Press::new(&design, TensionField::Relaxed).expect("the rest state");
+        let curve = press.curve(2.5e-3).expect("a curve");
+        for pair in curve.points().windows(2) {
+            let indentation = libm::sqrt(pair[0].indentation * pair[1].indentation);
+            let state = press.at_indentation(indentation).expect("a state");
+            let got = curve.at_pressure_rise(state.pressure_rise);
+            for (got, truth, full) in [
+                (got.force, state.force, curve.end().force),
+                (got.indentation, indentation, 2.5e-3),
+            ] {
+                let error = (got - truth).abs() / truth.max(0.01 * full);
+                // A hundredth of the accuracy that the design asks for.
+                assert!(error < 1e-5, "{name} at {indentation:e}: {error:e}");
+            }
+        }
+    }
+}
