@@ -2,7 +2,9 @@
 //!
 //! One sample's way: [`counts`] -> [`pressure`] -> [`tare`] -> [`filter`] -> [`contact`] -> [`report`], called
 //! in that order by [`pipeline`]; [`telemetry`] puts reports on the wire and [`design`] says for which
-//! fingertip. Integers only; nothing here knows a clock or a bus: time and samples are arguments.
+//! fingertip, [`image`] for the one this
+//! build is for. Integers only; nothing here knows a clock or a bus: time and samples are
+//! arguments.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
@@ -10,6 +12,8 @@ pub mod contact;
 pub mod counts;
 pub mod design;
 pub mod filter;
+pub mod image;
+pub mod lookup_sweep;
 pub mod pipeline;
 pub mod pressure;
 pub mod report;

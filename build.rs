@@ -1,0 +1,45 @@
+//! Solves the model of the design and writes its tables; hands the linker its scripts when building for a chip.
+//!
+//! `FINGERTIP_DESIGN`, relative to the workspace root, chooses the design.
+
+use model_tables::constants::TransducerKind;
+use model_tables::generate;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip.toml";
+
+fn main() {
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
+    println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
+    let design = env::var("FINGERTIP_DESIGN").unwrap_or_else(|_| DEFAULT_DESIGN.into());
+    // The build script runs in the folder of its package, which is the workspace root.
+    println!("cargo::rerun-if-changed={design}");
+    match tables(Path::new(&design)) {
+        Ok(source) => fs::write(out.join("design.rs"), source).expect("cargo's folder can be written"),
+        Err(reason) => println!("cargo::error={design}: {}", reason.replace('\n', " ")),
+    }
+    if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
+        link_for_the_chip(&out);
+    }
+}
+
+/// The Rust source of the tables, or the reason why there are none.
+fn tables(design: &Path) -> Result<String, String> {
+    let generated = generate::from_design_file(design).map_err(|error| error.to_string())?;
+    match generated.transducer().kind {
+        TransducerKind::Ratiometric { .. } => Ok(generated.rust_source()),
+        other => Err(format!(
+            "the firmware has no driver for transducer.kind {other:?}, only for \"ratiometric\""
+        )),
+    }
+}
+
+fn link_for_the_chip(out: &Path) {
+    println!("cargo::rerun-if-changed=memory.x");
+    fs::copy("memory.x", out.join("memory.x")).expect("memory.x lies beside the build script");
+    println!("cargo::rustc-link-search={}", out.display());
+    for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
+        println!("cargo::rustc-link-arg-bins={argument}");
+    }
+}

@@ -1,0 +1,73 @@
+//! A second image for the same board: answers every input of [`fingertip::lookup_sweep`] with a reading frame, in order,
+//! then says hello for ever. What arrives is compared bit for bit with the host's answers.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+#![deny(unsafe_code)]
+
+#[cfg(target_os = "none")]
+#[allow(dead_code, unused_imports)] // the probe takes no samples
+mod board;
+
+#[cfg(target_os = "none")]
+mod probe {
+    use crate::board::Board;
+    use defmt_rtt as _;
+    use embassy_executor::Spawner;
+    use embassy_time::Timer;
+    use fingertip::contact::contact;
+    use fingertip::counts::PERIOD;
+    use fingertip::design::Design;
+    use fingertip::image::ImageDesign;
+    use fingertip::lookup_sweep;
+    use fingertip::report::{Report, Warnings};
+    use fingertip::telemetry::{Frame, Hello, Message, encode};
+    use panic_probe as _;
+
+    #[embassy_executor::main]
+    async fn main(spawner: Spawner) {
+        // One task is all there is.
+        let _ = spawner;
+        let Board {
+            clock,
+            mut line,
+            mut watchdog,
+            reset_cause,
+            ..
+        } = Board::take();
+        let mut sequence = 0_u16;
+        for rise in lookup_sweep::inputs::<ImageDesign>() {
+            let report = Report {
+                time: clock.now(),
+                outcome: Ok(contact::<ImageDesign>(rise, Warnings::NONE)),
+            };
+            let message = Message::Report {
+                report,
+                pressure_fraction_bits: ImageDesign::PRESSURE_FRACTION_BITS as u8,
+            };
+            // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
+            let _ = line.write(encode(&Frame { sequence, message }).as_bytes()).await;
+            sequence = sequence.wrapping_add(1);
+            watchdog.pet();
+        }
+        loop {
+            let message = Message::Hello(Hello {
+                time: clock.now(),
+                firmware: [0; 3],
+                reset_cause,
+                design_hash: ImageDesign::CONSTANTS.hash,
+                report_period: PERIOD,
+                blocks_lost: 0,
+                frames_dropped: 0,
+            });
+            let _ = line.write(encode(&Frame { sequence, message }).as_bytes()).await;
+            sequence = sequence.wrapping_add(1);
+            watchdog.pet();
+            Timer::after_millis(10).await;
+        }
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    eprintln!("This is an image for a board: its answers are compared with the host's by `cargo test-all`.");
+    std::process::exit(1);
+}

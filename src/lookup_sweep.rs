@@ -1,0 +1,48 @@
+//! The inputs with which the chip's lookup is compared with the host's: 12 292 of them, everywhere in and around the
+//! tables of a design.
+
+use crate::design::Design;
+use crate::pressure::{Pressure, saturate};
+use model_tables::units::PressureRise;
+
+/// Every count from 0: the segments are narrowest there.
+const CONSECUTIVE: i64 = 4096;
+
+/// Evenly spaced from a sixteenth below zero to a sixteenth beyond the end.
+const SPREAD: i64 = 8192;
+
+/// The ends of the word and the neighbours of zero.
+const CORNERS: [i32; 4] = [i32::MIN, -1, i32::MAX - 1, i32::MAX];
+
+/// How many inputs there are.
+pub const LENGTH: usize = CONSECUTIVE as usize + SPREAD as usize + CORNERS.len();
+
+/// The inputs, in the order the chip answers them.
+pub fn inputs<D: Design>() -> impl Iterator<Item = PressureRise> {
+    let constants = &D::CONSTANTS;
+    let rise = constants.maximum_pressure.saturating_sub(constants.rest_pressure);
+    // Below 2^31, so that the products below stay under 2^31 * 18/16 * 2^13.
+    let end = i64::from(Pressure::from_pascals(rise, D::PRESSURE_FRACTION_BITS).0);
+    let consecutive = 0..CONSECUTIVE;
+    let spread = (0..SPREAD).map(move |i| end * 18 / 16 * i / SPREAD - end / 16);
+    consecutive
+        .chain(spread)
+        .chain(CORNERS.map(i64::from))
+        .map(|rise| PressureRise(saturate(rise)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_design::{Linear, RISE_END};
+
+    #[test]
+    fn the_sweep_covers_the_tables_and_both_sides() {
+        let inputs: Vec<i32> = inputs::<Linear>().map(|rise| rise.0).collect();
+        assert_eq!(inputs.len(), LENGTH);
+        assert_eq!(inputs[4095], 4095);
+        assert_eq!(inputs[4096], -RISE_END / 16);
+        let beyond = inputs.iter().filter(|&&rise| rise > RISE_END).count();
+        assert!((400..600).contains(&beyond), "{beyond}");
+    }
+}
