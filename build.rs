@@ -3,7 +3,7 @@
 //! `FINGERTIP_DESIGN`, relative to the workspace root, chooses the design.
 
 use model_tables::constants::TransducerKind;
-use model_tables::generate;
+use model_tables::generate::{self, GenerateError};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
@@ -17,7 +17,7 @@ fn main() {
     println!("cargo::rerun-if-changed={design}");
     match tables(Path::new(&design)) {
         Ok(source) => fs::write(out.join("design.rs"), source).expect("cargo's folder can be written"),
-        Err(reason) => println!("cargo::error={design}: {}", reason.replace('\n', " ")),
+        Err(reason) => println!("cargo::error={}", reason.replace('\n', " ")),
     }
     if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
         link_for_the_chip(&out);
@@ -26,12 +26,17 @@ fn main() {
 
 /// The Rust source of the tables, or the reason why there are none.
 fn tables(design: &Path) -> Result<String, String> {
-    let generated = generate::from_design_file(design).map_err(|error| error.to_string())?;
+    let named = |reason: String| format!("{}: {reason}", design.display());
+    let generated = generate::from_design_file(design).map_err(|error| match error {
+        // These name the file themselves.
+        GenerateError::File(error) => error.to_string(),
+        error => named(error.to_string()),
+    })?;
     match generated.transducer().kind {
         TransducerKind::Ratiometric { .. } => Ok(generated.rust_source()),
-        other => Err(format!(
+        other => Err(named(format!(
             "the firmware has no driver for transducer.kind {other:?}, only for \"ratiometric\""
-        )),
+        ))),
     }
 }
 
