@@ -11,6 +11,13 @@ pub const FROM_SHARE_OF_FULL_SCALE: f64 = 0.05;
 /// Standard deviations of the transducer's noise that a report may be off.
 const DEVIATIONS: f64 = 2.0;
 
+/// From where on a reading is wrong, share of reading.
+const WRONG_SHARE: f64 = 0.005;
+
+/// From where on a reading is wrong, standard deviations of the transducer's noise. A report averages 125 samples
+/// and more, so these are some thirty of its own.
+const WRONG_DEVIATIONS: f64 = 3.0;
+
 /// What a run comes to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Accuracy {
@@ -60,6 +67,20 @@ pub fn within(row: &Row, plant: &Plant, deviations: f64) -> Option<[bool; 3]> {
         (low.force..=high.force).contains(&reported.force),
         (low.indentation..=high.indentation).contains(&reported.indentation),
     ])
+}
+
+/// A reading that the firmware vouches for and that is not so: force or indentation are off by more than
+/// [`WRONG_SHARE`] of reading, and by more than [`WRONG_DEVIATIONS`] of the transducer's noise explain.
+pub fn is_wrong(row: &Row, plant: &Plant) -> bool {
+    let (Status::Ok, Some(reported), Some(explained)) =
+        (row.status, row.reported, within(row, plant, WRONG_DEVIATIONS))
+    else {
+        return false;
+    };
+    let off = |reported: f64, truth: f64| (reported - truth).abs() > WRONG_SHARE * truth;
+    let force = off(reported.force, row.truth.force) && !explained[1];
+    let indentation = off(reported.indentation, row.truth.indentation) && !explained[2];
+    force || indentation
 }
 
 impl Accuracy {
@@ -156,6 +177,18 @@ mod tests {
         let accuracy = Accuracy::of(&rows, &plant);
         assert!((accuracy.pressure_within - 0.5).abs() < 1e-12);
         assert!((accuracy.force_within - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_reading_is_wrong_when_neither_noise_nor_half_a_percent_explains_it() {
+        let plant = press(8e3, ramp());
+        // At 4 kPa 30 Pa explain 6.96 mN of 864 mN, 0.806 %; at 400 Pa 6.04 mN of 80.6 mN, 7.49 %.
+        assert!(!is_wrong(&row(4e3, 0.0080, 0.0), &plant));
+        assert!(is_wrong(&row(4e3, 0.0082, 0.0), &plant));
+        assert!(!is_wrong(&row(400.0, 0.074, 0.0), &plant));
+        assert!(is_wrong(&row(400.0, 0.077, 0.0), &plant));
+        // At 8 kPa it is half a percent of 1.856 N that counts: 30 Pa explain 0.427 %.
+        assert!(!is_wrong(&row(7.9e3, 0.0049, 0.0), &plant));
     }
 
     #[test]

@@ -100,8 +100,9 @@ impl Image {
         let mut cargo = Command::new(cargo());
         cargo
             .current_dir(workspace())
-            .args(["build", "--release", "--package", "fingertip", "--target", TARGET])
-            .args(["--bin", binary, "--message-format=json-render-diagnostics"])
+            .args(["build", "--profile", "firmware", "--target", TARGET])
+            .args(["--package", "fingertip", "--bin", binary])
+            .arg("--message-format=json-render-diagnostics")
             .stdout(Stdio::piped());
         if let Some(design) = design {
             cargo.env("FINGERTIP_DESIGN", design);

@@ -8,6 +8,16 @@ use model_tables::curve::Contact;
 use std::io::Write;
 use std::ops::ControlFlow;
 
+/// The image's clock counts with a 16-bit timer at 1 MHz, seconds from one overflow to the next. Its driver counts
+/// the overflows from a flag that the start of the timer already sets, so its time may be whole overflows ahead.
+const OVERFLOW: f64 = 65_536e-6;
+
+/// The instant that the image calls `device_time`, for a report that has come within an overflow of it.
+fn instant(device_time: f64, moment: Moment) -> f64 {
+    let time = moment.clock_zero + device_time;
+    time - OVERFLOW * ((time - moment.time) / OVERFLOW).ceil().max(0.0)
+}
+
 /// One report and the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
@@ -67,7 +77,7 @@ impl<F: FnMut(&Row) + Send + 'static> Recorder<F> {
                 report,
                 pressure_fraction_bits,
             } => {
-                let time = moment.clock_zero + report.time.0 as f64 * 1e-6;
+                let time = instant(report.time.0 as f64 * 1e-6, moment);
                 let row = Row {
                     time,
                     truth: plant.truth(time),
@@ -199,6 +209,18 @@ mod tests {
         assert!((reported.pressure_rise - 1000.5).abs() < 1e-9);
         assert!((reported.force - 1.234_567).abs() < 1e-12);
         assert!((reported.indentation - 1.500_001e-3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_clock_that_is_an_overflow_ahead_is_taken_back() {
+        let moment = |time| Moment {
+            time,
+            clock_zero: 0.001,
+        };
+        for ahead in [0.0, OVERFLOW, 3.0 * OVERFLOW] {
+            // It refers to 0.501 s and comes 2 ms later.
+            assert!((instant(0.5 + ahead, moment(0.503)) - 0.501).abs() < 1e-12);
+        }
     }
 
     #[test]

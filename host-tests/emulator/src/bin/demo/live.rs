@@ -7,10 +7,11 @@ use fingertip::report::Status;
 /// Virtual time between two lines, seconds.
 const EVERY: f64 = 0.05;
 
-const HEAD: &str = "\
- time  phase       pressure rise / Pa        force / N       indentation / mm
-   ms                 true   reported     true  reported      true   reported  status
-";
+/// The columns' names; their widths are those of [`line`].
+const HEAD: [&str; 2] = [
+    " time  phase      pressure rise / Pa         force / N         indentation / mm",
+    "   ms                 true   reported     true  reported      true   reported  status",
+];
 
 /// Which rows are shown.
 pub(crate) struct Table {
@@ -31,7 +32,9 @@ impl Table {
 
     /// What prints the lines of the rows it is given: one every 50 ms, and one at each change of status.
     pub(crate) fn into_printer(mut self) -> impl FnMut(&Row) + Send + 'static {
-        print!("{HEAD}");
+        for line in HEAD {
+            println!("{line}");
+        }
         move |row| {
             let changed = self.status.replace(row.status) != Some(row.status);
             if changed || row.time >= self.next {

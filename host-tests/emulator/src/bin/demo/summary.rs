@@ -1,6 +1,6 @@
 //! What the run comes to.
 
-use emulator::accuracy::Accuracy;
+use emulator::accuracy::{Accuracy, is_wrong};
 use emulator::plant::Plant;
 use emulator::record::{Record, Row};
 use fingertip::report::Status;
@@ -20,9 +20,10 @@ pub(crate) fn print(record: &Record, plant: &Plant, accuracy: &Accuracy) {
     println!("(median errors: percent of reading, from 5 % of full scale up)");
     let count = |wanted: fn(&Status) -> bool| record.rows.iter().filter(|row| wanted(&row.status)).count();
     println!(
-        "\n{} reports: {} ok, {} with a warning, {} faults without values; {} frames lost, {} broken",
+        "\n{} reports: {} ok, of them {} wrong; {} with a warning, {} faults without values; {} frames lost, {} broken",
         record.rows.len(),
         count(|status| *status == Status::Ok),
+        record.rows.iter().filter(|row| is_wrong(row, plant)).count(),
         count(|status| matches!(status, Status::Warning(_))),
         count(|status| matches!(status, Status::Fault(_))),
         record.lost,
