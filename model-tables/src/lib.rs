@@ -11,6 +11,7 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
+pub mod actuator;
 pub mod adapt;
 pub mod constants;
 pub mod curve;
