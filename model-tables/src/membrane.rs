@@ -55,6 +55,16 @@ pub enum Zone {
     Free,
 }
 
+impl Zone {
+    /// The word used in tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Contact => "contact",
+            Self::Free => "free",
+        }
+    }
+}
+
 /// What the constitutive law says at a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Response {

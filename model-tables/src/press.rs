@@ -635,20 +635,51 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         guess
     }
 
-    /// The meridian of the latest state (`pressed`) or of the rest state, at `points + 1` parameters from pole to
-    /// equator, equally spaced. Calls `take` with each.
-    pub fn profile(&self, pressed: bool, points: usize, mut take: impl FnMut(MeridianPoint)) {
-        let graded = if pressed { self.latest() } else { &self.rest };
-        let solution = &graded.solution;
-        for i in 0..=points {
-            let t = FRAC_PI_2 * i as f64 / points as f64;
-            let height = self.solver.equilibrium.height_at(solution, t);
-            if let Some(point) =
-                state::meridian_point(&self.solver.equilibrium, &self.scale, solution, t, height)
-            {
-                take(point);
+    /// The meridian of the state at an indentation in metres (0 is the rest state), from the pole to the equator.
+    ///
+    /// `points` of them, at least 3: equally spaced in the parameter within the contact and within the free zone,
+    /// with one on the contact edge. A point at which the law gives no answer is left out.
+    ///
+    /// # Errors
+    /// As [`Press::at_indentation`].
+    pub fn profile(
+        &mut self,
+        indentation: f64,
+        points: usize,
+    ) -> Result<impl Iterator<Item = MeridianPoint>, ModelError> {
+        let edge = self.at_indentation(indentation)?.contact_parameter;
+        let graded = if indentation == 0.0 {
+            &self.rest
+        } else {
+            self.latest()
+        };
+        let intervals = points.max(3) - 1;
+        let under_plate = if edge > 0.0 {
+            let share = libm::round(intervals as f64 * edge / FRAC_PI_2) as usize;
+            share.clamp(1, intervals - 1)
+        } else {
+            0
+        };
+        let parameter = move |i: usize| {
+            if i < under_plate {
+                edge * i as f64 / under_plate as f64
+            } else {
+                let share = (i - under_plate) as f64 / (intervals - under_plate) as f64;
+                // Exact at both ends.
+                edge * (1.0 - share) + FRAC_PI_2 * share
             }
-        }
+        };
+        let (equilibrium, scale, solution) = (&self.solver.equilibrium, &self.scale, &graded.solution);
+        Ok((0..=intervals).filter_map(move |i| {
+            let t = parameter(i);
+            state::meridian_point(
+                equilibrium,
+                scale,
+                solution,
+                t,
+                equilibrium.height_at(solution, t),
+            )
+        }))
     }
 }
 

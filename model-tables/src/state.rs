@@ -3,7 +3,7 @@
 use crate::design::Membrane as Dimensions;
 use crate::equilibrium::{Equilibrium, Pole, Solution};
 use crate::material::Hyperelastic;
-use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, POLE, PRESSURE, TensionField, Zone};
+use crate::membrane::{CONTACT_PARAMETER, POLE, TensionField, Zone};
 use crate::solver::collocation::STATES;
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -141,10 +141,21 @@ pub struct MeridianPoint {
     pub meridional_tension: f64,
     /// Hoop tension, newtons per metre of deformed length.
     pub hoop_tension: f64,
-    /// Angle of the tangent, radians, 0 = horizontal.
+    /// Angle of the tangent, radians: 0 is horizontal, pi/2 vertical.
     pub angle: f64,
-    /// Hoop wrinkles stand here, or the membrane is slack.
+    /// Under the plate, its edge included, or free.
+    pub zone: Zone,
+    /// Hoop wrinkles stand here (of a plain membrane: it is compressed here), or the membrane is slack.
     pub wrinkling: Wrinkling,
+}
+
+/// The zone at `t`; the contact edge counts as contact.
+fn zone_at<const S: usize>(solution: &Solution<S>, t: f64) -> Zone {
+    if solution.contact_elements > 0 && t <= solution.parameters[CONTACT_PARAMETER] {
+        Zone::Contact
+    } else {
+        Zone::Free
+    }
 }
 
 /// Stretches and tensions at `t`, dimensionless: `[l1, l2, T1, T2, phi]`, and whether wrinkled.
@@ -157,28 +168,23 @@ fn local<L: Hyperelastic, const S: usize>(
         return Some(([1.0, 1.0, 0.0, 0.0, 0.0], false));
     }
     let ([u, w], guess) = solution.at(&equilibrium.gauss, t);
-    let contact_parameter = solution.parameters[CONTACT_PARAMETER];
-    let zone = if t <= contact_parameter {
+    let [_, pressure, contact_radius, _] = solution.parameters;
+    let membrane = &equilibrium.membrane;
+    // At the pole of a rest state the tangent is horizontal as it is under a plate.
+    let zone = if t == 0.0 {
         Zone::Contact
     } else {
-        Zone::Free
+        zone_at(solution, t)
     };
-    let membrane = &equilibrium.membrane;
-    let n = if t == 0.0 {
-        w
-    } else {
-        membrane.tension_measure(
-            zone,
-            t,
-            [u, w],
-            solution.parameters[PRESSURE],
-            solution.parameters[CONTACT_RADIUS],
-        )
-    };
+    let n = membrane.tension_measure(zone, t, [u, w], pressure, contact_radius);
     let response = membrane.respond(n, u, guess)?;
     let angle = match zone {
         Zone::Contact => 0.0,
-        Zone::Free => libm::acos((w / n).clamp(-1.0, 1.0)),
+        Zone::Free => {
+            let x = libm::sin(t);
+            let k = 0.5 * pressure * (u * u * x - contact_radius * contact_radius / x);
+            libm::atan2(k.max(0.0), w)
+        }
     };
     Some((
         [response.l1, u, n / u, response.w2 / response.l1, angle],
@@ -195,6 +201,7 @@ pub(crate) fn meridian_point<L: Hyperelastic, const S: usize>(
     height: f64,
 ) -> Option<MeridianPoint> {
     let ([l1, l2, t1, t2, angle], wrinkled) = local(equilibrium, solution, t)?;
+    let compressed = equilibrium.membrane.tension_field == TensionField::Plain && t1.min(t2) < 0.0;
     Some(MeridianPoint {
         parameter: t,
         radius: l2 * libm::sin(t) * scale.length,
@@ -204,9 +211,10 @@ pub(crate) fn meridian_point<L: Hyperelastic, const S: usize>(
         meridional_tension: t1 * scale.tension,
         hoop_tension: t2 * scale.tension,
         angle,
+        zone: zone_at(solution, t),
         wrinkling: if t < solution.start() {
             Wrinkling::Slack
-        } else if wrinkled {
+        } else if wrinkled || compressed {
             Wrinkling::Wrinkled
         } else {
             Wrinkling::Taut
