@@ -3,15 +3,18 @@
 //! Exit status 0 only if everything asked for was given. Otherwise one line on standard error that names what
 //! was asked, the limit or the key, and the remedy; nothing on standard output, nothing half-written left behind.
 
+mod actuator;
 mod estimate;
+mod profile;
 mod rest;
 mod rows;
 mod solve;
 mod table;
 
 use crate::design_file::{DesignFile, DesignFileError};
+use crate::membrane::TensionField;
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 use rows::{Format, Rows};
 use std::fmt::Display;
 use std::io::{IsTerminal as _, Write as _};
@@ -38,10 +41,33 @@ enum Command {
     },
     /// Pressed states of a design, one row each, in the order asked
     Solve(solve::Arguments),
+    /// Shape, stretches and tensions along the meridian of one state, sorted from the pole to the equator
+    #[command(after_long_help = profile::COLUMN_HELP)]
+    Profile(profile::Arguments),
     /// The tables of a design: Rust source, binary, CSV, and the certificate
     Table(table::Arguments),
     /// What the chip would say at pressure rises, bit for bit
     Estimate(estimate::Arguments),
+    /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
+    Actuator(actuator::Arguments),
+}
+
+/// What the membrane does where it would have to push.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Field {
+    /// It wrinkles or goes slack
+    Relaxed,
+    /// It pushes, as in the paper
+    Plain,
+}
+
+impl From<Field> for TensionField {
+    fn from(field: Field) -> Self {
+        match field {
+            Field::Relaxed => Self::Relaxed,
+            Field::Plain => Self::Plain,
+        }
+    }
 }
 
 /// What a subcommand gives.
@@ -105,8 +131,10 @@ fn run(command: &Command) -> Result<Answer, Refusal> {
     match command {
         Command::Rest { design } => rest::run(design),
         Command::Solve(arguments) => solve::run(arguments),
+        Command::Profile(arguments) => profile::run(arguments),
         Command::Table(arguments) => table::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
+        Command::Actuator(arguments) => actuator::run(arguments),
     }
 }
 
@@ -118,7 +146,14 @@ fn refuse(reason: &str) -> ExitCode {
 /// What is wrong with the arguments, on one line.
 fn usage(error: &clap::Error) -> String {
     if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        return "a subcommand is needed: rest, solve, table or estimate (see `designer --help`)".to_owned();
+        let names: Vec<String> = Arguments::command()
+            .get_subcommands()
+            .map(|subcommand| subcommand.get_name().to_owned())
+            .collect();
+        return format!(
+            "a subcommand is needed: {} (see `designer --help`)",
+            names.join(", ")
+        );
     }
     let text = error.to_string();
     let first = text.split("\n\n").next().unwrap_or_default();

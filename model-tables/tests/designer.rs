@@ -108,6 +108,85 @@ fn solve_gives_reference_states_in_the_order_asked() {
 }
 
 #[test]
+fn profile_is_the_state_that_solve_gives() {
+    let design = shipped("paper-prestretched");
+    let (header, rows) = csv(&[
+        "profile",
+        &design,
+        "--indentation-mm",
+        "2.083053536",
+        "--points",
+        "41",
+    ]);
+    assert_eq!(
+        header,
+        "parameter_rad,radius_mm,height_mm,meridional_stretch,hoop_stretch,meridional_tension_n_per_m,\
+         hoop_tension_n_per_m,angle_deg,zone,wrinkled"
+    );
+    assert_eq!(rows.len(), 41);
+    let number = |row: usize, column: usize| rows[row][column].parse::<f64>().expect("a number");
+    // The independent reference: height at rest less the indentation, and the edge held at its rest radius.
+    near(&rows[0][2], 8.081_810_613_014 - 2.083_053_536, 1e-9);
+    near(&rows[40][1], 8.575_201_058_739, 1e-9);
+    assert!(number(0, 1).abs() < 1e-300 && number(40, 2).abs() < 1e-11);
+    near(&rows[40][0], core::f64::consts::FRAC_PI_2, 1e-14);
+    // F = P pi rc^2 at the last point under the plate.
+    let edge = rows
+        .iter()
+        .rposition(|row| row[8] == "contact")
+        .expect("a contact");
+    let radius = number(edge, 1);
+    near(
+        &(245.419_207_392_746e-3 * core::f64::consts::PI * radius * radius).to_string(),
+        16.492_035_788_469,
+        1e-6,
+    );
+    assert!(rows[edge + 1..].iter().all(|row| row[8] == "free"));
+    assert!(rows.iter().all(|row| row[9] == "no"));
+
+    let (_, rest) = csv(&["profile", &design, "--indentation-mm", "0"]);
+    assert_eq!(rest.len(), 101);
+    assert!(rest.iter().all(|row| row[8] == "free"));
+    near(&rest[0][2], 8.081_810_613_014, 1e-9);
+    near(&rest[100][7], 90.0, 1e-9);
+}
+
+#[test]
+fn actuator_has_the_values_worked_by_hand() {
+    let (header, rows) = csv(&[
+        "actuator",
+        &shipped("index-fingertip"),
+        "--pressure-kpa",
+        "0,17.9,17.935",
+    ]);
+    assert_eq!(
+        header,
+        "pressure_kpa,contact_diameter_mm,blocked_force_n,volume_change_mm3"
+    );
+    // d_f = 9 mm, E = 1241.484 kPa: d = 9 mm / (1 - P/E).
+    near(&rows[0][1], 9.0, 1e-14);
+    near(&rows[1][1], 9.131_662, 1e-6);
+    near(&rows[1][2], 1.172_31, 1e-5);
+    near(&rows[2][3], 1.8248, 1e-4);
+}
+
+#[test]
+fn actuator_takes_its_diameter_from_the_design() {
+    let folder = scratch("actuator");
+    let file = folder.join("wide.toml");
+    let text = fs::read_to_string(shipped("index-fingertip")).expect("the design");
+    fs::write(&file, text + "\n[actuator]\ndiameter_mm = 18.0\n").expect("written");
+    let (_, rows) = csv(&[
+        "actuator",
+        file.to_str().expect("utf-8"),
+        "--pressure-kpa",
+        "17.9",
+    ]);
+    // Twice the diameter, four times the force of 9 mm.
+    near(&rows[0][2], 4.0 * 1.172_31, 1e-5);
+}
+
+#[test]
 fn solve_knows_both_tension_fields() {
     let folder = scratch("wrinkled");
     let file = folder.join("oblate.toml");
@@ -267,9 +346,26 @@ fn bad_input_is_one_line() {
             "'soft'",
         ),
         (&["estimate", &design, "--pressure-rise-pa", "inf"][..], "'inf'"),
+        (
+            &["profile", &design, "--indentation-mm", "99"][..],
+            "99 mm is beyond the limit of",
+        ),
+        (
+            &["profile", &design, "--indentation-mm", "1", "--points", "2"][..],
+            "2 is not in 3..=10000",
+        ),
+        // E = 6 (13400 + 29500) Pa.
+        (
+            &["actuator", &design, "--pressure-kpa", "1,258"][..],
+            "skin-analogue.toml: actuator pressure 258 kPa is not below 257.400000 kPa",
+        ),
+        (
+            &["actuator", &design, "--pressure-kpa", "-3"][..],
+            "actuator pressure -3 kPa is not possible",
+        ),
         (&["rest", &design, "--format", "xml"][..], "'xml'"),
         (&["press", &design][..], "'press'"),
-        (&[][..], "a subcommand is needed"),
+        (&[][..], "a subcommand is needed: rest, solve, profile, table, "),
     ] {
         let line = refusal(arguments);
         assert!(line.starts_with("error: ") && line.contains(part), "{line}");

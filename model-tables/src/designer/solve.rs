@@ -1,11 +1,9 @@
 //! `designer solve`: pressed states.
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, finite, read};
-use crate::membrane::TensionField;
+use super::{Answer, Field, Refusal, finite, read};
 use crate::press::Press;
 use crate::state::PressedState;
-use clap::ValueEnum;
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &[
@@ -34,22 +32,11 @@ pub(super) struct Arguments {
     tension_field: Field,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Field {
-    /// It wrinkles or goes slack
-    Relaxed,
-    /// It pushes, as in the paper
-    Plain,
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let file = &arguments.design;
-    let field = match arguments.tension_field {
-        Field::Relaxed => TensionField::Relaxed,
-        Field::Plain => TensionField::Plain,
-    };
     let design = read(file)?.design();
-    let mut press = Press::new(&design, field).map_err(|error| Refusal::about(file, &error))?;
+    let mut press =
+        Press::new(&design, arguments.tension_field.into()).map_err(|error| Refusal::about(file, &error))?;
     // Solved from shallow to deep, given in the order asked.
     let mut order: Vec<usize> = (0..arguments.indentation_mm.len()).collect();
     order.sort_by(|&a, &b| arguments.indentation_mm[a].total_cmp(&arguments.indentation_mm[b]));

@@ -1,0 +1,91 @@
+//! `designer profile`: the meridian of one state.
+
+use super::rows::{Cell, Rows};
+use super::{Answer, Field, Refusal, finite, read};
+use crate::press::Press;
+use std::path::PathBuf;
+
+const COLUMNS: &[&str] = &[
+    "parameter_rad",
+    "radius_mm",
+    "height_mm",
+    "meridional_stretch",
+    "hoop_stretch",
+    "meridional_tension_n_per_m",
+    "hoop_tension_n_per_m",
+    "angle_deg",
+    "zone",
+    "wrinkled",
+];
+
+/// What `--help` says of the columns.
+pub(super) const COLUMN_HELP: &str = "\
+Columns:
+  parameter_rad               place on the undeformed ellipse: 0 at the pole, pi/2 at the equator
+  radius_mm, height_mm        deformed radius, and height over the base
+  meridional_stretch          deformed over undeformed length along the meridian; 1 in a slack core
+  hoop_stretch                deformed over undeformed radius
+  meridional_tension_n_per_m  per deformed length
+  hoop_tension_n_per_m        per deformed length
+  angle_deg                   of the tangent: 0 is horizontal, 90 vertical, more is overhanging
+  zone                        contact (under the plate, edge included) or free
+  wrinkled                    no, wrinkled (hoop wrinkles; with `plain`: some tension is negative) or slack
+
+Points are equally spaced in the parameter within the contact and within the free zone; one is on the
+contact edge.";
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The design file
+    design: PathBuf,
+    /// Indentation in millimetres; 0 is the rest state
+    #[arg(long, value_name = "X", value_parser = finite, allow_hyphen_values = true)]
+    indentation_mm: f64,
+    /// Number of points
+    #[arg(long, value_name = "N", default_value_t = 101,
+          value_parser = clap::value_parser!(u32).range(3..=10_000))]
+    points: u32,
+    /// What the membrane does where it would have to push
+    #[arg(long, value_name = "FIELD", value_enum, default_value_t = Field::Relaxed)]
+    tension_field: Field,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+    let file = &arguments.design;
+    let design = read(file)?.design();
+    let points = arguments.points as usize;
+    let mut press =
+        Press::new(&design, arguments.tension_field.into()).map_err(|error| Refusal::about(file, &error))?;
+    let meridian = press
+        .profile(arguments.indentation_mm / 1e3, points)
+        .map_err(|error| Refusal::about(file, &error))?;
+    let mut rows = Rows::new(COLUMNS);
+    let mut found = 0;
+    for point in meridian {
+        found += 1;
+        rows.push(vec![
+            Cell::Number(point.parameter),
+            Cell::Number(point.radius * 1e3),
+            Cell::Number(point.height * 1e3),
+            Cell::Number(point.meridional_stretch),
+            Cell::Number(point.hoop_stretch),
+            Cell::Number(point.meridional_tension),
+            Cell::Number(point.hoop_tension),
+            Cell::Number(point.angle.to_degrees()),
+            Cell::word(point.zone.word()),
+            Cell::word(point.wrinkling.word()),
+        ]);
+    }
+    if found < points {
+        let missing = points - found;
+        let reason = format!(
+            "at {missing} of {points} points of the meridian the law gives no stretch for the tension there; ask \
+             for another indentation"
+        );
+        return Err(Refusal::about(file, &reason));
+    }
+    Ok(Answer {
+        rows,
+        notes: Vec::new(),
+    })
+}
