@@ -6,6 +6,7 @@
 mod actuator;
 mod estimate;
 mod profile;
+mod published;
 mod rest;
 mod rows;
 mod solve;
@@ -50,6 +51,8 @@ enum Command {
     Estimate(estimate::Arguments),
     /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
     Actuator(actuator::Arguments),
+    /// The source paper's numbers beside what its stated inputs give
+    Published(published::Arguments),
 }
 
 /// What the membrane does where it would have to push.
@@ -135,6 +138,7 @@ fn run(command: &Command) -> Result<Answer, Refusal> {
         Command::Table(arguments) => table::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),
+        Command::Published(arguments) => published::run(arguments),
     }
 }
 

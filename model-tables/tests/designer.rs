@@ -187,6 +187,26 @@ fn actuator_takes_its_diameter_from_the_design() {
 }
 
 #[test]
+fn published_writes_the_page_of_this_crate() {
+    let out = scratch("published").join("PUBLISHED.md");
+    let (header, rows) = csv(&["published", "--out", out.to_str().expect("utf-8")]);
+    assert_eq!(header, "quantity,published,here,ratio");
+    // The independent reference again.
+    assert_eq!(rows[0][0], "rest_pressure_kpa");
+    near(&rows[0][2], 179.061_844_088_872, 1e-9);
+    let written = fs::read_to_string(&out).expect("the page");
+    let mut now = written.lines();
+    for line in include_str!("../PUBLISHED.md").lines() {
+        assert_eq!(
+            Some(line),
+            now.next(),
+            "the page is stale: run `cargo designer published --out model-tables/PUBLISHED.md`"
+        );
+    }
+    assert_eq!(now.next(), None, "the page is stale");
+}
+
+#[test]
 fn solve_knows_both_tension_fields() {
     let folder = scratch("wrinkled");
     let file = folder.join("oblate.toml");
@@ -364,6 +384,7 @@ fn bad_input_is_one_line() {
             "actuator pressure -3 kPa is not possible",
         ),
         (&["rest", &design, "--format", "xml"][..], "'xml'"),
+        (&["published", "--out", "/"][..], "does not name a file"),
         (&["press", &design][..], "'press'"),
         (&[][..], "a subcommand is needed: rest, solve, profile, table, "),
     ] {

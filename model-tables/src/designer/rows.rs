@@ -136,7 +136,7 @@ impl Cell {
 }
 
 /// A number with that many significant digits, without an exponent where a person can still read it.
-fn significant(number: f64, digits: i32) -> String {
+pub(super) fn significant(number: f64, digits: i32) -> String {
     if number == 0.0 || !number.is_finite() {
         return format!("{number:.*}", digits as usize - 1);
     }

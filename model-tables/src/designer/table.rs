@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
 }
 
 /// Writes every file beside its place first, then moves them all in; on failure removes what it wrote.
-fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refusal> {
+pub(super) fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refusal> {
     let cannot = |path: &Path, error: std::io::Error| {
         Refusal(format!(
             "{} cannot be written: {error}; choose another --out",

@@ -1,0 +1,58 @@
+//! `designer published`: the source paper's numbers beside what its stated inputs give, and the page about them.
+
+mod page;
+mod paper;
+mod readings;
+mod solid;
+
+use super::rows::{Cell, Rows};
+use super::{Answer, Refusal, table};
+use crate::design_file::DesignFile;
+use paper::Paper;
+use solid::Solid;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+const COLUMNS: &[&str] = &["quantity", "published", "here", "ratio"];
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The page to write (Markdown)
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+    let paper = Paper::solve()?;
+    let mut notes = Vec::new();
+    if let Some(out) = &arguments.out {
+        let text = page::markdown(&paper, &Solid::solve()?);
+        let name = out.file_name().and_then(OsStr::to_str).ok_or_else(|| {
+            let out = out.display();
+            Refusal(format!(
+                "{out} does not name a file; choose another --out, such as PUBLISHED.md"
+            ))
+        })?;
+        let folder = match out.parent() {
+            Some(parent) if parent != Path::new("") => parent,
+            _ => Path::new("."),
+        };
+        table::write_all(folder, &[(name, text.into_bytes())])?;
+        notes.push(format!("wrote {}", out.display()));
+    }
+    let mut rows = Rows::new(COLUMNS);
+    for row in &paper.rows {
+        rows.push(vec![
+            Cell::word(row.quantity),
+            Cell::Number(row.published),
+            Cell::Number(row.here),
+            Cell::Number(row.here / row.published),
+        ]);
+    }
+    Ok(Answer { rows, notes })
+}
+
+/// A shipped design; its text is part of the program.
+fn shipped(name: &str, text: &str) -> Result<DesignFile, Refusal> {
+    Ok(DesignFile::parse(text, name)?)
+}
