@@ -6,7 +6,7 @@
 
 use crate::equilibrium::{Closure, Equilibrium, MAX_ELEMENTS, Outcome, Pole, Solution};
 use crate::material::Hyperelastic;
-use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, Membrane, POLE, PRESSURE, TensionField, Zone};
+use crate::membrane::{CONTACT_PARAMETER, Membrane, POLE, PRESSURE, TensionField, Zone};
 use crate::mesh::{Breaks, Depth};
 use core::f64::consts::FRAC_PI_2;
 
@@ -26,6 +26,8 @@ pub struct Resolution {
     pub density: f64,
     /// Elements under the plate.
     pub contact_elements: usize,
+    /// Relative change that one more Newton iteration may still make.
+    pub tolerance: f64,
 }
 
 /// How much finer the mesh of the rest state is than that of a press. It is solved once, and the first indentations
@@ -37,6 +39,8 @@ const MAX_ROUNDS: usize = 12;
 const KINK_TOLERANCE: f64 = 1e-8;
 /// A mesh graded for a contact or a bend that differs by more than this factor is laid anew.
 const STALE_GRADING: f64 = 1.4;
+/// Bend lengths below this are not resolved.
+const SMALLEST_BEND: f64 = 1e-6;
 /// Bend lengths beyond this do not shape the mesh.
 const LARGEST_BEND: f64 = 0.5;
 
@@ -68,7 +72,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// Ready to solve.
     pub fn new(membrane: Membrane<L>, resolution: Resolution) -> Self {
         Self {
-            equilibrium: Equilibrium::new(membrane),
+            equilibrium: Equilibrium::new(membrane, resolution.tolerance),
             resolution,
             iterations: 0,
         }
@@ -78,49 +82,40 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         &self.equilibrium.membrane
     }
 
-    /// The state that `closure` asks for, from a guess on any mesh.
+    /// Turns a guess on any mesh into the state that `closure` asks for.
     ///
     /// # Errors
-    /// [`Failure`] when Newton's method fails, or mesh and pole do not settle.
-    pub fn settle(&mut self, mut guess: Graded<S>, closure: &Closure) -> Result<Graded<S>, Failure> {
-        let mut changed_pole = false;
+    /// [`Failure`] when Newton's method fails, or mesh and pole do not settle; the guess is then of no more use.
+    pub fn settle(&mut self, guess: &mut Graded<S>, closure: &Closure) -> Result<(), Failure> {
         for _ in 0..MAX_ROUNDS {
-            if Self::stale(&guess) {
-                guess = self.relay(&guess);
+            if Self::stale(guess) {
+                *guess = self.relay(guess);
             }
-            let before = guess.solution.clone();
-            let outcome = self.equilibrium.solve(&mut guess.solution, closure);
-            guess.outcome = outcome;
-            let Outcome::Converged { iterations, .. } = outcome else {
-                // Perhaps the pole is of the other kind.
-                let relaxed = self.membrane().tension_field == TensionField::Relaxed;
-                if changed_pole || !relaxed || before.contact_elements == 0 {
-                    return Err(Failure::Newton(outcome));
-                }
-                changed_pole = true;
-                guess.solution = before;
-                guess = match guess.solution.pole {
-                    Pole::Taut => self.slacken(&guess),
-                    Pole::Slack => self.lay(&guess, Pole::Taut, 1.0),
-                };
-                continue;
+            guess.outcome = self.equilibrium.solve(&mut guess.solution, closure);
+            let Outcome::Converged { iterations, .. } = guess.outcome else {
+                return Err(Failure::Newton(guess.outcome));
             };
             self.iterations += u64::from(iterations);
-            if self.change_pole(&mut guess) {
-                continue;
-            }
-            if Self::stale(&guess) {
+            if self.change_pole(guess) || Self::stale(guess) {
                 continue;
             }
             let kinks = self.kinks(&guess.solution);
-            if Self::kinks_are_nodes(&guess.solution, &kinks) {
-                guess.breaks = kinks;
-                return Ok(guess);
-            }
             guess.breaks = kinks;
-            guess = self.relay(&guess);
+            if Self::kinks_are_nodes(&guess.solution, &kinks) {
+                return Ok(());
+            }
+            *guess = self.relay(guess);
         }
         Err(Failure::Unsettled)
+    }
+
+    /// The same state with a pole of the other kind, where that can help: a relaxed membrane under a plate.
+    pub fn with_other_pole(&self, graded: &Graded<S>) -> Option<Graded<S>> {
+        let relaxed = self.membrane().tension_field == TensionField::Relaxed;
+        (relaxed && graded.solution.contact_elements > 0).then(|| match graded.solution.pole {
+            Pole::Taut => self.slacken(graded),
+            Pole::Slack => self.lay(graded, Pole::Taut, 1.0),
+        })
     }
 
     /// The grading that fits a solution.
@@ -137,9 +132,9 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         Depth {
             contact_parameter,
             bend: if bend > 0.0 {
-                bend.clamp(1e-6, LARGEST_BEND)
+                bend.clamp(SMALLEST_BEND, LARGEST_BEND)
             } else {
-                1e-6
+                SMALLEST_BEND
             },
         }
     }
@@ -228,19 +223,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             solution.fractions[contact_elements + 1 + k] =
                 (positions[contact_elements + k] - zone_start) / (FRAC_PI_2 - zone_start);
         }
-        let gauss = &self.equilibrium.gauss;
-        let elements = contact_elements + free_elements;
-        for (k, &t) in positions.iter().enumerate().take(elements + 1) {
-            (solution.nodes[k], _) = old.at(gauss, t);
-        }
-        for e in 0..elements {
-            let span = solution.span(e);
-            for j in 0..S {
-                let (state, stretch) = old.at(gauss, span.start + gauss.nodes[j] * span.length);
-                solution.stages[e][j] = state;
-                solution.stretches[e][j] = stretch;
-            }
-        }
+        old.resample(&self.equilibrium.gauss, &mut solution);
         Graded {
             solution,
             depth,
@@ -286,15 +269,19 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             return kinks;
         }
         let mut before: Option<(f64, bool)> = None;
+        let [_, pressure, contact_radius, _] = solution.parameters;
         for e in 0..solution.elements() {
             let span = solution.span(e);
             for j in 0..S {
                 let t = span.start + self.equilibrium.gauss.nodes[j] * span.length;
-                let wrinkled = self.wrinkle_margin(solution, t) < 0.0;
+                let (state, stretch) = (solution.stages[e][j], solution.stretches[e][j]);
+                let wrinkled = state[0] < 1.0
+                    && self.wrinkle_margin(solution.zone(e), t, state, pressure, contact_radius, stretch)
+                        < 0.0;
                 if let Some((left, was)) = before
                     && was != wrinkled
                 {
-                    kinks.push(self.kink_between(solution, left, t));
+                    kinks.push(self.kink_between(solution, left, t, was));
                 }
                 before = Some((t, wrinkled));
             }
@@ -303,34 +290,44 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     }
 
     /// Positive where the membrane is taut both ways, negative where hoop wrinkles stand.
-    fn wrinkle_margin(&self, solution: &Solution<S>, t: f64) -> f64 {
-        let ([u, w], stretch) = solution.at(&self.equilibrium.gauss, t);
-        if u >= 1.0 {
-            return u - 1.0 + f64::MIN_POSITIVE;
-        }
-        let tension = self.membrane().tension_measure(
-            if t < solution.parameters[CONTACT_PARAMETER] {
-                Zone::Contact
-            } else {
-                Zone::Free
-            },
-            t,
-            [u, w],
-            solution.parameters[PRESSURE],
-            solution.parameters[CONTACT_RADIUS],
-        );
+    fn wrinkle_margin(
+        &self,
+        zone: Zone,
+        t: f64,
+        state: [f64; 2],
+        pressure: f64,
+        contact_radius: f64,
+        stretch: f64,
+    ) -> f64 {
+        let [u, _] = state;
+        let tension = self
+            .membrane()
+            .tension_measure(zone, t, state, pressure, contact_radius);
         match self.membrane().uniaxial(tension.max(0.0), stretch) {
             Some((l1, _)) => u * u * l1 - 1.0,
             None => 1.0,
         }
     }
 
-    /// The kink between two points of different kind, by bisection.
-    fn kink_between(&self, solution: &Solution<S>, mut left: f64, mut right: f64) -> f64 {
-        let left_wrinkled = self.wrinkle_margin(solution, left) < 0.0;
+    /// The kink between two points of different kind, the left one wrinkled or not, by bisection.
+    fn kink_between(
+        &self,
+        solution: &Solution<S>,
+        mut left: f64,
+        mut right: f64,
+        left_wrinkled: bool,
+    ) -> f64 {
+        let [_, pressure, contact_radius, contact_parameter] = solution.parameters;
         while right - left > 1e-3 * KINK_TOLERANCE {
             let middle = 0.5 * (left + right);
-            if (self.wrinkle_margin(solution, middle) < 0.0) == left_wrinkled {
+            let (state, stretch) = solution.at(&self.equilibrium.gauss, middle);
+            let zone = if middle < contact_parameter {
+                Zone::Contact
+            } else {
+                Zone::Free
+            };
+            let wrinkled = self.wrinkle_margin(zone, middle, state, pressure, contact_radius, stretch) < 0.0;
+            if wrinkled == left_wrinkled {
                 left = middle;
             } else {
                 right = middle;

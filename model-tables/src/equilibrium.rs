@@ -87,14 +87,24 @@ impl<const S: usize> Solution<S> {
 
     /// State and a guess of the meridional stretch at `t`, by the collocation polynomials; a slack core is `[1, 0]`.
     pub fn at(&self, gauss: &Gauss<S>, t: f64) -> ([f64; STATES], f64) {
+        self.at_from(gauss, t, &mut 0)
+    }
+
+    /// The same, looking for the element from `element` on, which it leaves where it found `t`.
+    fn at_from(&self, gauss: &Gauss<S>, t: f64, element: &mut usize) -> ([f64; STATES], f64) {
         if t < self.start() {
             return ([1.0, 0.0], 1.0);
         }
-        let mut element = 0;
-        while element + 1 < self.elements() && self.span(element + 1).start <= t {
-            element += 1;
+        let mut span = self.span(*element);
+        while *element + 1 < self.elements() {
+            let next = self.span(*element + 1);
+            if next.start > t {
+                break;
+            }
+            span = next;
+            *element += 1;
         }
-        let span = self.span(element);
+        let e = *element;
         let theta = (t - span.start) / span.length;
         let nearest = gauss
             .nodes
@@ -102,9 +112,24 @@ impl<const S: usize> Solution<S> {
             .position(|&node| node >= theta)
             .unwrap_or(S - 1);
         (
-            gauss.evaluate(self.nodes[element], &self.stages[element], theta),
-            self.stretches[element][nearest],
+            gauss.evaluate(self.nodes[e], &self.stages[e], theta),
+            self.stretches[e][nearest],
         )
+    }
+
+    /// Puts the values of this solution on the mesh of `onto`.
+    pub fn resample(&self, gauss: &Gauss<S>, onto: &mut Self) {
+        let mut element = 0;
+        for e in 0..onto.elements() {
+            let span = onto.span(e);
+            (onto.nodes[e], _) = self.at_from(gauss, span.start, &mut element);
+            for j in 0..S {
+                (onto.stages[e][j], onto.stretches[e][j]) =
+                    self.at_from(gauss, span.start + gauss.nodes[j] * span.length, &mut element);
+            }
+        }
+        let elements = onto.elements();
+        onto.nodes[elements] = self.nodes[self.elements()];
     }
 
     /// The zone of element `e`.
@@ -229,8 +254,6 @@ impl Outcome {
 
 /// Iterations before Newton's method gives up.
 const MAX_ITERATIONS: u32 = 30;
-/// Predicted size of the step after the present one at which the present one is the last.
-const NEXT_STEP: f64 = 1e-14;
 /// A step this small is rounding.
 const NEGLIGIBLE_STEP: f64 = 3e-13;
 /// Steps this small that no longer shrink are rounding, amplified by the condition of the problem.
@@ -247,6 +270,8 @@ pub struct Equilibrium<L, const S: usize> {
     pub gauss: Gauss<S>,
     condensed: [Condensed<S>; MAX_ELEMENTS],
     chain: Chain<MAX_ELEMENTS>,
+    /// Relative size that the next step must be sure to stay below for the present one to be the last.
+    tolerance: f64,
 }
 
 /// `row . x + constant = 0` with one coefficient 1.
@@ -261,12 +286,15 @@ const CONTACT_EDGE: usize = 2;
 
 impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     /// Ready to solve.
-    pub fn new(membrane: Membrane<L>) -> Self {
+    ///
+    /// `tolerance` bounds the relative change that one more iteration would make.
+    pub fn new(membrane: Membrane<L>, tolerance: f64) -> Self {
         Self {
             membrane,
             gauss: Gauss::new(),
             condensed: [Condensed::default(); MAX_ELEMENTS],
             chain: Chain::new([[0.0; PARAMETERS]; STATES]),
+            tolerance,
         }
     }
 
@@ -289,13 +317,24 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
         for e in 0..solution.elements() {
             let span = solution.span(e);
             let zone = solution.zone(e);
+            let meridians = self
+                .membrane
+                .meridians(span.start, span.length, &self.gauss.nodes);
             for (j, point) in points.iter_mut().enumerate() {
-                let t = span.start + self.gauss.nodes[j] * span.length;
                 let guess = solution.stretches[e][j];
                 let (value, response) = self
                     .membrane
-                    .point(zone, t, solution.stages[e][j], pressure, contact_radius, guess)
-                    .ok_or(LineariseError::Inadmissible(t))?;
+                    .point(
+                        zone,
+                        &meridians[j],
+                        solution.stages[e][j],
+                        pressure,
+                        contact_radius,
+                        guess,
+                    )
+                    .ok_or(LineariseError::Inadmissible(
+                        span.start + self.gauss.nodes[j] * span.length,
+                    ))?;
                 *point = value;
                 solution.stretches[e][j] = response.l1;
             }
@@ -322,7 +361,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
         let mut by_parameter = [[0.0; PARAMETERS]; STATES];
         by_parameter[0][POLE] = first_by_pole[0];
         by_parameter[1][POLE] = first_by_pole[1];
-        self.chain = Chain::new(by_parameter);
+        self.chain.restart(by_parameter);
         let edge = self.membrane.meridian(contact_parameter);
         for e in 0..solution.elements() {
             if e == solution.contact_elements {
@@ -419,8 +458,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
                 };
                 // Rounding: small, and no longer shrinking.
                 let rounding = size < LARGEST_ROUNDING && size > 0.3 * step_before;
-                if size < NEGLIGIBLE_STEP || rounding || (step_before.is_finite() && next < NEXT_STEP) {
-                    self.sum_integrals(solution);
+                if size < NEGLIGIBLE_STEP || rounding || (step_before.is_finite() && next < self.tolerance) {
                     return Outcome::Converged {
                         iterations,
                         residual,
@@ -467,6 +505,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             shrink = shrink.max(relative / LARGEST_CHANGE);
         }
         let damping = 1.0 / shrink;
+        let (mut height, mut volume) = (0.0, 0.0);
         for e in 0..elements {
             let mut x = [0.0; collocation::COLUMNS];
             x[..STATES].copy_from_slice(&node_changes[e]);
@@ -477,7 +516,13 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
                     *value += damping * row.iter().zip(&x).map(|(a, b)| a * b).sum::<f64>();
                 }
             }
+            // Exact to the square of the step, which is rounding when the iteration ends.
+            let sum = |row: &[f64; collocation::COLUMNS]| row.iter().zip(&x).map(|(a, b)| a * b).sum::<f64>();
+            height += sum(&self.condensed[e].integrals[HEIGHT]);
+            volume += sum(&self.condensed[e].integrals[VOLUME]);
         }
+        solution.height = height;
+        solution.volume = volume;
         for (node, by) in solution.nodes[..=elements].iter_mut().zip(&node_changes) {
             node[0] += damping * by[0];
             node[1] += damping * by[1];
@@ -486,19 +531,6 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             *value += damping * by;
         }
         (size, damping)
-    }
-
-    /// Height and volume at the solution, from the points themselves.
-    fn sum_integrals(&self, solution: &mut Solution<S>) {
-        let (mut height, mut volume) = (0.0, 0.0);
-        self.for_each_point(solution, |e, j, span, point, _| {
-            let _ = e;
-            let weight = self.gauss.weights[j] * span.length;
-            height += weight * point.integrand[HEIGHT];
-            volume += weight * point.integrand[VOLUME];
-        });
-        solution.height = height;
-        solution.volume = volume;
     }
 
     /// Height over the base at `t`.
@@ -518,10 +550,14 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             for (node, weight) in self.gauss.nodes.iter().zip(&self.gauss.weights) {
                 let position = start + node * (end - start);
                 let (state, guess) = solution.at(&self.gauss, position);
-                if let Some((point, _)) =
-                    self.membrane
-                        .point(solution.zone(e), position, state, pressure, contact_radius, guess)
-                {
+                if let Some((point, _)) = self.membrane.point(
+                    solution.zone(e),
+                    &self.membrane.meridian(position),
+                    state,
+                    pressure,
+                    contact_radius,
+                    guess,
+                ) {
                     height += weight * (end - start) * point.integrand[HEIGHT];
                 }
             }
@@ -538,12 +574,14 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
         let [_, pressure, contact_radius, _] = solution.parameters;
         for e in 0..solution.elements() {
             let span = solution.span(e);
-            for j in 0..S {
-                let t = span.start + self.gauss.nodes[j] * span.length;
+            let meridians = self
+                .membrane
+                .meridians(span.start, span.length, &self.gauss.nodes);
+            for (j, meridian) in meridians.iter().enumerate() {
                 let state = solution.stages[e][j];
                 if let Some((point, response)) = self.membrane.point(
                     solution.zone(e),
-                    t,
+                    meridian,
                     state,
                     pressure,
                     contact_radius,

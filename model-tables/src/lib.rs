@@ -23,6 +23,7 @@ pub mod designer;
 pub mod equilibrium;
 #[cfg(feature = "std")]
 pub mod generate;
+pub mod history;
 pub mod material;
 pub mod membrane;
 pub mod mesh;

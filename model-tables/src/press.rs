@@ -1,11 +1,13 @@
 //! Pressing the fingertip: states at asked indentations, the limit, and the curve between.
 
 use crate::adapt::{Adaptive, Failure, Graded, Resolution};
+use crate::curve::Contact;
 use crate::design::Membrane as Dimensions;
 use crate::design::{Design, RestBy};
-use crate::equilibrium::{Closure, Outcome, Pole, PressControl, Solution};
+use crate::equilibrium::{Closure, Outcome, PressControl};
+use crate::history::History;
 use crate::material::{Hyperelastic, Law, Scaled};
-use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, Membrane, POLE, PRESSURE, TensionField};
+use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, Membrane, PRESSURE, TensionField};
 use crate::rest::{Branch, Quantity, RestFailure};
 use crate::state::{self, MeridianPoint, PressedState, Scale, Shape};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -17,6 +19,7 @@ pub const STAGES: usize = 6;
 pub const FULL: Resolution = Resolution {
     density: 2.5,
     contact_elements: 3,
+    tolerance: 1e-14,
 };
 
 /// What ends a press.
@@ -169,10 +172,6 @@ impl fmt::Display for Failure {
     }
 }
 
-/// States kept for prediction: cubic extrapolation.
-const HISTORY: usize = 4;
-/// Largest sum of the weights of an extrapolation.
-const LARGEST_WEIGHT: f64 = 30.0;
 /// First indentation on the way from rest, over the height.
 const FIRST_INDENTATION: f64 = 1e-4;
 /// Largest factor between indentations on the way up.
@@ -193,8 +192,7 @@ pub struct Press<L = Law, const S: usize = STAGES> {
     rest: Graded<S>,
     rest_shape: Shape,
     branch: Branch,
-    /// The latest states, newest last.
-    history: [Option<Graded<S>>; HISTORY],
+    history: History<S>,
     limit: Option<Limit>,
 }
 
@@ -281,10 +279,10 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             solver,
             scale,
             compliance: compliance * scale.pressure / scale.volume(),
+            history: History::new(&rest),
             rest,
             rest_shape,
             branch,
-            history: [None, None, None, None],
             limit: None,
         })
     }
@@ -309,9 +307,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// # Errors
     /// [`ModelError::NotAnIndentation`], [`ModelError::BeyondLimit`], [`ModelError::PressUnsolved`].
     pub fn at_indentation(&mut self, indentation: f64) -> Result<PressedState, ModelError> {
-        if !(indentation >= 0.0 && indentation.is_finite()) {
-            return Err(ModelError::NotAnIndentation { asked: indentation });
-        }
+        let contact = self.contact_at(indentation)?;
         if indentation == 0.0 {
             return Ok(PressedState {
                 indentation: 0.0,
@@ -322,38 +318,50 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 shape: self.rest_shape,
             });
         }
-        self.reach(indentation / self.scale.length)
-            .map_err(|stop| match stop {
-                Stop::BeyondLimit => match self.limit() {
-                    Ok(limit) => ModelError::BeyondLimit {
-                        asked: indentation,
-                        limit,
-                    },
-                    Err(error) => error,
+        let solution = &self.latest().solution;
+        Ok(PressedState {
+            indentation,
+            pressure_rise: contact.pressure_rise,
+            force: contact.force,
+            contact_radius: solution.parameters[CONTACT_RADIUS] * self.scale.length,
+            contact_parameter: solution.parameters[CONTACT_PARAMETER],
+            shape: state::shape(&self.solver.equilibrium, &self.scale, solution),
+        })
+    }
+
+    /// Pressure rise and force alone, at an indentation in metres, 0 ..= limit: without the sums and searches over
+    /// the meridian that the full state takes.
+    ///
+    /// # Errors
+    /// As [`Press::at_indentation`].
+    pub fn contact_at(&mut self, indentation: f64) -> Result<Contact, ModelError> {
+        if !(indentation >= 0.0 && indentation.is_finite()) {
+            return Err(ModelError::NotAnIndentation { asked: indentation });
+        }
+        if indentation == 0.0 {
+            return Ok(Contact::default());
+        }
+        if let Err(stop) = self.reach(indentation / self.scale.length) {
+            return Err(match stop {
+                Stop::BeyondLimit => ModelError::BeyondLimit {
+                    asked: indentation,
+                    limit: self.limit()?,
                 },
                 Stop::Failed { reached, failure } => ModelError::PressUnsolved {
                     asked: indentation,
                     reached: reached * self.scale.length,
                     failure,
                 },
-            })?;
-        Ok(self.latest_state(indentation))
-    }
-
-    /// The last state reached, in SI units.
-    fn latest_state(&self, indentation: f64) -> PressedState {
-        let solution = &self.latest().solution;
-        let shape = state::shape(&self.solver.equilibrium, &self.scale, solution);
-        let contact_radius = solution.parameters[CONTACT_RADIUS] * self.scale.length;
-        PressedState {
-            indentation,
-            pressure_rise: (solution.parameters[PRESSURE] - self.rest.solution.parameters[PRESSURE])
-                * self.scale.pressure,
-            force: shape.pressure * PI * contact_radius * contact_radius,
-            contact_radius,
-            contact_parameter: solution.parameters[CONTACT_PARAMETER],
-            shape,
+            });
         }
+        let parameters = &self.latest().solution.parameters;
+        let radius = parameters[CONTACT_RADIUS] * self.scale.length;
+        let rise = parameters[PRESSURE] - self.rest.solution.parameters[PRESSURE];
+        Ok(Contact {
+            indentation,
+            pressure_rise: rise * self.scale.pressure,
+            force: parameters[PRESSURE] * self.scale.pressure * PI * radius * radius,
+        })
     }
 
     /// The end of the press.
@@ -374,9 +382,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             force: pressure * PI * edge * edge * scale.tension * unit,
             ends_by,
         };
-        let mut at = self.history[HISTORY - 1]
-            .as_ref()
-            .map_or(0.0, |g| height - g.solution.height);
+        let mut at = self.history.latest().map_or(0.0, |g| height - g.solution.height);
         let mut step = LARGEST_STEP * height;
         let limit = loop {
             let next = at + step;
@@ -395,8 +401,9 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             };
             // The edge lies between: land on it.
             let closure = self.closure(PressControl::ContactRadius(edge));
-            if let (Stop::BeyondLimit, Some(latest)) = (stop, &self.history[HISTORY - 1])
-                && let Ok(landed) = self.solver.settle(latest.clone(), &closure)
+            if let (Stop::BeyondLimit, Some(latest)) = (stop, self.history.latest())
+                && let mut landed = latest.clone()
+                && self.solver.settle(&mut landed, &closure).is_ok()
             {
                 let [_, w] = landed.solution.nodes[landed.solution.elements()];
                 let indentation = height - landed.solution.height;
@@ -431,7 +438,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     }
 
     fn latest(&self) -> &Graded<S> {
-        self.history[HISTORY - 1].as_ref().unwrap_or(&self.rest)
+        self.history.latest().unwrap_or(&self.rest)
     }
 
     fn closure(&self, control: PressControl) -> Closure {
@@ -450,9 +457,11 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         if indentation >= height {
             return Err(Stop::BeyondLimit);
         }
-        if self.history[HISTORY - 1].is_none() {
+        if self.history.latest().is_none() {
             let mut first = indentation.min(FIRST_INDENTATION * height);
-            while let Err(stop) = self.attempt(self.first_contact(first), first) {
+            loop {
+                *self.history.working() = self.first_contact(first);
+                let Err(stop) = self.attempt(first) else { break };
                 first *= 0.1;
                 if first < 1e-10 * height {
                     return Err(stop);
@@ -467,10 +476,18 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 .clamp(at / factor, at * factor)
                 .clamp(at - largest_step, at + largest_step);
             let arrives = next.to_bits() == indentation.to_bits();
-            let guess = self.predict(next);
-            let result = self
-                .attempt(guess, next)
-                .or_else(|_| self.attempt(self.latest().clone(), next));
+            self.history.predict(next);
+            let mut result = self.attempt(next);
+            if matches!(result, Err(Stop::Failed { .. })) {
+                self.history.repeat();
+                result = self.attempt(next);
+            }
+            if matches!(result, Err(Stop::Failed { .. }))
+                && let Some(other) = self.solver.with_other_pole(self.latest())
+            {
+                *self.history.working() = other;
+                result = self.attempt(next);
+            }
             match result {
                 Ok(()) if arrives => return Ok(()),
                 Ok(()) => {
@@ -492,21 +509,21 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         }
     }
 
-    /// One solve; an admissible result becomes the latest state.
-    fn attempt(&mut self, guess: Graded<S>, indentation: f64) -> Result<(), Stop> {
+    /// Solves from the state in work; an admissible result becomes the latest.
+    fn attempt(&mut self, indentation: f64) -> Result<(), Stop> {
         let closure = self.closure(PressControl::Height(self.rest.solution.height - indentation));
-        let state = self
-            .solver
-            .settle(guess, &closure)
+        let edge = self.edge();
+        let state = self.history.working();
+        self.solver
+            .settle(state, &closure)
             .map_err(|failure| Stop::Failed {
                 reached: 0.0,
                 failure,
             })?;
-        if state.solution.parameters[CONTACT_RADIUS] > self.edge() * (1.0 + EDGE_ROUNDING) {
+        if state.solution.parameters[CONTACT_RADIUS] > edge * (1.0 + EDGE_ROUNDING) {
             return Err(Stop::BeyondLimit);
         }
-        self.history.rotate_left(1);
-        self.history[HISTORY - 1] = Some(state);
+        self.history.accept(indentation, &self.solver.equilibrium.gauss);
         Ok(())
     }
 
@@ -555,84 +572,6 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         }
         (solution.nodes[solution.elements()], _) = correct(FRAC_PI_2);
         laid
-    }
-
-    /// Extrapolates the latest states of the same mesh in the logarithm of the indentation.
-    fn predict(&self, indentation: f64) -> Graded<S> {
-        let height = self.rest.solution.height;
-        let latest = self.latest();
-        let alike = |graded: &Graded<S>| graded.solution.has_nearly_the_mesh_of(&latest.solution);
-        let mut places = [0.0; HISTORY];
-        let mut states: [Option<&Solution<S>>; HISTORY] = [None; HISTORY];
-        let mut count = 0;
-        for graded in self
-            .history
-            .iter()
-            .rev()
-            .map_while(Option::as_ref)
-            .take_while(|g| alike(g))
-        {
-            let place = libm::log(height - graded.solution.height);
-            if places[..count].iter().any(|p| (p - place).abs() < 1e-9) {
-                break;
-            }
-            (places[count], states[count]) = (place, Some(&graded.solution));
-            count += 1;
-        }
-        let target = libm::log(indentation);
-        let mut guess = latest.clone();
-        let weights = loop {
-            let mut weights = [0.0; HISTORY];
-            for i in 0..count {
-                weights[i] = (0..count)
-                    .filter(|&j| j != i)
-                    .map(|j| (target - places[j]) / (places[i] - places[j]))
-                    .product();
-            }
-            // Far from states that lie close together, fewer of them say more.
-            if count == 1 || weights.iter().map(|w: &f64| w.abs()).sum::<f64>() < LARGEST_WEIGHT {
-                break weights;
-            }
-            count -= 1;
-        };
-        let blend = |of: &dyn Fn(&Solution<S>) -> f64| -> f64 {
-            states[..count]
-                .iter()
-                .flatten()
-                .zip(&weights)
-                .map(|(state, weight)| weight * of(state))
-                .sum()
-        };
-        let extrapolated = &mut guess.solution;
-        for p in [POLE, PRESSURE] {
-            extrapolated.parameters[p] = blend(&|s| s.parameters[p]);
-        }
-        for p in [CONTACT_RADIUS, CONTACT_PARAMETER] {
-            extrapolated.parameters[p] = libm::exp(blend(&|s| libm::log(s.parameters[p])));
-        }
-        let sane = extrapolated.parameters[CONTACT_PARAMETER] < FRAC_PI_2
-            && extrapolated.parameters[POLE] > 0.0
-            && (extrapolated.pole == Pole::Taut
-                || extrapolated.parameters[POLE] < extrapolated.parameters[CONTACT_PARAMETER]);
-        if !sane {
-            return latest.clone();
-        }
-        for k in 0..extrapolated.elements() + 2 {
-            extrapolated.fractions[k] = blend(&|s| s.fractions[k]);
-        }
-        for e in 0..extrapolated.elements() {
-            for i in 0..2 {
-                extrapolated.nodes[e][i] = blend(&|s| s.nodes[e][i]);
-                for j in 0..S {
-                    extrapolated.stages[e][j][i] = blend(&|s| s.stages[e][j][i]);
-                }
-            }
-        }
-        let last = extrapolated.elements();
-        for i in 0..2 {
-            extrapolated.nodes[last][i] = blend(&|s| s.nodes[last][i]);
-        }
-        guess
     }
 
     /// The meridian of the state at an indentation in metres (0 is the rest state), from the pole to the equator.
@@ -701,12 +640,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         for k in 0..=CURVE_STATES {
             let ratio = k as f64 / CURVE_STATES as f64;
             let indentation = deepest * libm::pow(CURVE_RANGE, ratio - 1.0);
-            let state = self.at_indentation(indentation).map_err(CurveFailure::Model)?;
-            points.push(crate::curve::Contact {
-                pressure_rise: state.pressure_rise,
-                force: state.force,
-                indentation,
-            });
+            points.push(self.contact_at(indentation).map_err(CurveFailure::Model)?);
         }
         crate::curve::Curve::new(points).map_err(CurveFailure::Shape)
     }

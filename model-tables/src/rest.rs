@@ -126,7 +126,8 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// [`Failure`] when even a slow way from the sphere, whose state is known, does not arrive.
     pub fn rest_by_pole_stretch(&mut self, pole_stretch: f64) -> Result<Graded<S>, Failure> {
         let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
-        if let Ok(state) = self.settle(self.inflated_guess(pole_stretch), &closure) {
+        let mut state = self.inflated_guess(pole_stretch);
+        if self.settle(&mut state, &closure).is_ok() {
             return Ok(state);
         }
         // Continuation in the aspect, from the sphere; a plain membrane first, so that kinks come last.
@@ -134,24 +135,27 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             self.equilibrium.membrane.aspect,
             self.equilibrium.membrane.tension_field,
         );
-        let mut result = Err(Failure::Unsettled);
+        let mut result: Result<(), Failure> = Err(Failure::Unsettled);
         for steps in [4, 16, 64] {
             self.equilibrium.membrane.tension_field = TensionField::Plain;
             self.equilibrium.membrane.aspect = 1.0;
-            let mut state = self.settle(self.inflated_guess(pole_stretch), &closure);
+            let mut state = self.inflated_guess(pole_stretch);
+            result = self.settle(&mut state, &closure);
             for k in 1..=steps {
-                let Ok(from) = state else { break };
+                if result.is_err() {
+                    break;
+                }
                 self.equilibrium.membrane.aspect = libm::pow(aspect, f64::from(k) / f64::from(steps));
-                state = self.settle(from, &closure);
+                result = self.settle(&mut state, &closure);
             }
             self.equilibrium.membrane.aspect = aspect;
             self.equilibrium.membrane.tension_field = field;
-            result = state.and_then(|from| self.settle(from, &closure));
+            result = result.and_then(|()| self.settle(&mut state, &closure));
             if result.is_ok() {
-                break;
+                return Ok(state);
             }
         }
-        result
+        Err(result.err().unwrap_or(Failure::Unsettled))
     }
 
     /// The rest state of a pressure, equator radius or height, all dimensionless.
@@ -204,9 +208,13 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     fn rest_near(&mut self, from: Option<&Graded<S>>, pole_stretch: f64) -> Result<Graded<S>, Failure> {
         let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
         match from {
-            Some(from) => self
-                .settle(from.clone(), &closure)
-                .or_else(|_| self.rest_by_pole_stretch(pole_stretch)),
+            Some(from) => {
+                let mut state = from.clone();
+                match self.settle(&mut state, &closure) {
+                    Ok(()) => Ok(state),
+                    Err(_) => self.rest_by_pole_stretch(pole_stretch),
+                }
+            }
             None => self.rest_by_pole_stretch(pole_stretch),
         }
     }
@@ -274,7 +282,8 @@ impl<const S: usize> Scan<S> {
             // Below the first stretch looked at, pressure falls to nothing.
             None if self.quantity == Quantity::Pressure && excess >= 0.0 => {
                 let closure = Closure::Rest(RestControl::Pressure(self.value));
-                if let Ok(root) = solver.settle(state.clone(), &closure) {
+                let mut root = state.clone();
+                if solver.settle(&mut root, &closure).is_ok() {
                     self.roots[0] = Some(root);
                 }
             }

@@ -140,6 +140,7 @@ fn mesh_refinement_converges_fast() {
         let resolution = Resolution {
             density,
             contact_elements: 6,
+            tolerance: 1e-14,
         };
         let mut press: Press =
             Press::with_resolution(&design, TensionField::Relaxed, resolution).expect("rest");

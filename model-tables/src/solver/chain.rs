@@ -33,18 +33,26 @@ pub struct Chain<const MAX: usize> {
 impl<const MAX: usize> Chain<MAX> {
     /// A chain whose first node obeys `y_0 = by_parameter p` in the changes.
     pub fn new(by_parameter: [[f64; PARAMETERS]; STATES]) -> Self {
-        let mut link = [[0.0; UNKNOWNS + 1]; STATES];
-        for (i, row) in link.iter_mut().enumerate() {
+        let mut chain = Self {
+            eliminated: [[[0.0; UNKNOWNS + 1]; STATES]; MAX],
+            nodes: 0,
+            link: [[0.0; UNKNOWNS + 1]; STATES],
+            borders: [[0.0; UNKNOWNS + 1]; BORDERS],
+        };
+        chain.restart(by_parameter);
+        chain
+    }
+
+    /// Begins anew, as [`Chain::new`].
+    pub fn restart(&mut self, by_parameter: [[f64; PARAMETERS]; STATES]) {
+        self.nodes = 0;
+        self.borders = [[0.0; UNKNOWNS + 1]; BORDERS];
+        for (i, row) in self.link.iter_mut().enumerate() {
+            *row = [0.0; UNKNOWNS + 1];
             row[i] = 1.0;
             for (x, y) in row[STATES..CONSTANT].iter_mut().zip(&by_parameter[i]) {
                 *x = -y;
             }
-        }
-        Self {
-            eliminated: [[[0.0; UNKNOWNS + 1]; STATES]; MAX],
-            nodes: 0,
-            link,
-            borders: [[0.0; UNKNOWNS + 1]; BORDERS],
         }
     }
 
