@@ -444,7 +444,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             let Some(change) = self.step(solution, closure) else {
                 return Outcome::Singular { iterations };
             };
-            let (size, damping) = self.apply(solution, &change);
+            let Step { size, pole, damping } = self.apply(solution, &change);
             if !size.is_finite() {
                 return Outcome::Singular { iterations };
             }
@@ -458,7 +458,10 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
                 };
                 // Rounding: small, and no longer shrinking.
                 let rounding = size < LARGEST_ROUNDING && size > 0.3 * step_before;
-                if size < NEGLIGIBLE_STEP || rounding || (step_before.is_finite() && next < self.tolerance) {
+                if size < NEGLIGIBLE_STEP
+                    || rounding
+                    || (step_before.is_finite() && next < self.tolerance && pole < libm::sqrt(self.tolerance))
+                {
                     return Outcome::Converged {
                         iterations,
                         residual,
@@ -473,8 +476,8 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
         Outcome::Stalled { step: step_before }
     }
 
-    /// Adds a damped step to the solution. The undamped step's relative size, and the damping (1 = none).
-    fn apply(&mut self, solution: &mut Solution<S>, change: &[f64; UNKNOWNS]) -> (f64, f64) {
+    /// Adds a damped step to the solution.
+    fn apply(&mut self, solution: &mut Solution<S>, change: &[f64; UNKNOWNS]) -> Step {
         let elements = solution.elements();
         let mut node_changes = [[0.0; STATES]; MAX_ELEMENTS + 1];
         self.chain
@@ -484,10 +487,13 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             .fold(0.0_f64, |a, y| a.max(y[1].abs()));
         let mut size: f64 = 0.0;
         let mut shrink: f64 = 1.0;
-        for (node, by) in solution.nodes[..=elements].iter().zip(&node_changes) {
+        let mut pole: f64 = 0.0;
+        for (k, (node, by)) in solution.nodes[..=elements].iter().zip(&node_changes).enumerate() {
             let relative = (by[0] / node[0]).abs();
-            size = size.max(relative).max(by[1].abs() / tension.max(1e-3));
             shrink = shrink.max(relative / LARGEST_CHANGE);
+            if k > 0 {
+                size = size.max(relative).max(by[1].abs() / tension.max(1e-3));
+            }
         }
         let parameter_changes = &change[STATES..];
         for (m, &by) in parameter_changes.iter().enumerate() {
@@ -501,7 +507,11 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
                 value
             };
             let relative = (by / scale).abs();
-            size = size.max((by / value).abs());
+            if m == POLE {
+                pole = (by / value).abs();
+            } else {
+                size = size.max((by / value).abs());
+            }
             shrink = shrink.max(relative / LARGEST_CHANGE);
         }
         let damping = 1.0 / shrink;
@@ -530,7 +540,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
         for (value, by) in solution.parameters.iter_mut().zip(parameter_changes) {
             *value += damping * by;
         }
-        (size, damping)
+        Step { size, pole, damping }
     }
 
     /// Height over the base at `t`.
@@ -592,6 +602,17 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             }
         }
     }
+}
+
+/// A step of Newton's method, relative to the solution.
+struct Step {
+    /// Largest change of the states at the nodes and of pressure and contact.
+    size: f64,
+    /// Change of the pole. It is a singular point: nothing else depends on it strongly, and it settles an iteration
+    /// later.
+    pole: f64,
+    /// What the step was multiplied by, 1 for a full step.
+    damping: f64,
 }
 
 enum LineariseError {

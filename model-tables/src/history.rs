@@ -120,7 +120,9 @@ impl<const S: usize> History<S> {
             (s.contact_elements, s.free_elements, s.pole)
         };
         let (before, rest) = self.slots.split_at_mut(work);
-        let (target, after) = rest.split_first_mut().expect("the working slot exists");
+        let Some((target, after)) = rest.split_first_mut() else {
+            return;
+        };
         let source = |slot: usize| -> &Solution<S> {
             if slot < work {
                 &before[slot].solution

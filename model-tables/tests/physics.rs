@@ -7,7 +7,7 @@ use model_tables::adapt::Resolution;
 use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::press::{EndsBy, ModelError, Press};
+use model_tables::press::{EndsBy, ModelError, Press, SWEEP};
 use model_tables::rest::Branch;
 use model_tables::state::Wrinkling;
 use proptest::prelude::*;
@@ -154,6 +154,31 @@ fn mesh_refinement_converges_fast() {
     // Order twelve would give 4096; the grading is not yet asymptotic on so few elements.
     assert!(coarse / fine > 100.0, "{coarse:e} -> {fine:e}");
     assert!((force(1.0) / exact - 1.0).abs() < 1e-8);
+}
+
+#[test]
+fn the_sweep_mesh_keeps_eight_digits_of_force() {
+    for design in [
+        design(4.5, 2.7, 1.0, AGILUS30, 2.3),
+        design(9.0, 7.0, 1.0, AGILUS30, 1.02),
+    ] {
+        let mut full = press(&design);
+        let mut sweep: Press<Law, 5> =
+            Press::with_resolution(&design, TensionField::Relaxed, SWEEP).expect("rest state");
+        let end = full.limit().expect("limit").indentation;
+        for k in 1..=64 {
+            let indentation = end * f64::from(k) / 64.5;
+            let (a, b) = (
+                full.contact_at(indentation).expect("full"),
+                sweep.contact_at(indentation).expect("sweep"),
+            );
+            assert!(
+                (b.force / a.force - 1.0).abs() < 1e-8,
+                "at {indentation}: {:e}",
+                b.force / a.force - 1.0
+            );
+        }
+    }
 }
 
 #[test]
