@@ -1,0 +1,44 @@
+//! What the crate's documentation states, held to the crate.
+
+use model_tables::press::Press;
+
+const DOCUMENTATION: &str = include_str!("../src/lib.rs");
+
+#[test]
+fn the_stated_compiler_is_the_one_cargo_asks_for() {
+    let stated = format!("Rust {} or later", env!("CARGO_PKG_RUST_VERSION"));
+    assert!(DOCUMENTATION.contains(&stated), "{stated}");
+}
+
+#[test]
+fn the_stated_memory_is_that_of_a_press() {
+    let kilobytes = size_of::<Press>() as f64 / 1e3;
+    let stated: f64 = DOCUMENTATION
+        .split_once("of about ")
+        .and_then(|(_, rest)| rest.split_once(" kB"))
+        .and_then(|(number, _)| number.parse().ok())
+        .expect("a number of kB");
+    assert!((kilobytes / stated - 1.0).abs() < 0.1, "{kilobytes} kB");
+}
+
+#[test]
+fn a_press_may_cross_threads() {
+    fn crosses<T: Send + Sync>() {}
+    crosses::<Press>();
+}
+
+#[test]
+fn every_feature_is_documented() {
+    let manifest = include_str!("../Cargo.toml");
+    let features = manifest
+        .split_once("[features]")
+        .and_then(|(_, rest)| rest.split_once("\n["))
+        .expect("a section of features")
+        .0;
+    for line in features.lines().filter(|line| !line.starts_with('#')) {
+        let name = line.split(" =").next().unwrap_or_default();
+        if !name.is_empty() && name != "default" {
+            assert!(DOCUMENTATION.contains(&format!("//! | `{name}` |")), "{name}");
+        }
+    }
+}
