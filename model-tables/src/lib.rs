@@ -41,7 +41,7 @@
 //! | `cli` | no | the `designer` command line; implies `std` |
 //!
 //! On a chip: `model-tables = { ..., default-features = false }`. The look-up works in integers alone. The model works in
-//! `f64` and keeps everything in one [`press::Press`] of about 120 kB.
+//! `f64` and keeps everything in one [`press::Press`] of less than 200 kB.
 //!
 //! # What it promises
 //!

@@ -11,14 +11,14 @@ fn the_stated_compiler_is_the_one_cargo_asks_for() {
 }
 
 #[test]
-fn the_stated_memory_is_that_of_a_press() {
+fn a_press_fits_the_stated_memory() {
     let kilobytes = size_of::<Press>() as f64 / 1e3;
     let stated: f64 = DOCUMENTATION
-        .split_once("of about ")
+        .split_once("of less than ")
         .and_then(|(_, rest)| rest.split_once(" kB"))
         .and_then(|(number, _)| number.parse().ok())
         .expect("a number of kB");
-    assert!((kilobytes / stated - 1.0).abs() < 0.1, "{kilobytes} kB");
+    assert!(kilobytes < stated && kilobytes > 0.4 * stated, "{kilobytes} kB");
 }
 
 #[test]
