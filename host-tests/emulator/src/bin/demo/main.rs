@@ -82,7 +82,7 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
     let caption = Caption {
         title: format!("{} on {}", options.scenario, design.name()),
         subtitle: format!(
-            "{} readings; median error from 5 % of full scale up: force {:.2} %, indentation {:.2} % of reading",
+            "{} readings; median error from 5 % of full scale up: force {:.3} %, indentation {:.3} % of reading",
             accuracy.readings,
             accuracy.force_median * 100.0,
             accuracy.indentation_median * 100.0
