@@ -44,7 +44,7 @@ mod probe {
                 pressure_fraction_bits: ImageDesign::PRESSURE_FRACTION_BITS as u8,
             };
             // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
-            let _ = line.write(encode(&Frame { sequence, message }).as_bytes()).await;
+            let _ = line.write(&encode(&Frame { sequence, message })).await;
             sequence = sequence.wrapping_add(1);
             watchdog.pet();
         }
@@ -58,7 +58,7 @@ mod probe {
                 blocks_lost: 0,
                 frames_dropped: 0,
             });
-            let _ = line.write(encode(&Frame { sequence, message }).as_bytes()).await;
+            let _ = line.write(&encode(&Frame { sequence, message })).await;
             sequence = sequence.wrapping_add(1);
             watchdog.pet();
             Timer::after_millis(10).await;

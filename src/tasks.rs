@@ -147,7 +147,7 @@ async fn send(mut line: Line) {
         let frame = QUEUE.receive().await;
         let encoded = telemetry::encode(&frame);
         // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
-        let _ = line.write(encoded.as_bytes()).await;
+        let _ = line.write(encoded.as_slice()).await;
     }
 }
 

@@ -48,6 +48,7 @@
 use crate::report::{Fault, Measurement, Microseconds, Report, Warnings};
 use core::fmt;
 use crc::{CRC_16_IBM_3740, Crc};
+use heapless::Vec;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// Version of the layout above.
@@ -195,21 +196,11 @@ impl fmt::Display for DecodeError {
 impl core::error::Error for DecodeError {}
 
 /// Bytes of one frame, the closing zero included.
-pub struct Encoded {
-    bytes: [u8; MAXIMUM_FRAME],
-    length: usize,
-}
-
-impl Encoded {
-    /// The bytes to send.
-    pub fn as_bytes(&self) -> &[u8] {
-        &self.bytes[..self.length.min(MAXIMUM_FRAME)]
-    }
-}
+pub type Encoded = Vec<u8, MAXIMUM_FRAME>;
 
 /// The bytes of a frame, ready for the wire.
 pub fn encode(frame: &Frame) -> Encoded {
-    let mut body = Writer::new();
+    let mut body = Writer(Vec::new());
     match &frame.message {
         Message::Report {
             report,
@@ -238,15 +229,14 @@ pub fn encode(frame: &Frame) -> Encoded {
             body.put(hello.frames_dropped.to_le_bytes());
         }
     }
-    body.put(CHECK.checksum(body.filled()).to_le_bytes());
+    body.put(CHECK.checksum(&body.0).to_le_bytes());
 
     let mut bytes = [0; MAXIMUM_FRAME];
     // The destination has room for the longest frame, so this cannot fail; a zero alone would be an empty frame.
-    let stuffed = cobs::try_encode(body.filled(), &mut bytes[..MAXIMUM_FRAME - 1]).unwrap_or(0);
-    Encoded {
-        bytes,
-        length: stuffed + 1,
-    }
+    let stuffed = cobs::try_encode(&body.0, &mut bytes[..MAXIMUM_FRAME - 1]).unwrap_or(0);
+    let mut encoded = Encoded::from_array(bytes);
+    encoded.truncate(stuffed + 1);
+    encoded
 }
 
 /// The frame in the bytes between two zeros (the zeros themselves left out).
@@ -341,38 +331,29 @@ fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
 }
 
 /// Frames out of a stream of bytes that come one at a time.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Decoder {
-    bytes: [u8; MAXIMUM_FRAME],
-    length: usize,
-}
-
-impl Default for Decoder {
-    fn default() -> Self {
-        Self {
-            bytes: [0; MAXIMUM_FRAME],
-            length: 0,
-        }
-    }
+    bytes: Vec<u8, MAXIMUM_FRAME>,
+    /// More bytes came without a zero than any frame has.
+    overflowed: bool,
 }
 
 impl Decoder {
     /// Takes the next byte; at the zero that closes a frame, what the frame says. Zeros alone say nothing.
     pub fn push(&mut self, byte: u8) -> Option<Result<Frame, DecodeError>> {
         if byte != 0 {
-            if let Some(place) = self.bytes.get_mut(self.length) {
-                *place = byte;
-            }
-            // Past the end it only grows, so that a flood of bytes without a zero reads as too long.
-            self.length = self.length.saturating_add(1);
+            self.overflowed |= self.bytes.push(byte).is_err();
             return None;
         }
-        let length = core::mem::take(&mut self.length);
-        match self.bytes.get(..length) {
-            Some([]) => None,
-            Some(stuffed) => Some(decode(stuffed)),
-            None => Some(Err(DecodeError::Stuffing)),
-        }
+        let said = if core::mem::take(&mut self.overflowed) {
+            Some(Err(DecodeError::Stuffing))
+        } else if self.bytes.is_empty() {
+            None
+        } else {
+            Some(decode(&self.bytes))
+        };
+        self.bytes.clear();
+        said
     }
 }
 
@@ -391,34 +372,18 @@ fn named_by<T: Copy>(codes: &[(T, u8)], wanted: u8) -> Option<T> {
 }
 
 /// Fields put one after the other.
-struct Writer {
-    bytes: [u8; MAXIMUM_PLAIN],
-    length: usize,
-}
+struct Writer(Vec<u8, MAXIMUM_PLAIN>);
 
 impl Writer {
-    const fn new() -> Self {
-        Self {
-            bytes: [0; MAXIMUM_PLAIN],
-            length: 0,
-        }
-    }
-
     fn put<const N: usize>(&mut self, field: [u8; N]) {
-        if let Some(place) = self.bytes.get_mut(self.length..self.length + N) {
-            place.copy_from_slice(&field);
-            self.length += N;
-        }
+        // MAXIMUM_PLAIN holds the longest body: nothing is ever left out.
+        let _ = self.0.extend_from_slice(&field);
     }
 
     fn header(&mut self, kind: u8, sequence: u16, time: Microseconds) {
         self.put([PROTOCOL_VERSION, kind]);
         self.put(sequence.to_le_bytes());
         self.put(time.0.to_le_bytes());
-    }
-
-    fn filled(&self) -> &[u8] {
-        &self.bytes[..self.length.min(MAXIMUM_PLAIN)]
     }
 }
 

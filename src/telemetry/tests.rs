@@ -78,13 +78,13 @@ fn frames_are_the_documented_bytes() {
         (fault(), FAULT_FRAME),
         (hello(), HELLO_FRAME),
     ] {
-        assert_eq!(encode(&frame).as_bytes(), bytes);
+        assert_eq!(encode(&frame).as_slice(), bytes);
         assert_eq!(decode(&bytes[..bytes.len() - 1]), Ok(frame));
     }
 }
 
 /// A body with its CRC, stuffed: what only a broken or newer sender would write.
-fn stuffed(body: &[u8]) -> Vec<u8> {
+fn stuffed(body: &[u8]) -> std::vec::Vec<u8> {
     let mut plain = body.to_vec();
     plain.extend(CHECK.checksum(body).to_le_bytes());
     cobs::encode_vec(&plain)
@@ -114,7 +114,7 @@ fn a_stream_is_in_step_again_after_noise() {
     stream.extend(READING_FRAME);
     stream.extend(&FAULT_FRAME[3..]);
     stream.extend(HELLO_FRAME);
-    let answers: Vec<_> = stream.iter().filter_map(|&byte| decoder.push(byte)).collect();
+    let answers: std::vec::Vec<_> = stream.iter().filter_map(|&byte| decoder.push(byte)).collect();
     assert_eq!(answers.len(), 4);
     assert_eq!(answers[0], Err(DecodeError::Stuffing));
     assert_eq!(answers[1], Ok(reading()));
@@ -167,7 +167,7 @@ proptest! {
     #[test]
     fn a_frame_survives_the_wire(frame in any_frame()) {
         let encoded = encode(&frame);
-        let (last, stuffed) = encoded.as_bytes().split_last().expect("never empty");
+        let (last, stuffed) = encoded.as_slice().split_last().expect("never empty");
         prop_assert_eq!(*last, 0);
         prop_assert!(!stuffed.contains(&0));
         prop_assert_eq!(decode(stuffed), Ok(frame));
@@ -175,7 +175,7 @@ proptest! {
 
     #[test]
     fn one_flipped_bit_is_never_a_frame(frame in any_frame(), place in any::<prop::sample::Index>(), bit in 0..8) {
-        let mut bytes = encode(&frame).as_bytes().to_vec();
+        let mut bytes = encode(&frame).as_slice().to_vec();
         bytes.pop();
         let index = place.index(bytes.len());
         bytes[index] ^= 1_u8 << bit;

@@ -184,7 +184,7 @@ mod tests {
             clock_zero: 0.01,
         };
         for frame in frames {
-            for &byte in encode(frame).as_bytes() {
+            for &byte in &encode(frame) {
                 assert!(recorder.hear(byte, moment, &plant).is_continue());
             }
         }
