@@ -1,0 +1,38 @@
+//! The figures of the README that the host can compute.
+
+use host_tests::{assert_readme_says, design};
+use micromath::F32Ext;
+use model_tables::generate;
+
+#[test]
+fn tables_of_the_shipped_designs() {
+    for name in ["index-fingertip", "paper-prestretched", "skin-analogue"] {
+        let generated = generate::from_design_file(&design(name)).expect("a shipped design");
+        let (tables, certificate) = (&generated.certified.tables, &generated.certified.certificate);
+        assert_readme_says(&format!(
+            "| {name} | {} | {} | {:.3} | {:.3} |",
+            tables.bytes(),
+            certificate.inputs,
+            certificate.force.of_reading.max,
+            certificate.indentation.of_reading.max,
+        ));
+    }
+}
+
+/// Largest relative error of `of` against `truth` over 1/1000 ..= 1, percent.
+fn largest_error(of: impl Fn(f32) -> f32, truth: impl Fn(f64) -> f64) -> f64 {
+    (1..=1000_u16)
+        .map(|i| f32::from(i) / 1000.0)
+        .map(|x| (f64::from(of(x)) / truth(f64::from(x)) - 1.0).abs() * 100.0)
+        .fold(0.0, f64::max)
+}
+
+/// A closed form `H ~ dP^n` would need a power; over the press of a fingertip n goes from 0.9 to 0.5.
+#[test]
+fn micromath_is_too_coarse() {
+    let power = largest_error(|x| F32Ext::powf(x, 0.7), |x| x.powf(0.7));
+    let root = largest_error(F32Ext::sqrt, f64::sqrt);
+    assert_readme_says(&format!(
+        "its `powf` is off by up to {power:.1} % and its `sqrt` by up to {root:.1} %, where the tables keep 0.1 %"
+    ));
+}
