@@ -2,7 +2,7 @@
 //!
 //! A zero taken on a pressed fingertip reads every later press too low, so it is gated twice: the window must
 //! be quiet, and its mean near the rest pressure the design was solved for. The gate cannot tell a still,
-//! light press at power-up from a transducer's offset: what it lets through is bounded by [`BAND_PERMILLE`] of
+//! light press at power-up from a transducer's offset: what it lets through is bounded by `BAND_PERMILLE` of
 //! the transducer's range. When no window passes in [`PATIENCE`], and after a reset that nobody saw coming
 //! (the hand may be holding something), the design's rest pressure serves, and every reading says so.
 
