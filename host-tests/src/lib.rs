@@ -33,3 +33,32 @@ pub fn assert_readme_says(line: &str) {
         "README.md is stale; it should say\n{line}"
     );
 }
+
+/// The number beside `label` in a table of the README: the last column, its unit left out.
+///
+/// # Panics
+/// If there is no such row, or no number in it.
+pub fn readme_figure(label: &str) -> f64 {
+    let readme = fs::read_to_string(workspace().join("README.md")).expect("the README is there");
+    let row = readme
+        .lines()
+        .find(|line| line.starts_with(&format!("| {label} |")))
+        .unwrap_or_else(|| panic!("README.md has no row \"{label}\""));
+    let last = row.trim_end_matches('|').rsplit('|').next().unwrap_or_default();
+    let number: String = last.chars().filter(|c| c.is_ascii_digit() || *c == '.').collect();
+    number
+        .parse()
+        .unwrap_or_else(|_| panic!("README.md: no number in the row \"{label}\""))
+}
+
+/// Asserts that the README's figure is the measured one, to `share` of it (0: exactly).
+///
+/// # Panics
+/// If it is not, with the figure as it should be.
+pub fn assert_readme_figure(label: &str, measured: f64, share: f64) {
+    let quoted = readme_figure(label);
+    assert!(
+        (quoted - measured).abs() <= share * measured.abs(),
+        "README.md is stale: \"{label}\" is {measured}, not {quoted}"
+    );
+}

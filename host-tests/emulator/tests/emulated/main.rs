@@ -4,6 +4,7 @@ mod cost;
 mod faults;
 mod integers;
 mod press;
+mod readme;
 
 use emulator::bench::{self, Outcome};
 use emulator::fingertip_design::{FingertipDesign, default_path};
