@@ -72,6 +72,8 @@ pub mod history;
 pub mod material;
 pub mod membrane;
 pub mod mesh;
+#[cfg(feature = "std")]
+pub mod methods;
 pub mod press;
 pub mod rest;
 pub mod solver;

@@ -1,0 +1,437 @@
+//! The way of the source paper: fixed-step Runge-Kutta from the pole, nested bisections of the unknowns.
+//!
+//! Shi, Shariati, Eames and Wurdemann, *Soft Matter* 18 (2022) 9076, with the equations of equilibrium as they are
+//! (the printed ones carry misprints). State `rho, l1, phi, height, volume` over the meridian's parameter: radius,
+//! stretch and tangent angle. The innermost bisection closes the edge's radius by the pole stretch, the middle one
+//! the volume by the pressure, the outer one the indentation by the contact edge.
+//!
+//! Its weaknesses: thousands of integrations a state, each bisection at the mercy of the tolerance of those inside
+//! it; and fixed steps that are too long next to a small contact, where everything varies with the distance to the
+//! pole.
+
+use super::plain::Problem;
+use super::{Failure, Found, Unknown};
+use crate::design::Design;
+use crate::material::Hyperelastic;
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// Radius, stretch, angle, height, volume.
+type State = [f64; 5];
+/// Parts of the free zone's steps that the contact zone gets.
+const CONTACT_SHARE: usize = 4;
+/// First guess of how far a root lies from the state before, relative.
+const FIRST_SPREAD: f64 = 0.02;
+/// Growth of a bracket that does not hold the root.
+const SPREAD_GROWTH: f64 = 2.5;
+/// Attempts at a bracket.
+const MOST_BRACKETS: usize = 12;
+/// What is left of an equation, over the tolerance, at which a root was a jump.
+const JUMP: f64 = 300.0;
+/// Indentations below so many tolerances of the height are lost in the errors of the bisections.
+const LEAST_INDENTATION: f64 = 30.0;
+
+/// How fine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fineness {
+    /// Steps from contact edge to equator.
+    pub steps: usize,
+    /// Relative width at which a bisection ends.
+    pub tolerance: f64,
+}
+
+/// The fineness of the paper.
+pub const PAPER: Fineness = Fineness {
+    steps: 200,
+    tolerance: 1e-4,
+};
+
+/// Nested bisection for one design.
+#[derive(Clone, Debug)]
+pub struct Bisection {
+    problem: Problem,
+    fineness: Fineness,
+    rest: Rest,
+    /// Pole stretch, pressure, contact parameter of the state before.
+    latest: Option<[f64; 3]>,
+    integrations: u64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Rest {
+    pressure: f64,
+    edge: f64,
+    height: f64,
+    volume: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Reached {
+    end: State,
+    contact_radius: f64,
+    compressed: bool,
+}
+
+/// The side of the root on which a function may be undefined: the integration blows up there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Undefined {
+    Below,
+    Above,
+}
+
+/// A root of an increasing function, to a relative width. The bracket starts around `guess`, grows, and stays within
+/// `limits`.
+fn bisect(
+    unknown: Unknown,
+    undefined: Undefined,
+    tolerance: f64,
+    guess: f64,
+    limits: [f64; 2],
+    mut of: impl FnMut(f64) -> Result<f64, Failure>,
+) -> Result<f64, Failure> {
+    let mut last = None;
+    let mut value = |x: f64| match of(x) {
+        Ok(value) => value,
+        Err(failure) => {
+            last = Some(failure);
+            match undefined {
+                Undefined::Below => f64::NEG_INFINITY,
+                Undefined::Above => f64::INFINITY,
+            }
+        }
+    };
+    let (mut low, mut high) = (guess, guess);
+    let mut below = value(guess);
+    let mut above = below;
+    let mut spread = FIRST_SPREAD;
+    for _ in 0..MOST_BRACKETS {
+        if below < 0.0 && above >= 0.0 {
+            break;
+        }
+        if above < 0.0 {
+            (low, below) = (high, above);
+            high = (high * (1.0 + spread)).min(limits[1]);
+            above = value(high);
+        } else {
+            (high, above) = (low, below);
+            low = (low * (1.0 - spread).max(0.5)).max(limits[0]);
+            below = value(low);
+        }
+        spread *= SPREAD_GROWTH;
+    }
+    if below >= 0.0 || above < 0.0 {
+        return Err(last.unwrap_or(Failure::NoBracket { unknown }));
+    }
+    while high - low > tolerance * high {
+        let middle = 0.5 * (low + high);
+        let found = value(middle);
+        if found < 0.0 {
+            (low, below) = (middle, found);
+        } else {
+            (high, above) = (middle, found);
+        }
+    }
+    let residual = above.min(-below);
+    if residual.is_infinite() {
+        return Err(last.unwrap_or(Failure::NoBracket { unknown }));
+    }
+    if residual > JUMP * tolerance {
+        return Err(Failure::Jump { unknown, residual });
+    }
+    Ok(0.5 * (low + high))
+}
+
+impl Bisection {
+    /// Inflates a design to its rest state.
+    ///
+    /// # Errors
+    /// [`Failure`].
+    pub fn new(design: &Design, fineness: Fineness) -> Result<Self, Failure> {
+        let problem = Problem::new(design)?;
+        let stretch = problem.pole_stretch;
+        let mut found = Self {
+            problem,
+            fineness,
+            rest: Rest {
+                pressure: 0.0,
+                edge: 0.0,
+                height: 0.0,
+                volume: 0.0,
+            },
+            latest: None,
+            integrations: 0,
+        };
+        let tension = problem.law.derivatives(stretch, stretch).w1 / stretch;
+        let guess = 2.0 * tension / stretch * problem.aspect;
+        // More pressure turns the equator further; where the integration fails it was too much.
+        let pressure = bisect(
+            Unknown::Pressure,
+            Undefined::Above,
+            fineness.tolerance,
+            guess,
+            [0.01 * guess, 10.0 * guess],
+            |pressure| Ok(found.integrate([stretch, pressure, 0.0])?.end[2] - FRAC_PI_2),
+        )?;
+        let end = found.integrate([stretch, pressure, 0.0])?.end;
+        found.rest = Rest {
+            pressure,
+            edge: end[0],
+            height: end[3],
+            volume: end[4],
+        };
+        Ok(found)
+    }
+
+    /// Integrations from pole to equator made so far.
+    pub fn integrations(&self) -> u64 {
+        self.integrations
+    }
+
+    /// Rest pressure, pascals.
+    pub fn rest_pressure(&self) -> f64 {
+        self.rest.pressure * self.problem.scale.pressure
+    }
+
+    /// The state at an indentation in metres.
+    ///
+    /// # Errors
+    /// [`Failure`].
+    pub fn at_indentation(&mut self, indentation: f64) -> Result<Found, Failure> {
+        if !(indentation > 0.0 && indentation.is_finite()) {
+            return Err(Failure::NotAnIndentation { asked: indentation });
+        }
+        let scale = self.problem.scale;
+        let target = indentation / scale.length;
+        let [stretch, pressure, contact] = self.latest.unwrap_or_else(|| self.first_contact(target));
+        let tolerance = self.fineness.tolerance;
+        let least = LEAST_INDENTATION * tolerance * self.rest.height;
+        if target < least {
+            return Err(Failure::BelowResolution {
+                asked: indentation,
+                least: least * scale.length,
+            });
+        }
+        let mut inner = (stretch, pressure);
+        let this = &mut *self;
+        let contact = bisect(
+            Unknown::Contact,
+            Undefined::Above,
+            tolerance,
+            contact,
+            [1e-6, FRAC_PI_2 * (1.0 - 1e-6)],
+            |contact| {
+                let reached = this.at_contact(contact, &mut inner)?;
+                Ok((this.rest.height - target - reached.end[3]) / this.rest.height)
+            },
+        )?;
+        let reached = self.at_contact(contact, &mut inner)?;
+        let (pole_stretch, pressure) = inner;
+        self.latest = Some([pole_stretch, pressure, contact]);
+        let ratio = reached.contact_radius / self.rest.edge;
+        if ratio > 1.0 + tolerance {
+            return Err(Failure::BeyondLimit { ratio });
+        }
+        let contact_radius = reached.contact_radius * scale.length;
+        Ok(Found {
+            indentation,
+            pressure: pressure * scale.pressure,
+            pressure_rise: (pressure - self.rest.pressure) * scale.pressure,
+            force: pressure * scale.pressure * PI * contact_radius * contact_radius,
+            contact_radius,
+            contact_parameter: contact,
+            pole_stretch,
+            compressed: reached.compressed,
+        })
+    }
+
+    fn first_contact(&self, target: f64) -> [f64; 3] {
+        let stretch = self.problem.pole_stretch;
+        let tension = self.problem.law.derivatives(stretch, stretch).w1 / stretch;
+        let radius = libm::sqrt(2.0 * tension * target / (2.0 * self.rest.pressure));
+        let contact = libm::asin((radius / stretch).min(0.5));
+        [stretch, self.rest.pressure, contact]
+    }
+
+    /// The state of a contact edge: bisects the pressure for the volume.
+    fn at_contact(&mut self, contact: f64, inner: &mut (f64, f64)) -> Result<Reached, Failure> {
+        let (mut stretch, guess) = *inner;
+        let compliance = self.problem.compliance;
+        let fluid = self.rest.volume + compliance * self.rest.pressure;
+        let this = &mut *self;
+        let pressure = bisect(
+            Unknown::Pressure,
+            Undefined::Above,
+            this.fineness.tolerance,
+            guess,
+            [0.2 * guess, 10.0 * guess],
+            |pressure| {
+                let reached = this.at_pressure(contact, pressure, &mut stretch)?;
+                Ok((reached.end[4] + compliance * pressure) / fluid - 1.0)
+            },
+        )?;
+        let reached = self.at_pressure(contact, pressure, &mut stretch)?;
+        *inner = (stretch, pressure);
+        Ok(reached)
+    }
+
+    /// The state of a contact edge and a pressure: bisects the pole stretch for the clamped edge.
+    fn at_pressure(&mut self, contact: f64, pressure: f64, stretch: &mut f64) -> Result<Reached, Failure> {
+        let this = &mut *self;
+        let found = bisect(
+            Unknown::PoleStretch,
+            Undefined::Below,
+            this.fineness.tolerance,
+            *stretch,
+            [0.3, 20.0],
+            |stretch| {
+                let reached = this.integrate([stretch, pressure, contact])?;
+                Ok(reached.end[0] / this.rest.edge - 1.0)
+            },
+        )?;
+        *stretch = found;
+        self.integrate([found, pressure, contact])
+    }
+
+    /// From the pole to the equator; a contact edge at 0 means no plate.
+    fn integrate(&mut self, [stretch, pressure, contact]: [f64; 3]) -> Result<Reached, Failure> {
+        self.integrations += 1;
+        let problem = &self.problem;
+        let steps = self.fineness.steps;
+        let mut least = f64::INFINITY;
+        let (start, mut y) = if contact > 0.0 {
+            // The pole's series where the first step would begin.
+            let contact_steps = (steps / CONTACT_SHARE).max(2);
+            let first = contact / contact_steps as f64;
+            let y: State = [stretch * libm::sin(first), stretch, 0.0, 0.0, 0.0];
+            let flat = |t: f64, y: &State| rates(problem, t, y, None, &mut least);
+            (
+                contact,
+                runge_kutta(flat, [first, contact], contact_steps - 1, y)?,
+            )
+        } else {
+            let first = FRAC_PI_2 / steps as f64;
+            let tension = problem.law.derivatives(stretch, stretch).w1 / stretch;
+            let angle = 0.5 * pressure * stretch / tension * first;
+            let cap = 0.5 * stretch * first * angle;
+            (first, [stretch * libm::sin(first), stretch, angle, cap, 0.0])
+        };
+        let contact_radius = if contact > 0.0 { y[0] } else { 0.0 };
+        let free = |t: f64, y: &State| rates(problem, t, y, Some(pressure), &mut least);
+        y = runge_kutta(free, [start, FRAC_PI_2], steps, y)?;
+        Ok(Reached {
+            end: y,
+            contact_radius,
+            compressed: least < 0.0,
+        })
+    }
+}
+
+/// Rates of the state: under the plate without a pressure, in the free zone with one.
+fn rates(
+    problem: &Problem,
+    t: f64,
+    &[rho, l1, angle, _, _]: &State,
+    pressure: Option<f64>,
+    least: &mut f64,
+) -> Option<State> {
+    if !(rho > 0.0 && l1 > 0.0 && l1 < 100.0 && rho < 100.0 && angle.abs() < 10.0) {
+        return None;
+    }
+    let (x, x_rate, g) = problem.meridian(t);
+    let l2 = rho / x;
+    let d = problem.law.derivatives(l1, l2);
+    // Tensions per deformed length; T1' = -(rho'/rho)(T1 - T2).
+    let (t1, t2) = (d.w1 / l2, d.w2 / l1);
+    *least = least.min(t1).min(t2);
+    let (sin, cos) = libm::sincos(angle);
+    let forward = l1 * g * cos;
+    let l2_rate = (forward - l2 * x_rate) / x;
+    let t1_rate = -(forward / rho) * (t1 - t2);
+    let l1_rate = (t1_rate * l2 - (d.w12 - d.w1 / l2) * l2_rate) / d.w11;
+    let (turn, descent) = match pressure {
+        None => (0.0, 0.0),
+        Some(_) if t1 <= 0.0 => return None,
+        Some(pressure) => (l1 * g * (pressure - t2 * sin / rho) / t1, l1 * g * sin),
+    };
+    Some([forward, l1_rate, turn, descent, PI * rho * rho * descent])
+}
+
+/// The classical Runge-Kutta method of order four, with fixed steps.
+fn runge_kutta<const N: usize>(
+    mut rates: impl FnMut(f64, &[f64; N]) -> Option<[f64; N]>,
+    [from, to]: [f64; 2],
+    steps: usize,
+    mut y: [f64; N],
+) -> Result<[f64; N], Failure> {
+    let step = (to - from) / steps as f64;
+    for k in 0..steps {
+        let t = from + step * k as f64;
+        let blew_up = Failure::BlewUp { position: t };
+        let mut along = |by: f64, slope: Option<&[f64; N]>| {
+            let mut at = y;
+            for (value, rate) in at.iter_mut().zip(slope.into_iter().flatten()) {
+                *value += by * rate;
+            }
+            rates(t + by, &at).ok_or(blew_up)
+        };
+        let a = along(0.0, None)?;
+        let b = along(0.5 * step, Some(&a))?;
+        let c = along(0.5 * step, Some(&b))?;
+        let d = along(step, Some(&c))?;
+        for i in 0..N {
+            y[i] += step / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]);
+        }
+    }
+    Ok(y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runge_kutta_has_order_four() {
+        let error = |steps: usize| {
+            let [y] = runge_kutta(|_, y: &[f64; 1]| Some(*y), [0.0, 1.0], steps, [1.0]).expect("defined");
+            (y - core::f64::consts::E).abs()
+        };
+        let order = libm::log2(error(10) / error(20));
+        assert!((3.8..4.2).contains(&order), "{order}");
+    }
+
+    #[test]
+    fn bisection_finds_roots_and_refuses_jumps() {
+        let limits = [0.01, 100.0];
+        let root = bisect(Unknown::Pressure, Undefined::Below, 1e-8, 1.0, limits, |x| {
+            Ok(x * x - 2.0)
+        })
+        .expect("a root");
+        assert!((root - core::f64::consts::SQRT_2).abs() < 1e-8);
+        let below = bisect(Unknown::Pressure, Undefined::Below, 1e-8, 3.0, limits, |x| {
+            Ok(x * x - 2.0)
+        })
+        .expect("a root");
+        assert!((below - core::f64::consts::SQRT_2).abs() < 1e-8);
+        // Undefined below 1.2: the root above is found all the same.
+        let edge = bisect(Unknown::Pressure, Undefined::Below, 1e-8, 1.1, limits, |x| {
+            if x < 1.2 {
+                Err(Failure::Singular)
+            } else {
+                Ok(x - 1.3)
+            }
+        });
+        assert!((edge.expect("a root") - 1.3).abs() < 1e-7);
+        let jump = bisect(Unknown::Contact, Undefined::Below, 1e-8, 1.0, limits, |x| {
+            Ok(if x < 1.5 { -1.0 } else { 1.0 })
+        });
+        assert!(matches!(jump, Err(Failure::Jump { .. })), "{jump:?}");
+        let none = bisect(Unknown::PoleStretch, Undefined::Below, 1e-8, 1.0, limits, |_| {
+            Ok(-1.0)
+        });
+        assert_eq!(
+            none,
+            Err(Failure::NoBracket {
+                unknown: Unknown::PoleStretch
+            })
+        );
+    }
+}
