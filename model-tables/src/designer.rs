@@ -4,6 +4,8 @@
 //! was asked, the limit or the key, and the remedy; nothing on standard output, nothing half-written left behind.
 
 mod actuator;
+mod chart;
+mod drawing;
 mod estimate;
 mod profile;
 mod published;
@@ -47,6 +49,8 @@ enum Command {
     Profile(profile::Arguments),
     /// The tables of a design: Rust source, binary, CSV, and the certificate
     Table(table::Arguments),
+    /// Speed against accuracy of every method, and the ladder of models: SVG and CSV
+    Chart(chart::Arguments),
     /// What the chip would say at pressure rises, bit for bit
     Estimate(estimate::Arguments),
     /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
@@ -136,6 +140,7 @@ fn run(command: &Command) -> Result<Answer, Refusal> {
         Command::Solve(arguments) => solve::run(arguments),
         Command::Profile(arguments) => profile::run(arguments),
         Command::Table(arguments) => table::run(arguments),
+        Command::Chart(arguments) => chart::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),
         Command::Published(arguments) => published::run(arguments),

@@ -426,3 +426,34 @@ fn json_and_tables_are_printed_on_request() {
     let text = String::from_utf8(output.stdout).expect("text");
     assert!(text.lines().count() == 2 && text.contains("8.269174"), "{text}");
 }
+
+#[test]
+fn chart_writes_what_was_measured() {
+    let folder = scratch("chart");
+    let out = folder.to_str().expect("text");
+    let (_, rows) = csv(&["chart", "skin", "--out", out]);
+    assert_eq!(rows.len(), 5);
+    for name in ["speed-accuracy", "ladder"] {
+        let svg = fs::read_to_string(folder.join(format!("{name}.svg"))).expect("the chart");
+        assert!(
+            svg.starts_with("<svg") && svg.ends_with("</svg>\n") && !svg.contains("NaN"),
+            "{name}"
+        );
+    }
+    let mut reader = csv::Reader::from_path(folder.join("speed-accuracy.csv")).expect("the data");
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
+    for method in [
+        "collocation",
+        "shooting",
+        "bisection",
+        "few-states",
+        "closed-form",
+    ] {
+        assert!(rows.iter().any(|row| &row[1] == method), "{method}");
+    }
+    for row in rows.iter().filter(|row| &row[1] == "collocation") {
+        assert_eq!((&row[6], &row[10]), ("64", "ok"), "{row:?}");
+    }
+    let reason = refusal(&["chart", "thumb", "--out", out]);
+    assert!(reason.contains("thumb"), "{reason}");
+}
