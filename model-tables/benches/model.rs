@@ -1,0 +1,81 @@
+//! `cargo bench`: what the model and its tables cost on the host.
+//!
+//! Medians over repetitions, in one process; a plain harness, because the pieces take from nanoseconds to
+//! milliseconds and nothing but their medians is wanted.
+
+use model_tables::design_file::{Accuracy, DesignFile};
+use model_tables::generate;
+use model_tables::membrane::TensionField;
+use model_tables::methods::contest::{DESIGNS, STATES};
+use model_tables::press::Press;
+use model_tables::units::PressureRise;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// Time that is spent on one figure.
+const BUDGET: Duration = Duration::from_secs(2);
+/// Lookups timed together.
+const LOOKUPS: i32 = 100_000;
+
+/// Median and spread of the runs that fit the budget, at least three, in microseconds over `count`.
+fn figure<T>(name: &str, count: usize, mut run: impl FnMut() -> T) {
+    let mut times = Vec::new();
+    let start = Instant::now();
+    while times.len() < 3 || start.elapsed() < BUDGET {
+        let one = Instant::now();
+        black_box(run());
+        times.push(one.elapsed().as_secs_f64() * 1e6 / count as f64);
+    }
+    times.sort_by(f64::total_cmp);
+    let at = |part: usize| times[(times.len() - 1) * part / 10];
+    println!(
+        "{name:<58} {:>12.4} us   (10 %: {:.4}, 90 %: {:.4}; {} runs)",
+        at(5),
+        at(1),
+        at(9),
+        times.len()
+    );
+}
+
+fn main() {
+    for contestant in &DESIGNS {
+        let design = &contestant.design;
+        let rest =
+            Press::new(design, TensionField::Relaxed).expect("the contest's designs have a rest state");
+        let deepest = 0.6 * rest.clone().limit().expect("a limit").indentation;
+        let name = contestant.name;
+        figure(&format!("{name}: rest state"), 1, || {
+            Press::new(design, TensionField::Relaxed).expect("as above")
+        });
+        figure(&format!("{name}: a state of a sweep of {STATES}"), STATES, || {
+            let mut press = rest.clone();
+            for k in 1..=STATES {
+                let indentation = deepest * k as f64 / STATES as f64;
+                black_box(press.contact_at(indentation).expect("within the limit"));
+            }
+        });
+        figure(&format!("{name}: rest state to curve"), 1, || {
+            let mut press = Press::new(design, TensionField::Relaxed).expect("as above");
+            press.curve(deepest).expect("within the limit")
+        });
+    }
+    let text = include_str!("../designs/paper-prestretched.toml");
+    let file = DesignFile::parse(text, "paper-prestretched.toml").expect("a shipped design");
+    let accuracy: Accuracy = file.accuracy.expect("shipped with it");
+    let resolution = file.transducer.as_ref().expect("shipped with it").resolution_pa;
+    let mut press = Press::new(&file.design(), TensionField::Relaxed).expect("a shipped design");
+    let deepest = 1e-3 * file.max_indentation_mm.expect("shipped with it");
+    let curve = press.curve(deepest).expect("a shipped design");
+    let fitted = || generate::tables(&curve, &accuracy, resolution).expect("a shipped design");
+    figure("paper-prestretched: curve to certified tables", 1, fitted);
+    let tables = fitted().tables;
+    let bits = tables.layout.pressure_fraction_bits;
+    let last = PressureRise::from_pascals(curve.end().pressure_rise, bits).0;
+    figure("paper-prestretched: a lookup", LOOKUPS as usize, || {
+        (0..LOOKUPS).fold(0_i64, |sum, k| {
+            let rise = PressureRise((i64::from(last) * i64::from(k) / i64::from(LOOKUPS)) as i32);
+            let reading = tables.lookup(black_box(rise));
+            sum + i64::from(reading.force.0) + i64::from(reading.indentation.0)
+        })
+    });
+}
