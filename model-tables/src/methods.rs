@@ -158,7 +158,7 @@ impl fmt::Display for Failure {
             }
             Self::BeyondModel { asked, largest } => write!(
                 f,
-                "indentation {:.6} mm is beyond the {:.6} mm that this model covers",
+                "indentation {:.6} mm is beyond the {:.6} mm it covers",
                 asked * 1e3,
                 largest * 1e3
             ),

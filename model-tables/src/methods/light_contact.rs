@@ -11,7 +11,7 @@
 //! ```
 //!
 //! `k` and `K` come from one integration of the plate-free membrane with its variations by pole stretch, pressure
-//! and point force; after that a state costs nanoseconds. Its weakness: errors of the order `(r / K)^2 ln K / r`,
+//! and point force; after that a state costs a microsecond. Its weakness: errors of the order `(r / K)^2 ln K / r`,
 //! and no state at all beyond the largest indentation of the formula.
 
 use super::Failure;

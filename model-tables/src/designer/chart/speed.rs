@@ -211,9 +211,12 @@ fn failures(drawing: &mut Drawing, all: &[Series<'_>], [x, mut y]: [f64; 2]) {
             series.label.clone()
         };
         let reason = result.failure.as_deref().unwrap_or_default();
-        let setting = result.method.settings();
+        let setting = match result.method {
+            Method::LightContact => String::new(),
+            method => format!(" ({})", method.settings()),
+        };
         let words = format!(
-            "{name} ({setting}): {} of {} states, then:",
+            "{name}{setting}: {} of {} states, then:",
             result.found, result.asked
         );
         drawing.text([x, y], Anchor::Start, 10.5, series.color, &words);
