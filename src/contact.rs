@@ -1,25 +1,13 @@
 //! Pressure rise -> force and indentation, through the tables of the design.
 
 use crate::design::Design;
-use crate::pressure::Pressure;
 use crate::report::{Measurement, Warnings};
-use crate::tare::grain;
-use model_tables::constants::DesignConstants;
 use model_tables::units::PressureRise;
 
-/// Standard deviations of one sample below zero that noise is believed to explain: filtered white noise gets
-/// there less than once in 10^30 reports.
-const BELOW_ZERO_DEVIATIONS: i64 = 8;
-
-/// The lowest rise that still reads as untouched.
-pub const fn lowest_rest(constants: &DesignConstants, fraction_bits: u32) -> PressureRise {
-    PressureRise(-Pressure::from_millipascals(grain(constants) * BELOW_ZERO_DEVIATIONS, fraction_bits).0)
-}
-
-/// Force and indentation at a rise. Below zero both are 0; below [`lowest_rest`] that is flagged.
+/// Force and indentation at a rise. Below zero both are 0; below [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) that is flagged.
 #[inline]
 pub fn contact<D: Design>(rise: PressureRise, warnings: Warnings) -> Measurement {
-    let lowest_rest = const { lowest_rest(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS) };
+    let lowest_rest = const { D::CONSTANTS.transducer.lowest_rest(D::PRESSURE_FRACTION_BITS) };
     let reading = D::lookup(rise);
     Measurement {
         pressure_rise: rise,

@@ -42,22 +42,12 @@ impl Gates {
     pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
         let transducer = &constants.transducer;
         let range = transducer.range[1] as i64 - transducer.range[0] as i64;
-        let grain = grain(constants);
+        let grain = constants.transducer.grain();
         Self {
             rest: Pressure::from_pascals(constants.rest_pressure, fraction_bits),
             band: Pressure::from_millipascals(range * BAND_PERMILLE, fraction_bits).0,
             quiet: Pressure::from_millipascals(grain * QUIET_DEVIATIONS, fraction_bits).0,
         }
-    }
-}
-
-/// What the transducer cannot tell apart, millipascals: its noise or its resolution, whichever is coarser.
-pub(crate) const fn grain(constants: &DesignConstants) -> i64 {
-    let transducer = &constants.transducer;
-    if transducer.noise > transducer.resolution {
-        transducer.noise as i64
-    } else {
-        transducer.resolution as i64
     }
 }
 

@@ -31,22 +31,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let generated = from_design_file(file).map_err(|error| refusal(file, error))?;
     let tables = &generated.certified.tables;
     let bits = tables.layout.pressure_fraction_bits;
-    let last = PressureRise(tables.layout.maximum).pascals(bits);
+    let lowest_rest = generated.transducer().lowest_rest(bits);
     let mut rows = Rows::new(COLUMNS);
     for &pascals in &arguments.pressure_rise_pa {
-        let reading = tables.lookup(PressureRise::from_pascals(pascals, bits));
+        let rise = PressureRise::from_pascals(pascals, bits);
+        let reading = tables.lookup(rise);
+        // The words of the firmware's reports.
         let status = if reading.saturated {
-            format!("warning: saturated: lower bounds as the tables end at {last} Pa")
-        } else if reading.negative {
-            "warning: negative: below the rest pressure and read as no contact".to_owned()
+            "warning: saturated"
+        } else if rise < lowest_rest {
+            "warning: below zero"
         } else {
-            "ok".to_owned()
+            "ok"
         };
         rows.push(vec![
             Cell::Number(pascals),
             Cell::Number(reading.force.newtons()),
             Cell::Number(reading.indentation.metres() * 1e3),
-            Cell::Text(status),
+            Cell::Text(status.to_owned()),
         ]);
     }
     Ok(Answer {
