@@ -15,6 +15,11 @@ use core::f64::consts::FRAC_PI_2;
 pub enum Failure {
     /// Newton's method did not converge.
     Newton(Outcome),
+    /// The membrane would have to push where it leaves the plate, which no membrane in equilibrium does.
+    EdgePushes {
+        /// The contact parameter.
+        position: f64,
+    },
     /// The edge of a wrinkled zone, or the kind of the pole, did not settle.
     Unsettled,
 }
@@ -39,6 +44,8 @@ const MAX_ROUNDS: usize = 12;
 const KINK_TOLERANCE: f64 = 1e-8;
 /// A mesh graded for a contact or a bend that differs by more than this factor is laid anew.
 const STALE_GRADING: f64 = 1.4;
+/// Largest spacing under the plate, in the meridian's parameter, at one element a unit of depth.
+const LARGEST_SPACING: f64 = 0.4;
 /// Bend lengths below this are not resolved.
 const SMALLEST_BEND: f64 = 1e-6;
 /// Bend lengths beyond this do not shape the mesh.
@@ -96,6 +103,9 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                 return Err(Failure::Newton(guess.outcome));
             };
             self.iterations += u64::from(iterations);
+            if let Some(position) = Self::turned_edge(&guess.solution) {
+                return Err(Failure::EdgePushes { position });
+            }
             if self.change_pole(guess) || Self::stale(guess) {
                 continue;
             }
@@ -118,6 +128,31 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         })
     }
 
+    /// Where a contact edge is that the membrane does not pull at. The signed tension under the plate and the
+    /// unsigned one of the free zone also meet with both tangents reversed, a solution of the equations that is no
+    /// membrane: it obeys neither the balance at the edge nor virtual work.
+    fn turned_edge(solution: &Solution<S>) -> Option<f64> {
+        let [_, w] = solution.nodes[solution.contact_elements];
+        (solution.contact_elements > 0 && w <= 0.0).then_some(solution.parameters[CONTACT_PARAMETER])
+    }
+
+    /// That the way ends at this state because the contact edge is about to lose its tension: the bend there is
+    /// sharper than a mesh can follow.
+    pub fn edge_pushes(&self, graded: &Graded<S>) -> Option<Failure> {
+        let solution = &graded.solution;
+        let plain = self.membrane().tension_field == TensionField::Plain;
+        (plain && solution.contact_elements > 0 && Self::bend(solution) < SMALLEST_BEND).then(|| {
+            let position = solution.parameters[CONTACT_PARAMETER];
+            Failure::EdgePushes { position }
+        })
+    }
+
+    /// The length over which the tangent turns next to the contact edge, `T1 / P`, in the meridian's parameter.
+    fn bend(solution: &Solution<S>) -> f64 {
+        let [u, w] = solution.nodes[solution.contact_elements];
+        w / (solution.parameters[PRESSURE] * u * u)
+    }
+
     /// The grading that fits a solution.
     fn depth(solution: &Solution<S>) -> Depth {
         let contact_parameter = solution.parameters[CONTACT_PARAMETER];
@@ -127,8 +162,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                 bend: LARGEST_BEND,
             };
         }
-        let [u, w] = solution.nodes[solution.contact_elements];
-        let bend = w / (solution.parameters[PRESSURE] * u * u);
+        let bend = Self::bend(solution);
         Depth {
             contact_parameter,
             bend: if bend > 0.0 {
@@ -184,7 +218,8 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             let breaks = from.breaks.positions().iter().copied();
             let mut contact_elements = 0;
             if pressed {
-                let spacing = (contact_parameter - start) / self.resolution.contact_elements as f64;
+                let spacing = ((contact_parameter - start) / self.resolution.contact_elements as f64)
+                    .min(LARGEST_SPACING / self.resolution.density);
                 let mut left = start;
                 let inside = breaks.clone().filter(|&t| t > start && t < contact_parameter);
                 for right in inside.chain(core::iter::once(contact_parameter)) {

@@ -16,6 +16,7 @@ mod table;
 
 use crate::design_file::{DesignFile, DesignFileError};
 use crate::membrane::TensionField;
+use crate::stability::Margin;
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 use rows::{Format, Rows};
@@ -144,6 +145,25 @@ fn run(command: &Command) -> Result<Answer, Refusal> {
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),
         Command::Published(arguments) => published::run(arguments),
+    }
+}
+
+/// One line of warning on standard error, about an answer that is given.
+fn warn(file: &Path, warning: &dyn Display) {
+    eprintln!("warning: {}: {warning}", file.display());
+}
+
+/// Warns where the law is not stable over a state, `which` of them in words.
+fn warn_of_instability(file: &Path, which: &str, margin: Margin) {
+    if !margin.is_stable() {
+        warn(
+            file,
+            &format_args!(
+                "{which} the law is not stable at stretches of {:.4} along and {:.4} around ({}): the state is at best \
+                 one of several; fit the law up to such stretches",
+                margin.meridional_stretch, margin.hoop_stretch, margin.mode
+            ),
+        );
     }
 }
 

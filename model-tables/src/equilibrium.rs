@@ -312,6 +312,14 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     /// Condenses every element at the present iterate. The residual, or where the iterate is inadmissible.
     fn linearise(&mut self, solution: &mut Solution<S>) -> Result<f64, LineariseError> {
         let [_, pressure, contact_radius, _] = solution.parameters;
+        if solution.pole == Pole::Taut {
+            // No Gauss point stands there, and beyond the loss of stability other roots of the law look like states.
+            let stretch = solution.parameters[POLE];
+            let d = self.membrane.law.derivatives(stretch, stretch);
+            if d.w11.is_nan() || d.w11 <= 0.0 {
+                return Err(LineariseError::Inadmissible(0.0));
+            }
+        }
         let mut residual: f64 = 0.0;
         let mut points = [Point::default(); S];
         for e in 0..solution.elements() {

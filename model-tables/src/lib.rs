@@ -69,6 +69,7 @@ pub mod equilibrium;
 #[cfg(feature = "std")]
 pub mod generate;
 pub mod history;
+pub mod inflation;
 pub mod material;
 pub mod membrane;
 pub mod mesh;
@@ -77,6 +78,7 @@ pub mod methods;
 pub mod press;
 pub mod rest;
 pub mod solver;
+pub mod stability;
 pub mod state;
 pub mod table;
 pub mod units;

@@ -6,9 +6,11 @@ use crate::design::Membrane as Dimensions;
 use crate::design::{Design, RestBy};
 use crate::equilibrium::{Closure, Outcome, PressControl};
 use crate::history::History;
+use crate::inflation::End;
 use crate::material::{Hyperelastic, Law, Scaled};
 use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, Membrane, PRESSURE, TensionField};
 use crate::rest::{Branch, Quantity, RestFailure};
+use crate::stability::Margin;
 use crate::state::{self, MeridianPoint, PressedState, Scale, Shape};
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::fmt;
@@ -75,6 +77,13 @@ pub enum ModelError {
         /// The greatest value.
         greatest: f64,
     },
+    /// Inflation ends before this pole stretch, because the law loses its stability.
+    LawUnstable {
+        /// The pole stretch asked for.
+        asked: f64,
+        /// Where it loses it, and how.
+        margin: Margin,
+    },
     /// The rest state was not found.
     RestUnsolved {
         /// What failed.
@@ -113,6 +122,13 @@ impl fmt::Display for ModelError {
                 greatest,
             } => {
                 let (what, unit, factor) = match quantity {
+                    Quantity::PoleStretch => {
+                        return write!(
+                            f,
+                            "no rest state has a pole stretch of {asked}: inflation stretches the pole to \
+                             {greatest:.6}, and then the equator bulges instead; ask for less"
+                        );
+                    }
                     Quantity::Pressure => ("pressure", "kPa", 1e-3),
                     Quantity::EquatorRadius => ("equator radius", "mm", 1e3),
                     Quantity::Height => ("height", "mm", 1e3),
@@ -126,6 +142,12 @@ impl fmt::Display for ModelError {
                     greatest * factor
                 )
             }
+            Self::LawUnstable { asked, margin } => write!(
+                f,
+                "no rest state has a pole stretch of {asked}: on the way there the law loses its stability at stretches of \
+                 {:.4} along and {:.4} around ({}); ask for less, or fit the law up to such stretches",
+                margin.meridional_stretch, margin.hoop_stretch, margin.mode
+            ),
             Self::RestUnsolved { failure } => {
                 write!(
                     f,
@@ -174,6 +196,10 @@ impl fmt::Display for Failure {
             Self::Newton(Outcome::Stalled { step }) => {
                 write!(f, "Newton's method did not converge, last step {step:.1e}")
             }
+            Self::EdgePushes { position } => write!(
+                f,
+                "at the contact edge, parameter {position:.4} of the meridian, the membrane would have to push"
+            ),
             Self::Unsettled => write!(f, "the edge of a wrinkled or slack zone did not settle"),
         }
     }
@@ -187,6 +213,8 @@ const LARGEST_FACTOR: f64 = 4.0;
 const LARGEST_STEP: f64 = 0.06;
 /// Step under which the way up gives up, relative to the indentation.
 const SMALLEST_STEP: f64 = 1e-4;
+/// Indentation over the height up to which a press is followed before its fluid counts as drained.
+const NEARLY_FLAT: f64 = 0.9995;
 /// Contact radius over edge radius, minus one, that counts as rounding.
 const EDGE_ROUNDING: f64 = 1e-10;
 
@@ -272,9 +300,19 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         };
         let (rest, branch) = match rest {
             RestBy::PoleStretch(stretch) => {
-                let rest = solver
-                    .rest_by_pole_stretch(stretch)
-                    .map_err(|failure| ModelError::RestUnsolved { failure })?;
+                let rest = solver.rest_by_pole_stretch(stretch).map_err(|end| match end {
+                    End::Turns { greatest } => ModelError::NoRestState {
+                        quantity: Quantity::PoleStretch,
+                        asked: stretch,
+                        least: 1.0,
+                        greatest,
+                    },
+                    End::Unstable(margin) => ModelError::LawUnstable {
+                        asked: stretch,
+                        margin,
+                    },
+                    End::Lost(failure) => ModelError::RestUnsolved { failure },
+                })?;
                 (rest, Branch::Only)
             }
             RestBy::Pressure(pascals) => by(&mut solver, Quantity::Pressure, pascals, scale.pressure)?,
@@ -302,6 +340,16 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// Which of several rest states this is.
     pub fn branch(&self) -> Branch {
         self.branch
+    }
+
+    /// How far the law is from losing its stability, at the latest state or, before any, at rest.
+    pub fn stability(&self) -> Margin {
+        self.solver.stability(self.latest())
+    }
+
+    /// The same at rest.
+    pub fn rest_stability(&self) -> Margin {
+        self.solver.stability(&self.rest)
     }
 
     /// Newton iterations spent so far.
@@ -392,8 +440,9 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         let mut at = self.history.latest().map_or(0.0, |g| height - g.solution.height);
         let mut step = LARGEST_STEP * height;
         let limit = loop {
-            let next = at + step;
-            if next >= height {
+            // A step may not leap over what happens just before the end.
+            let next = (at + step).min(NEARLY_FLAT * height);
+            if at >= NEARLY_FLAT * height {
                 // Nothing but the base is left under the plate.
                 let rest = &self.rest.solution;
                 let pressure = rest.parameters[PRESSURE] + rest.volume / self.compliance;
@@ -507,7 +556,10 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                     factor = libm::sqrt((next / at).max(at / next));
                     if tried < SMALLEST_STEP * at {
                         return Err(match stop {
-                            Stop::Failed { failure, .. } => Stop::Failed { reached: at, failure },
+                            Stop::Failed { failure, .. } => Stop::Failed {
+                                reached: at,
+                                failure: self.solver.edge_pushes(self.latest()).unwrap_or(failure),
+                            },
                             Stop::BeyondLimit => stop,
                         });
                     }

@@ -2,6 +2,7 @@
 
 use crate::adapt::{Adaptive, Failure, Graded, REST_FINENESS};
 use crate::equilibrium::{Closure, MAX_ELEMENTS, Outcome, Pole, RestControl, Solution};
+use crate::inflation::End;
 use crate::material::Hyperelastic;
 use crate::membrane::{POLE, PRESSURE, TensionField};
 use crate::mesh::{Breaks, Depth};
@@ -10,6 +11,8 @@ use core::f64::consts::FRAC_PI_2;
 /// What the rest state is given by, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
+    /// Stretch of the pole.
+    PoleStretch,
     /// Gauge pressure.
     Pressure,
     /// Radius of the equator.
@@ -56,6 +59,8 @@ pub enum RestFailure {
 pub const LARGEST_POLE_STRETCH: f64 = 6.0;
 /// First step of the scan, in pole stretch over 1.
 const FIRST_STEP: f64 = 2e-3;
+/// Equator stretch over pole stretch from which a rest state may be another than the one inflation reaches first.
+const BULGED: f64 = 1.3;
 /// The golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Pole stretch within which an extreme is located; the quantity is flat there.
@@ -123,8 +128,24 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// The rest state of a pole stretch.
     ///
     /// # Errors
-    /// [`Failure`] when even a slow way from the sphere, whose state is known, does not arrive.
-    pub fn rest_by_pole_stretch(&mut self, pole_stretch: f64) -> Result<Graded<S>, Failure> {
+    /// [`End`] of inflation, when even the slow ways do not arrive.
+    pub fn rest_by_pole_stretch(&mut self, pole_stretch: f64) -> Result<Graded<S>, End> {
+        let Ok(direct) = self.rest_from_sphere(pole_stretch) else {
+            return self.inflate_to(pole_stretch);
+        };
+        let [equator, _] = direct.solution.nodes[direct.solution.elements()];
+        if equator < BULGED * pole_stretch {
+            return Ok(direct);
+        }
+        // Perhaps beyond the greatest pole stretch of inflation, where it comes down and goes up once more.
+        match self.inflate_to(pole_stretch) {
+            Err(End::Lost(_)) => Ok(direct),
+            inflated => inflated,
+        }
+    }
+
+    /// The rest state of a pole stretch, at once or by way of the sphere, whose state is known.
+    pub(crate) fn rest_from_sphere(&mut self, pole_stretch: f64) -> Result<Graded<S>, Failure> {
         let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
         let mut state = self.inflated_guess(pole_stretch);
         if self.settle(&mut state, &closure).is_ok() {
@@ -212,10 +233,10 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                 let mut state = from.clone();
                 match self.settle(&mut state, &closure) {
                     Ok(()) => Ok(state),
-                    Err(_) => self.rest_by_pole_stretch(pole_stretch),
+                    Err(_) => self.rest_from_sphere(pole_stretch),
                 }
             }
-            None => self.rest_by_pole_stretch(pole_stretch),
+            None => self.rest_from_sphere(pole_stretch),
         }
     }
 }
@@ -234,6 +255,7 @@ impl<const S: usize> Scan<S> {
     fn excess(&self, state: &Graded<S>) -> f64 {
         let solution = &state.solution;
         let found = match self.quantity {
+            Quantity::PoleStretch => solution.parameters[POLE],
             Quantity::Pressure => solution.parameters[PRESSURE],
             Quantity::EquatorRadius => solution.nodes[solution.elements()][0],
             Quantity::Height => solution.height,

@@ -1,7 +1,7 @@
 //! `designer rest`: the rest state and the limits.
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, read};
+use super::{Answer, Refusal, read, warn_of_instability};
 use crate::membrane::TensionField;
 use crate::press::Press;
 use crate::rest::Branch;
@@ -23,6 +23,10 @@ pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
         Press::new(&design, TensionField::Relaxed).map_err(|error| Refusal::about(file, &error))?;
     let rest = *press.rest();
     let limit = press.limit().map_err(|error| Refusal::about(file, &error))?;
+    warn_of_instability(file, "at rest", press.rest_stability());
+    if press.rest_stability().is_stable() {
+        warn_of_instability(file, "at the end of the press", press.stability());
+    }
     let mut rows = Rows::new(COLUMNS);
     rows.push(vec![
         Cell::Number(rest.pressure * 1e-3),

@@ -1,8 +1,9 @@
 //! `designer solve`: pressed states.
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Field, Refusal, finite, read};
+use super::{Answer, Field, Refusal, finite, read, warn_of_instability};
 use crate::press::Press;
+use crate::stability::Margin;
 use crate::state::PressedState;
 use std::path::PathBuf;
 
@@ -41,11 +42,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let mut order: Vec<usize> = (0..arguments.indentation_mm.len()).collect();
     order.sort_by(|&a, &b| arguments.indentation_mm[a].total_cmp(&arguments.indentation_mm[b]));
     let mut states: Vec<Option<PressedState>> = vec![None; order.len()];
+    let mut worst = None;
     for i in order {
         let state = press
             .at_indentation(arguments.indentation_mm[i] / 1e3)
             .map_err(|error| Refusal::about(file, &error))?;
         states[i] = Some(state);
+        let margin = press.stability();
+        if worst.is_none_or(|(_, least): (f64, Margin)| margin.value < least.value) {
+            worst = Some((arguments.indentation_mm[i], margin));
+        }
+    }
+    if let Some((indentation, margin)) = worst {
+        warn_of_instability(file, &format!("at indentation {indentation} mm"), margin);
     }
     let mut rows = Rows::new(COLUMNS);
     for (state, &asked) in states.iter().flatten().zip(&arguments.indentation_mm) {
