@@ -58,6 +58,8 @@
 
 pub mod actuator;
 pub mod adapt;
+#[cfg(feature = "std")]
+pub mod campaign;
 pub mod constants;
 pub mod curve;
 pub mod design;

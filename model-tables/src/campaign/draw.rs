@@ -1,0 +1,158 @@
+//! Random designs, each from its own number, so that any one can be looked at alone.
+
+use crate::design::{Design, Membrane, RestBy};
+use crate::material::{Hyperelastic as _, Law};
+use crate::membrane::TensionField;
+
+/// Indentations a design is judged at.
+pub const INDENTATIONS: usize = 8;
+
+/// A design and what is asked of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
+    /// Its number in the campaign.
+    pub index: u64,
+    /// The design; at rest by pole stretch.
+    pub design: Design,
+    /// Pole stretch.
+    pub pole_stretch: f64,
+    /// Compliance over `a0^4 / (mu h0)`.
+    pub compliance: f64,
+    /// Whether the membrane may push.
+    pub tension_field: TensionField,
+    /// Indentations over the limit, increasing.
+    pub parts: [f64; INDENTATIONS],
+}
+
+/// Pseudo-random numbers (`SplitMix64`; Steele, Lea, Flood 2014).
+#[derive(Clone, Debug)]
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in 0 .. 1.
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn uniform(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
+        low * libm::pow(high / low, self.unit())
+    }
+}
+
+/// Pole stretch: half of them crowd towards 1, where methods fail.
+fn pole_stretch(random: &mut Random) -> f64 {
+    if random.unit() < 0.5 {
+        1.0 + random.logarithmic(0.002, 2.0)
+    } else {
+        random.uniform(1.002, 3.0)
+    }
+}
+
+/// A law: neo-Hookean, Mooney-Rivlin (a fifth with a slightly negative `C2`) or Yeoh (a half with negative constants).
+fn law(random: &mut Random) -> Law {
+    let c1 = random.logarithmic(1e4, 1e6);
+    match random.next() % 3 {
+        0 => Law::NeoHookean { c1 },
+        1 => {
+            let ratio = if random.unit() < 0.2 {
+                random.uniform(-0.05, 0.0)
+            } else {
+                random.uniform(0.0, 2.0)
+            };
+            Law::MooneyRivlin { c1, c2: c1 * ratio }
+        }
+        _ => Law::Yeoh {
+            c1,
+            c2: c1 * random.uniform(-0.1, 0.1),
+            c3: c1 * random.uniform(-0.005, 0.02),
+        },
+    }
+}
+
+/// Case `index` of the campaign of `seed`.
+pub fn case(seed: u64, index: u64) -> Case {
+    let mut random = Random(seed ^ index.wrapping_mul(0xd134_2543_de82_ef95));
+    random.next();
+    let radial = random.logarithmic(2e-3, 20e-3);
+    let membrane = Membrane {
+        radial_semi_axis: radial,
+        axial_semi_axis: radial * random.uniform(0.3, 2.0),
+        thickness: radial * random.logarithmic(0.01, 0.25),
+    };
+    let pole_stretch = pole_stretch(&mut random);
+    let law = law(&mut random);
+    // Over `a0^4 / (mu h0)`, none, moderate or extreme.
+    let compliance = match random.next() % 5 {
+        0 | 1 => 0.0,
+        2 | 3 => random.logarithmic(1e-3, 3.0),
+        _ => random.logarithmic(3.0, 1e5),
+    };
+    let tension_field = if random.next().is_multiple_of(3) {
+        TensionField::Plain
+    } else {
+        TensionField::Relaxed
+    };
+    let mut parts = [0.0; INDENTATIONS];
+    parts[0] = 1e-4;
+    parts[1] = random.logarithmic(1e-4, 1e-2);
+    parts[2] = random.logarithmic(1e-2, 1e-1);
+    for part in &mut parts[3..INDENTATIONS - 1] {
+        *part = random.uniform(0.1, 0.99);
+    }
+    parts[INDENTATIONS - 1] = 0.999;
+    parts.sort_by(f64::total_cmp);
+    Case {
+        index,
+        design: Design {
+            membrane,
+            law,
+            rest: RestBy::PoleStretch(pole_stretch),
+            compliance: compliance * radial * radial * radial * radial
+                / (law.shear_modulus() * membrane.thickness),
+        },
+        pole_stretch,
+        compliance,
+        tension_field,
+        parts,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn splitmix_gives_its_published_numbers() {
+        // The first outputs for seed 1234567 (Vigna's reference implementation).
+        let mut random = Random(1_234_567);
+        assert_eq!(random.next(), 6_457_827_717_110_365_317);
+        assert_eq!(random.next(), 3_203_168_211_198_807_973);
+    }
+
+    #[test]
+    fn draws_cover_the_ranges() {
+        let cases: Vec<Case> = (0..2000).map(|index| case(1, index)).collect();
+        let share = |of: &dyn Fn(&Case) -> bool| cases.iter().filter(|c| of(c)).count();
+        assert!(share(&|c| c.pole_stretch < 1.02) > 200);
+        assert!(share(&|c| c.pole_stretch > 2.0) > 200);
+        assert!(share(&|c| c.compliance > 100.0) > 100);
+        assert!(share(&|c| c.tension_field == TensionField::Plain) > 500);
+        assert!(share(&|c| matches!(c.design.law, Law::Yeoh { c3, .. } if c3 < 0.0)) > 60);
+        for case in &cases {
+            assert!((1.002..=3.0).contains(&case.pole_stretch));
+            assert!(case.parts.windows(2).all(|pair| pair[0] <= pair[1]));
+        }
+    }
+}
