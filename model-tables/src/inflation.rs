@@ -1,7 +1,8 @@
 //! The slow way to a rest state, which ends at the state or at the reason why there is none.
 //!
 //! A law that softens may lose its stability on the way, or let the equator of a long membrane bulge while the pole
-//! recedes: then the pole stretch has a greatest value. The way goes up in the pole stretch, and on in the
+//! recedes: then the pole stretch has a greatest value, and no state beyond it belongs to
+//! that first rise. The way goes up in the pole stretch, and on in the
 //! equator's where that no longer works.
 
 use crate::adapt::{Adaptive, Failure, Graded};
@@ -24,6 +25,8 @@ pub enum End {
     Lost(Failure),
 }
 
+/// Stiffness over that of a neo-Hookean law under which a law softens.
+const SOFTER: f64 = 0.999;
 /// Where the way begins, over 1.
 const FIRST: f64 = 2e-3;
 /// Largest step of the controlling stretch.
@@ -62,6 +65,20 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             });
         });
         least
+    }
+
+    /// Whether the law is softer than a neo-Hookean one at the pole or the equator: only then does inflation leave states
+    /// out that the equations have.
+    pub(crate) fn softens(&self, graded: &Graded<S>) -> bool {
+        let law = &self.equilibrium.membrane.law;
+        let [equator, _] = graded.solution.nodes[graded.solution.elements()];
+        [graded.solution.parameters[POLE], equator]
+            .into_iter()
+            .any(|stretch| {
+                // W_11 of C1 (I1 - 3) at equal stretches, over mu = 2 C1.
+                let neo_hookean = 1.0 + 3.0 * libm::pow(stretch, -6.0);
+                law.derivatives(stretch, stretch).w11 < SOFTER * neo_hookean * law.shear_modulus()
+            })
     }
 
     /// The rest state of a pole stretch, by inflation from nearly nothing.
@@ -108,7 +125,9 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             };
             match self.settle(&mut next, &Closure::Rest(target)) {
                 // A leap is another branch.
-                Ok(()) if (equator_of(&next) - equator_of(&state)).abs() < 6.0 * step + SMALLEST_STEP => {}
+                Ok(())
+                    if (equator_of(&next) - equator_of(&state)).abs() < 6.0 * step + SMALLEST_STEP
+                        && (pole_of(&next) - pole_of(&state)).abs() < 6.0 * step + SMALLEST_STEP => {}
                 Ok(()) => {
                     step *= 0.5;
                     continue;

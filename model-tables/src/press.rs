@@ -125,7 +125,7 @@ impl fmt::Display for ModelError {
                     Quantity::PoleStretch => {
                         return write!(
                             f,
-                            "no rest state has a pole stretch of {asked}: inflation stretches the pole to \
+                            "inflation does not lead to a pole stretch of {asked}: it stretches the pole to \
                              {greatest:.6}, and then the equator bulges instead; ask for less"
                         );
                     }

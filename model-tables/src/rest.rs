@@ -59,8 +59,6 @@ pub enum RestFailure {
 pub const LARGEST_POLE_STRETCH: f64 = 6.0;
 /// First step of the scan, in pole stretch over 1.
 const FIRST_STEP: f64 = 2e-3;
-/// Equator stretch over pole stretch from which a rest state may be another than the one inflation reaches first.
-const BULGED: f64 = 1.3;
 /// The golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Pole stretch within which an extreme is located; the quantity is flat there.
@@ -133,11 +131,10 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         let Ok(direct) = self.rest_from_sphere(pole_stretch) else {
             return self.inflate_to(pole_stretch);
         };
-        let [equator, _] = direct.solution.nodes[direct.solution.elements()];
-        if equator < BULGED * pole_stretch {
+        if !self.softens(&direct) {
             return Ok(direct);
         }
-        // Perhaps beyond the greatest pole stretch of inflation, where it comes down and goes up once more.
+        // Perhaps a state that inflation does not reach.
         match self.inflate_to(pole_stretch) {
             Err(End::Lost(_)) => Ok(direct),
             inflated => inflated,
