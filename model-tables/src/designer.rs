@@ -4,6 +4,7 @@
 //! was asked, the limit or the key, and the remedy; nothing on standard output, nothing half-written left behind.
 
 mod actuator;
+mod atlas;
 mod chart;
 mod drawing;
 mod estimate;
@@ -52,6 +53,8 @@ enum Command {
     Table(table::Arguments),
     /// Speed against accuracy of every method, and the ladder of models: SVG and CSV
     Chart(chart::Arguments),
+    /// Where each method answers, refuses or is silently wrong, over designs; and what a state costs
+    Atlas(atlas::Arguments),
     /// What the chip would say at pressure rises, bit for bit
     Estimate(estimate::Arguments),
     /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
@@ -142,6 +145,7 @@ fn run(command: &Command) -> Result<Answer, Refusal> {
         Command::Profile(arguments) => profile::run(arguments),
         Command::Table(arguments) => table::run(arguments),
         Command::Chart(arguments) => chart::run(arguments),
+        Command::Atlas(arguments) => atlas::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),
         Command::Published(arguments) => published::run(arguments),

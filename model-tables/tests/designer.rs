@@ -499,3 +499,26 @@ fn an_unstable_law_is_warned_of_on_one_line() {
         "{reason}"
     );
 }
+
+#[test]
+fn atlas_maps_every_method_and_ours_is_never_silently_wrong() {
+    let folder = scratch("atlas");
+    let out = folder.to_str().expect("text");
+    let (header, rows) = csv(&["atlas", "--stride", "8", "--out", out]);
+    assert_eq!(header, "map,method,verdict,cells");
+    for map in ["aspect", "indentation", "mooney-rivlin", "yeoh"] {
+        for method in ["collocation", "shooting", "bisection"] {
+            let cells: usize = rows
+                .iter()
+                .filter(|row| row[0] == map && row[1] == method)
+                .map(|row| row[3].parse::<usize>().expect("a count"))
+                .sum();
+            assert_eq!(cells, 6, "{map} {method}");
+        }
+        let svg = fs::read_to_string(folder.join(format!("{map}.svg"))).expect("the map");
+        assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && !svg.contains("NaN"));
+    }
+    for row in rows.iter().filter(|row| row[1] == "collocation") {
+        assert!(["exact", "no-state"].contains(&row[2].as_str()), "{row:?}");
+    }
+}
