@@ -4,11 +4,13 @@
 //! put where wrinkles begin or end (the equations have a kink there, and a kink inside an element costs the
 //! method its order), and a pole that has gone slack, or taut again, changes its kind.
 
-use crate::equilibrium::{Closure, Equilibrium, MAX_ELEMENTS, Outcome, Pole, Solution};
+use crate::equilibrium::{Closure, Equilibrium, Outcome};
 use crate::material::Hyperelastic;
 use crate::membrane::{CONTACT_PARAMETER, Membrane, POLE, PRESSURE, TensionField, Zone};
 use crate::mesh::{Breaks, Depth};
+use crate::solution::{MAX_ELEMENTS, Pole, Solution};
 use core::f64::consts::FRAC_PI_2;
+use core::fmt;
 
 /// Why there is no state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +24,27 @@ pub enum Failure {
     },
     /// The edge of a wrinkled zone, or the kind of the pole, did not settle.
     Unsettled,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Newton(Outcome::Converged { .. }) => write!(f, "converged"),
+            Self::Newton(Outcome::Inadmissible { position, .. }) => write!(
+                f,
+                "at parameter {position:.4} of the meridian the membrane lost its tension or its law its stability"
+            ),
+            Self::Newton(Outcome::Singular { .. }) => write!(f, "the equations became singular"),
+            Self::Newton(Outcome::Stalled { step }) => {
+                write!(f, "Newton's method did not converge, last step {step:.1e}")
+            }
+            Self::EdgePushes { position } => write!(
+                f,
+                "at the contact edge, parameter {position:.4} of the meridian, the membrane would have to push"
+            ),
+            Self::Unsettled => write!(f, "the edge of a wrinkled or slack zone did not settle"),
+        }
+    }
 }
 
 /// How fine a mesh is.

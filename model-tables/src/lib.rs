@@ -79,6 +79,7 @@ pub mod mesh;
 pub mod methods;
 pub mod press;
 pub mod rest;
+pub mod solution;
 pub mod solver;
 pub mod stability;
 pub mod state;

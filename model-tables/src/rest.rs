@@ -1,11 +1,12 @@
 //! The rest state: inflated, not pressed.
 
 use crate::adapt::{Adaptive, Failure, Graded, REST_FINENESS};
-use crate::equilibrium::{Closure, MAX_ELEMENTS, Outcome, Pole, RestControl, Solution};
+use crate::equilibrium::{Closure, Outcome, RestControl};
 use crate::inflation::End;
 use crate::material::Hyperelastic;
 use crate::membrane::{POLE, PRESSURE, TensionField};
 use crate::mesh::{Breaks, Depth};
+use crate::solution::{MAX_ELEMENTS, Pole, Solution};
 use core::f64::consts::FRAC_PI_2;
 
 /// What the rest state is given by, for messages.

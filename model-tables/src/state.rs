@@ -1,9 +1,10 @@
 //! States of equilibrium in SI units, read off a solution.
 
 use crate::design::Membrane as Dimensions;
-use crate::equilibrium::{Equilibrium, Pole, Solution};
+use crate::equilibrium::Equilibrium;
 use crate::material::Hyperelastic;
 use crate::membrane::{CONTACT_PARAMETER, POLE, TensionField, Zone};
+use crate::solution::{Pole, Solution};
 use crate::solver::collocation::STATES;
 use core::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,0 +1,128 @@
+//! Why the model gives no answer, in words.
+
+use super::Limit;
+use crate::adapt::Failure;
+use crate::rest::Quantity;
+use crate::stability::Margin;
+use core::fmt;
+
+/// Why the model gives no answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ModelError {
+    /// A rest state of this pressure, radius or height does not exist; SI units.
+    NoRestState {
+        /// Which quantity was given.
+        quantity: Quantity,
+        /// Its value.
+        asked: f64,
+        /// The least value any rest state has.
+        least: f64,
+        /// The greatest value.
+        greatest: f64,
+    },
+    /// Inflation ends before this pole stretch, because the law loses its stability.
+    LawUnstable {
+        /// The pole stretch asked for.
+        asked: f64,
+        /// Where it loses it, and how.
+        margin: Margin,
+    },
+    /// The rest state was not found.
+    RestUnsolved {
+        /// What failed.
+        failure: Failure,
+    },
+    /// The indentation lies beyond the end of the press.
+    BeyondLimit {
+        /// The indentation asked for, metres.
+        asked: f64,
+        /// The end.
+        limit: Limit,
+    },
+    /// An indentation is a length >= 0.
+    NotAnIndentation {
+        /// What was asked for, metres.
+        asked: f64,
+    },
+    /// The state was not found.
+    PressUnsolved {
+        /// The indentation asked for, metres.
+        asked: f64,
+        /// The largest indentation reached on the way, metres.
+        reached: f64,
+        /// What failed.
+        failure: Failure,
+    },
+}
+
+impl fmt::Display for ModelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NoRestState {
+                quantity,
+                asked,
+                least,
+                greatest,
+            } => {
+                let (what, unit, factor) = match quantity {
+                    Quantity::PoleStretch => {
+                        return write!(
+                            f,
+                            "inflation does not lead to a pole stretch of {asked}: it stretches the pole to \
+                             {greatest:.6}, and then the equator bulges instead; ask for less"
+                        );
+                    }
+                    Quantity::Pressure => ("pressure", "kPa", 1e-3),
+                    Quantity::EquatorRadius => ("equator radius", "mm", 1e3),
+                    Quantity::Height => ("height", "mm", 1e3),
+                };
+                write!(
+                    f,
+                    "no rest state has a {what} of {} {unit}: inflation reaches {:.6} to {:.6} {unit}; ask for a \
+                     value in between, or give the rest state by pole_stretch",
+                    asked * factor,
+                    least * factor,
+                    greatest * factor
+                )
+            }
+            Self::LawUnstable { asked, margin } => write!(
+                f,
+                "no rest state has a pole stretch of {asked}: on the way there the law loses its stability at stretches of \
+                 {:.4} along and {:.4} around ({}); ask for less, or fit the law up to such stretches",
+                margin.meridional_stretch, margin.hoop_stretch, margin.mode
+            ),
+            Self::RestUnsolved { failure } => {
+                write!(
+                    f,
+                    "the rest state was not found ({failure}); try a smaller pole stretch"
+                )
+            }
+            Self::BeyondLimit { asked, limit } => write!(
+                f,
+                "indentation {} mm is beyond the limit of {:.6} mm, where the press ends ({}); ask for less",
+                asked * 1e3,
+                limit.indentation * 1e3,
+                limit.ends_by.word()
+            ),
+            Self::NotAnIndentation { asked } => {
+                write!(
+                    f,
+                    "indentation {} mm is not possible: it must be a number of at least 0",
+                    asked * 1e3
+                )
+            }
+            Self::PressUnsolved {
+                asked,
+                reached,
+                failure,
+            } => write!(
+                f,
+                "the state at indentation {} mm was not found ({failure}); the last one found is at {:.6} mm",
+                asked * 1e3,
+                reached * 1e3
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ModelError {}
