@@ -1,6 +1,6 @@
 //! Contact force and indentation of a fluid-filled fingertip, from the pressure in its fluid.
 //!
-//! One sample's way: [`counts`] -> [`pressure`] -> [`tare`] -> [`filter`] -> [`contact`] -> [`report`], called
+//! One sample's way: [`counts`] -> [`transducer`] -> [`pressure`] -> [`tare`] -> [`filter`] -> [`contact`] -> [`report`], called
 //! in that order by [`pipeline`]; [`telemetry`] puts reports on the wire and [`design`] says for which
 //! fingertip, [`image`] for the one this
 //! build is for. Integers only; nothing here knows a clock or a bus: time and samples are
@@ -19,6 +19,7 @@ pub mod pressure;
 pub mod report;
 pub mod tare;
 pub mod telemetry;
+pub mod transducer;
 
 #[cfg(test)]
 mod test_design;

@@ -1,17 +1,13 @@
 //! The stages, called in order.
 
 use crate::contact::contact;
-use crate::counts::{CountSum, PERIOD, Window};
 use crate::design::Design;
 use crate::filter::{Filter, GROUP_DELAY};
-use crate::pressure::Conversion;
+use crate::pressure::Scale;
 use crate::report::{Fault, Measurement, Microseconds, Report};
 use crate::tare::{Gates, StartUp, Tare};
+use crate::transducer::{self, Sample};
 use core::marker::PhantomData;
-
-/// From the middle of the samples behind a report to the end of its newest block, microseconds: half a block,
-/// and the delay of the filter.
-pub const DELAY: u32 = PERIOD / 2 + GROUP_DELAY * PERIOD;
 
 /// The signal path of one fingertip.
 #[derive(Clone, Debug)]
@@ -22,10 +18,10 @@ pub struct Pipeline<D> {
 }
 
 impl<D: Design> Pipeline<D> {
-    /// Codes between which the transducer is connected.
-    pub const WINDOW: Window = Window::of(&D::CONSTANTS.transducer.kind);
+    /// From one sample to the next, microseconds.
+    pub const PERIOD: u32 = transducer::period(&D::CONSTANTS.transducer.kind);
 
-    const CONVERSION: Conversion = Conversion::of(&D::CONSTANTS.transducer, D::PRESSURE_FRACTION_BITS);
+    const SCALE: Scale = Scale::of(D::PRESSURE_FRACTION_BITS);
     const GATES: Gates = Gates::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
 
     /// A signal path that has seen nothing yet.
@@ -37,28 +33,31 @@ impl<D: Design> Pipeline<D> {
         }
     }
 
-    /// The report of one block, or of its absence. `block_end` is when its last sample was taken.
-    // A boundary that stays in the image, so that instructions from averaged counts to both results can be
-    // counted there.
-    #[inline(never)]
-    pub fn step(&mut self, block_end: Microseconds, block: Result<CountSum, Fault>) -> Report {
-        let time = Microseconds(block_end.0.saturating_sub(u64::from(DELAY)));
-        let outcome = match block {
-            Ok(sum) => self.measure(block_end, sum),
+    /// The report of one sample, or of its absence. `now` is when the transducer gave it.
+    #[inline]
+    pub fn step(&mut self, now: Microseconds, sample: Result<Sample, Fault>) -> Report {
+        let age = sample.map_or(Self::PERIOD / 2, |sample| sample.age);
+        let measured = Microseconds(now.0.saturating_sub(u64::from(age)));
+        let outcome = match sample {
+            Ok(sample) => self.measure(measured, sample),
             Err(fault) => {
-                self.tare.interrupt(block_end);
+                self.tare.interrupt(measured);
                 self.filter.interrupt();
                 Err(fault)
             }
         };
-        Report { time, outcome }
+        let delay = u64::from(GROUP_DELAY * Self::PERIOD);
+        Report {
+            time: Microseconds(measured.0.saturating_sub(delay)),
+            outcome,
+        }
     }
 
     #[inline]
-    fn measure(&mut self, time: Microseconds, sum: CountSum) -> Result<Measurement, Fault> {
-        let (pressure, beyond_range) = Self::CONVERSION.pressure(sum);
+    fn measure(&mut self, time: Microseconds, sample: Sample) -> Result<Measurement, Fault> {
+        let pressure = Self::SCALE.pressure(sample.pressure);
         let (rise, zero) = self.tare.step(time, pressure)?;
-        let (rise, warnings) = self.filter.step(rise, zero.and(beyond_range))?;
+        let (rise, warnings) = self.filter.step(rise, zero.and(sample.warnings()))?;
         Ok(contact::<D>(rise, warnings))
     }
 }
@@ -68,12 +67,18 @@ mod tests {
     use super::*;
     use crate::report::{Status, Warnings};
     use crate::test_design::{Linear, RISE_END};
+    use crate::transducer::Millipascals;
     use proptest::prelude::*;
 
-    /// The sum of a block at a gauge pressure: 4 % to 94 % of 511 875 for 0 to 100 kPa.
-    fn at(pascals: f64) -> CountSum {
-        let share = (2621.0 + (61604.0 - 2621.0) * pascals / 100e3) / 65536.0;
-        CountSum((share * 511_875.0).round() as u32)
+    /// A sample at a gauge pressure, of a transducer up to 100 kPa; half a millisecond old.
+    fn at(pascals: f64) -> Sample {
+        let millipascals = (pascals * 1000.0).round() as i32;
+        Sample {
+            pressure: Millipascals(millipascals),
+            headroom: Millipascals(100_000_000 - millipascals),
+            age: 500,
+            ..Sample::default()
+        }
     }
 
     /// A path and the millisecond it has come to.
@@ -90,17 +95,17 @@ mod tests {
             }
         }
 
-        fn step(&mut self, block: Result<CountSum, Fault>) -> Report {
+        fn step(&mut self, sample: Result<Sample, Fault>) -> Report {
             self.milliseconds += 1;
-            self.pipeline.step(Microseconds(self.milliseconds * 1000), block)
+            self.pipeline.step(Microseconds(self.milliseconds * 1000), sample)
         }
 
         /// The last of `times` reports of the same block.
-        fn steps(&mut self, times: u32, block: Result<CountSum, Fault>) -> Report {
+        fn steps(&mut self, times: u32, sample: Result<Sample, Fault>) -> Report {
             (1..times).for_each(|_| {
-                self.step(block);
+                self.step(sample);
             });
-            self.step(block)
+            self.step(sample)
         }
 
         /// At rest and zeroed, 100 Pa off the design's rest pressure.
@@ -120,11 +125,8 @@ mod tests {
         let report = bench.steps(3, Ok(at(21_100.0)));
         let measurement = report.outcome.expect("a plain press");
         assert_eq!(report.status(), Status::Ok);
-        // 1000 Pa at 1/256 Pa; one unit of the sum is 0.22 Pa, so within 0.25 Pa.
-        assert!(
-            measurement.pressure_rise.0.abs_diff(256_000) <= 64,
-            "{measurement:?}"
-        );
+        // 1000 Pa at 1/256 Pa.
+        assert_eq!(measurement.pressure_rise.0, 256_000);
         assert_eq!(measurement.force.0, measurement.pressure_rise.0);
     }
 
@@ -199,16 +201,22 @@ mod tests {
     proptest! {
         #[test]
         fn no_history_panics_and_no_fault_has_values(
-            steps in prop::collection::vec((any::<u64>(), any::<u32>(), 0..20_usize), 0..600),
+            steps in prop::collection::vec((any::<u64>(), any::<[i32; 2]>(), any::<u32>(), 0..30_usize), 0..600),
             stored in any::<bool>(),
         ) {
             let start_up = if stored { StartUp::Stored } else { StartUp::Measured };
             let mut pipeline = Pipeline::<Linear>::new(start_up);
-            for (time, sum, fault) in steps {
-                let block = Fault::CODES.get(fault).map_or(Ok(CountSum(sum)), |(fault, _)| Err(*fault));
-                let report = pipeline.step(Microseconds(time), block);
-                if block.is_err() {
-                    prop_assert_eq!(report.outcome.err(), block.err());
+            for (time, [pressure, headroom], age, fault) in steps {
+                let sample = Sample {
+                    pressure: Millipascals(pressure),
+                    headroom: Millipascals(headroom),
+                    age,
+                    ..Sample::default()
+                };
+                let sample = Fault::CODES.get(fault).map_or(Ok(sample), |(fault, _)| Err(*fault));
+                let report = pipeline.step(Microseconds(time), sample);
+                if sample.is_err() {
+                    prop_assert_eq!(report.outcome.err(), sample.err());
                 }
             }
         }

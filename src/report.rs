@@ -22,17 +22,44 @@ pub enum Fault {
     SamplesLost,
     /// The converter gave no samples in time.
     ConverterStalled,
+    /// The transducer does not answer at its address.
+    SensorAbsent,
+    /// The bus to the transducer is held, or broke off.
+    BusFault,
+    /// Another part answers at the transducer's address.
+    WrongSensor,
+    /// The transducer's calibration does not fit its check, or cannot be.
+    SensorCalibration,
+    /// The transducer had no new reading in the longest time a conversion takes.
+    SensorBusy,
+    /// The transducer found its own memory corrupt.
+    SensorMemory,
+    /// The transducer's own arithmetic came to its end: its reading is none.
+    SensorSaturated,
+    /// The transducer was reset by itself and lost its settings.
+    SensorReset,
+    /// The transducer gave what it cannot have measured.
+    SensorImplausible,
 }
 
 impl Fault {
     /// Every fault with its code in telemetry; 0 is not used, so that a cleared word names none.
-    pub const CODES: [(Self, u8); 6] = [
+    pub const CODES: [(Self, u8); 15] = [
         (Self::SensorOpen, 1),
         (Self::SensorShort, 2),
         (Self::Zeroing, 3),
         (Self::Settling, 4),
         (Self::SamplesLost, 5),
         (Self::ConverterStalled, 6),
+        (Self::SensorAbsent, 16),
+        (Self::BusFault, 17),
+        (Self::WrongSensor, 18),
+        (Self::SensorCalibration, 19),
+        (Self::SensorBusy, 20),
+        (Self::SensorMemory, 21),
+        (Self::SensorSaturated, 22),
+        (Self::SensorReset, 23),
+        (Self::SensorImplausible, 24),
     ];
 
     /// The reason in words.
@@ -44,6 +71,15 @@ impl Fault {
             Self::Settling => "settling",
             Self::SamplesLost => "samples lost",
             Self::ConverterStalled => "converter stalled",
+            Self::SensorAbsent => "sensor absent",
+            Self::BusFault => "bus fault",
+            Self::WrongSensor => "wrong sensor",
+            Self::SensorCalibration => "sensor calibration",
+            Self::SensorBusy => "sensor busy",
+            Self::SensorMemory => "sensor memory",
+            Self::SensorSaturated => "sensor saturated",
+            Self::SensorReset => "sensor reset",
+            Self::SensorImplausible => "sensor implausible",
         }
     }
 }

@@ -6,13 +6,14 @@ use embassy_executor::Spawner;
 use embassy_sync::blocking_mutex::raw::ThreadModeRawMutex;
 use embassy_sync::channel::{Channel, TrySendError};
 use embassy_time::{Duration, with_timeout};
-use fingertip::counts::{self, BLOCK_LENGTH, PERIOD};
+use fingertip::counts::{self, BLOCK_LENGTH, CountSum, PERIOD, Window};
 use fingertip::design::Design;
 use fingertip::image::ImageDesign;
 use fingertip::pipeline::Pipeline;
 use fingertip::report::{Fault, Microseconds, Report, Status};
 use fingertip::tare::StartUp;
 use fingertip::telemetry::{self, Frame, Hello, Message, ResetCause};
+use fingertip::transducer::ratiometric::Conversion;
 use panic_probe as _;
 
 /// From one hello to the next, microseconds.
@@ -52,16 +53,28 @@ async fn signal(
             Ok(Ok(block_end)) => {
                 watchdog.pet();
                 publisher.count_lost(block_end);
-                let window = Pipeline::<ImageDesign>::WINDOW;
+                let window = const { Window::of(&ImageDesign::CONSTANTS.transducer.kind) };
                 (block_end, counts::sum(&codes, window))
             }
             Ok(Err(_overrun)) => (clock.now(), Err(Fault::SamplesLost)),
             Err(_timeout) => (clock.now(), Err(Fault::ConverterStalled)),
         };
-        let report = pipeline.step(block_end, block);
+        let report = report_of(&mut pipeline, block_end, block);
         log.report(&report);
         publisher.report(block_end, report);
     }
+}
+
+/// From averaged counts to both results.
+// A boundary that stays in the image, so that its instructions can be counted.
+#[inline(never)]
+fn report_of(
+    pipeline: &mut Pipeline<ImageDesign>,
+    now: Microseconds,
+    block: Result<CountSum, Fault>,
+) -> Report {
+    let conversion = const { Conversion::of(&ImageDesign::CONSTANTS.transducer) };
+    pipeline.step(now, block.map(|sum| conversion.sample(sum, 0)))
 }
 
 /// Numbers the frames and queues them.

@@ -26,7 +26,7 @@
 //!
 //! | offset | bytes | field |
 //! |---|---|---|
-//! | 12 | 1 | 1 sensor open, 2 sensor short, 3 zeroing, 4 settling, 5 samples lost, 6 converter stalled |
+//! | 12 | 1 | 1 sensor open, 2 sensor short, 3 zeroing, 4 settling, 5 samples lost, 6 converter stalled; of a transducer on a bus: 16 sensor absent, 17 bus fault, 18 wrong sensor, 19 sensor calibration, 20 sensor busy, 21 sensor memory, 22 sensor saturated, 23 sensor reset, 24 sensor implausible |
 //!
 //! Kind 3, hello (36 bytes; on the wire 40):
 //!

@@ -15,7 +15,7 @@ use emulator::scenario::Scenario;
 use std::sync::OnceLock;
 
 /// The signal path from the averaged counts to both results, by owner and name.
-const SIGNAL_PATH: (&str, &str) = ("Pipeline", "step");
+const SIGNAL_PATH: (&str, &str) = ("tasks", "report_of");
 
 /// The firmware for the default design, built once.
 fn firmware() -> &'static Image {

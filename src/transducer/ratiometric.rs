@@ -1,0 +1,156 @@
+//! A transducer whose voltage is a share of its supply, read by the chip's own converter: the sum of a block of codes
+//! -> gauge pressure. Where the supply is also the converter's reference, it cancels.
+
+use super::{Millipascals, Sample};
+use crate::counts::{CountSum, PERIOD};
+use crate::pressure::saturate;
+use model_tables::constants::{Transducer, TransducerKind};
+
+/// `pressure = (gain * sum + offset) / 2^shift`.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Conversion {
+    /// Below 2^31.
+    gain: i32,
+    /// Half a millipascal for rounding included; |offset| < 2^62.
+    offset: i64,
+    /// 0 to 40, so that the gain has 31 bits: times a sum of 19 bits, its rounding moves no result by more
+    /// than 2^19 / 2^31 = 2^-12 of what one unit of the sum is worth.
+    shift: u32,
+    /// Above: beyond the transducer's range.
+    range_end: Millipascals,
+}
+
+impl Conversion {
+    /// The conversion for a ratiometric transducer.
+    ///
+    /// # Panics
+    /// At compile time, for a transducer that the converter cannot read, or figures out of all reason.
+    pub const fn of(transducer: &Transducer) -> Self {
+        let TransducerKind::Ratiometric { output: [low, high] } = transducer.kind else {
+            panic!("the converter reads ratiometric transducers only")
+        };
+        let [start, end] = transducer.range;
+        assert!(
+            low < high && high <= 65536,
+            "outputs are increasing shares of the supply"
+        );
+        assert!(
+            start < end && end <= i32::MAX / 1000,
+            "the range is out of reason"
+        );
+        // Millipascals for one unit of the sum: span / (output share * full scale). Widened to 128 bits because it is
+        // evaluated by the compiler alone.
+        let span = ((end as i128 - start as i128) * 1000) << 16;
+        let sums = (high - low) as i128 * CountSum::FULL_SCALE as i128;
+        let mut shift = 40;
+        while rounded(span << shift, sums) > i32::MAX as i128 {
+            assert!(shift > 0, "the range is too wide");
+            shift -= 1;
+        }
+        let gain = rounded(span << shift, sums);
+        let at_start = (start as i128 * 1000) << shift;
+        let sum_at_start = rounded(gain * low as i128 * CountSum::FULL_SCALE as i128, 65536);
+        let half = if shift == 0 { 0 } else { 1_i128 << (shift - 1) };
+        Self {
+            gain: gain as i32,
+            offset: (at_start - sum_at_start + half) as i64,
+            shift,
+            range_end: Millipascals(end * 1000),
+        }
+    }
+
+    /// The pressure of a block, held at the ends of the word. `late` is how long ago the block ended, microseconds.
+    #[inline]
+    pub fn sample(&self, sum: CountSum, late: u32) -> Sample {
+        // gain < 2^31 and sum < 2^19: the product is below 2^50, and the offset leaves it a 63-bit word.
+        let sum = i64::from(sum.0.min(CountSum::FULL_SCALE));
+        let pressure = saturate((i64::from(self.gain) * sum + self.offset) >> self.shift);
+        Sample {
+            pressure: Millipascals(pressure),
+            headroom: Millipascals(self.range_end.0.saturating_sub(pressure)),
+            temperature: None,
+            raw: None,
+            age: PERIOD / 2 + late,
+        }
+    }
+}
+
+/// `a / b` to the nearest, for `a >= 0 < b`.
+const fn rounded(a: i128, b: i128) -> i128 {
+    (a + b / 2) / b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Warnings;
+    use proptest::prelude::*;
+
+    fn mpx5100(range: [i32; 2]) -> Transducer {
+        Transducer {
+            range,
+            resolution: 10_000,
+            noise: 10_000,
+            kind: TransducerKind::Ratiometric {
+                output: [2621, 61604],
+            },
+        }
+    }
+
+    /// A share of the sum at full scale.
+    fn share(share: f64) -> CountSum {
+        CountSum((share * f64::from(CountSum::FULL_SCALE)).round() as u32)
+    }
+
+    /// The line through both ends in real numbers, millipascals.
+    fn line(sum: u32, transducer: &Transducer) -> f64 {
+        let TransducerKind::Ratiometric { output } = transducer.kind else {
+            unreachable!()
+        };
+        let share = f64::from(sum) / f64::from(CountSum::FULL_SCALE);
+        let [low, high] = output.map(|output| f64::from(output) / 65536.0);
+        let [start, end] = transducer.range.map(f64::from);
+        1000.0 * (start + (end - start) * (share - low) / (high - low))
+    }
+
+    #[test]
+    fn half_the_supply_is_51_kilopascals() {
+        // Vout = Vs (0.009 P + 0.04): 0.5 of the supply is P = 51.11 kPa, 48.89 kPa below the end.
+        let sample = Conversion::of(&mpx5100([0, 100_000])).sample(share(0.5), 0);
+        assert!(sample.pressure.0.abs_diff(51_111_000) < 2000, "{sample:?}");
+        assert!(sample.headroom.0.abs_diff(48_889_000) < 2000, "{sample:?}");
+        assert_eq!(sample.warnings(), Warnings::NONE);
+    }
+
+    #[test]
+    fn every_sum_is_converted_to_the_nearest_millipascal() {
+        for range in [[0, 100_000], [0, 400_000], [-50_000, 50_000], [0, 1_000]] {
+            let transducer = mpx5100(range);
+            let conversion = Conversion::of(&transducer);
+            let tolerance = 0.501 + (line(1, &transducer) - line(0, &transducer)) / 4096.0;
+            for sum in (0..=CountSum::FULL_SCALE).step_by(7) {
+                let got = f64::from(conversion.sample(CountSum(sum), 0).pressure.0);
+                let exact = line(sum, &transducer);
+                assert!((got - exact).abs() <= tolerance, "{sum}: {got} for {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn beyond_the_range_is_flagged() {
+        let conversion = Conversion::of(&mpx5100([0, 100_000]));
+        // The range ends at 94 % of the supply.
+        assert_eq!(conversion.sample(share(0.9395), 0).warnings(), Warnings::NONE);
+        assert_eq!(conversion.sample(share(0.95), 0).warnings(), Warnings::SATURATED);
+    }
+
+    proptest! {
+        #[test]
+        fn no_sum_panics_and_pressure_never_falls_with_it(sum in any::<u32>(), step in 0_u32..1000) {
+            let conversion = Conversion::of(&mpx5100([0, 400_000]));
+            let low = conversion.sample(CountSum(sum), 0);
+            let high = conversion.sample(CountSum(sum.saturating_add(step)), 0);
+            prop_assert!(low.pressure <= high.pressure && low.headroom >= high.headroom);
+        }
+    }
+}
