@@ -4,6 +4,7 @@
 //! same design; [`DesignFile::design`] converts to SI. Every error is one line and names the key, the value
 //! found and what is allowed.
 
+mod calibration;
 mod error;
 mod print;
 mod section;
@@ -14,6 +15,7 @@ use crate::material::Law;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
+pub use calibration::{Calibration, DataCurve};
 pub use error::{DesignFileError, Problem};
 
 /// A design file's content.
@@ -23,7 +25,7 @@ pub struct DesignFile {
     pub name: String,
     /// `[membrane]`.
     pub membrane: MembraneSection,
-    /// `[material]`: constants in pascals.
+    /// `[material]`: constants in pascals, those of the preset if it names one.
     pub material: Law,
     /// `[rest]`.
     pub rest: RestSection,
@@ -37,6 +39,8 @@ pub struct DesignFile {
     pub accuracy: Option<Accuracy>,
     /// `[actuator] diameter_mm`: free diameter of the feedback membrane, millimetres.
     pub actuator_diameter_mm: Option<f64>,
+    /// `[calibration]`.
+    pub calibration: Calibration,
 }
 
 /// `[membrane]`: undeformed, millimetres.
@@ -157,7 +161,7 @@ impl DesignFile {
         Sha256::digest(self.canonical()).into()
     }
 
-    /// What the model needs of the design, in SI units.
+    /// What the model needs of the design as it is calibrated, in SI units.
     pub fn design(&self) -> Design {
         const MM: f64 = 1e-3;
         const KPA: f64 = 1e3;
@@ -165,16 +169,24 @@ impl DesignFile {
             membrane: Membrane {
                 radial_semi_axis: self.membrane.radial_semi_axis_mm * MM,
                 axial_semi_axis: self.membrane.axial_semi_axis_mm * MM,
-                thickness: self.membrane.thickness_mm * MM,
+                thickness: self.membrane.thickness_mm * self.calibration.thickness_factor * MM,
             },
-            law: self.material,
-            rest: match self.rest {
+            law: self.material.stiffened(self.calibration.material_factor),
+            rest: match self
+                .calibration
+                .pole_stretch
+                .map_or(self.rest, RestSection::PoleStretch)
+            {
                 RestSection::PoleStretch(stretch) => RestBy::PoleStretch(stretch),
                 RestSection::PressureKpa(pressure) => RestBy::Pressure(pressure * KPA),
                 RestSection::EquatorRadiusMm(radius) => RestBy::EquatorRadius(radius * MM),
                 RestSection::HeightMm(height) => RestBy::Height(height * MM),
             },
-            compliance: self.compliance_mm3_per_kpa * 1e-12,
+            compliance: 1e-12
+                * self
+                    .calibration
+                    .compliance_mm3_per_kpa
+                    .unwrap_or(self.compliance_mm3_per_kpa),
         }
     }
 }

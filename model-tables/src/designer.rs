@@ -5,9 +5,11 @@
 
 mod actuator;
 mod atlas;
+mod bench;
 mod chart;
 mod drawing;
 mod estimate;
+mod materials;
 mod profile;
 mod published;
 mod rest;
@@ -59,6 +61,15 @@ enum Command {
     Estimate(estimate::Arguments),
     /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
     Actuator(actuator::Arguments),
+    /// The materials that a design can name, with where their constants come from
+    Materials,
+    /// Completions for a shell, on standard output
+    ///
+    /// For example: cargo designer completions bash > ~/.local/share/bash-completion/completions/designer
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
     /// The source paper's numbers beside what its stated inputs give
     Published(published::Arguments),
 }
@@ -121,13 +132,7 @@ pub fn main() -> ExitCode {
     } else {
         Format::Csv
     });
-    match run(&arguments.command).and_then(|answer| {
-        let text = answer.rows.print(format).map_err(Refusal)?;
-        std::io::stdout()
-            .write_all(text.as_bytes())
-            .map_err(|error| Refusal(format!("standard output: {error}")))?;
-        Ok(answer.notes)
-    }) {
+    match run(&arguments.command, format) {
         Ok(notes) => {
             for note in notes {
                 eprintln!("note: {note}");
@@ -138,8 +143,9 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn run(command: &Command) -> Result<Answer, Refusal> {
-    match command {
+/// Runs the subcommand and prints its answer; gives its notes.
+fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
+    let Answer { rows, notes } = match command {
         Command::Rest { design } => rest::run(design),
         Command::Solve(arguments) => solve::run(arguments),
         Command::Profile(arguments) => profile::run(arguments),
@@ -148,8 +154,26 @@ fn run(command: &Command) -> Result<Answer, Refusal> {
         Command::Atlas(arguments) => atlas::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),
+        Command::Materials => Ok(materials::run()),
         Command::Published(arguments) => published::run(arguments),
-    }
+        Command::Completions { shell } => return completions(*shell),
+    }?;
+    print(&rows.print(format).map_err(Refusal)?)?;
+    Ok(notes)
+}
+
+/// Prints a shell's completions; they are no rows.
+fn completions(shell: clap_complete::Shell) -> Result<Vec<String>, Refusal> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "designer", &mut text);
+    print(&String::from_utf8_lossy(&text))?;
+    Ok(Vec::new())
+}
+
+fn print(text: &str) -> Result<(), Refusal> {
+    std::io::stdout()
+        .write_all(text.as_bytes())
+        .map_err(|error| Refusal(format!("standard output: {error}")))
 }
 
 /// One line of warning on standard error, about an answer that is given.

@@ -77,6 +77,8 @@ pub mod membrane;
 pub mod mesh;
 #[cfg(feature = "std")]
 pub mod methods;
+#[cfg(feature = "std")]
+pub mod monotone;
 pub mod press;
 pub mod rest;
 pub mod solution;

@@ -2,7 +2,10 @@
 //!
 //! A law is its strain-energy density `W(l1, l2)` per undeformed volume, with the thickness stretch
 //! eliminated by incompressibility (`l3 = 1 / (l1 l2)`), and the derivatives of it. Anything that implements
-//! [`Hyperelastic`] can be solved; [`Law`] collects the laws a design file can name.
+//! [`Hyperelastic`] can be solved; [`Law`] collects the laws a design file can name, [`preset`] materials with their
+//! constants.
+
+pub mod preset;
 
 /// First and second derivatives of the strain energy with respect to the principal stretches, in pascals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,6 +58,25 @@ pub enum Law {
         /// `C3`, pascals.
         c3: f64,
     },
+}
+
+impl Law {
+    /// The law with every constant multiplied by `factor`.
+    #[must_use]
+    pub fn stiffened(self, factor: f64) -> Self {
+        match self {
+            Self::NeoHookean { c1 } => Self::NeoHookean { c1: factor * c1 },
+            Self::MooneyRivlin { c1, c2 } => Self::MooneyRivlin {
+                c1: factor * c1,
+                c2: factor * c2,
+            },
+            Self::Yeoh { c1, c2, c3 } => Self::Yeoh {
+                c1: factor * c1,
+                c2: factor * c2,
+                c3: factor * c3,
+            },
+        }
+    }
 }
 
 /// A law in other units: every energy multiplied by `factor`.
@@ -213,6 +235,16 @@ mod tests {
                 check(d.w11, slope(|x| law.derivatives(x, l2).w1, l1));
                 check(d.w12, slope(|x| law.derivatives(l1, x).w1, l2));
                 check(d.w22, slope(|x| law.derivatives(l1, x).w2, l2));
+            }
+        }
+    }
+
+    #[test]
+    fn a_stiffened_law_has_so_many_times_the_energy() {
+        for law in LAWS {
+            for (l1, l2) in STRETCHES {
+                let (stiff, soft) = (law.stiffened(2.5).energy(l1, l2), law.energy(l1, l2));
+                assert!((stiff - 2.5 * soft).abs() <= 1e-12 * (1.0 + soft.abs()));
             }
         }
     }

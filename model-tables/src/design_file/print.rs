@@ -91,5 +91,5 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
     if let Some(diameter) = file.actuator_diameter_mm {
         writeln!(out, "\n[actuator]\ndiameter_mm = {diameter:?}")?;
     }
-    Ok(())
+    file.calibration.print(out)
 }

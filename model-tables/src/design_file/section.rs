@@ -159,6 +159,35 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Strictly increasing numbers, `count[0]` to `count[1]` of them, that must be there.
+    pub(super) fn increasing(
+        &mut self,
+        key: &'static str,
+        bounds: Bounds,
+        count: [usize; 2],
+    ) -> Result<Vec<f64>, Fault> {
+        let wanted = format!(
+            "{} to {} strictly increasing numbers in brackets, each {}",
+            count[0],
+            count[1],
+            bounds.describe()
+        );
+        let Some(value) = self.get(key) else {
+            return Err(self.missing(key, &wanted));
+        };
+        let numbers: Option<Vec<f64>> = value
+            .get_ref()
+            .as_array()
+            .and_then(|array| array.iter().map(|item| to_number(item.get_ref())).collect());
+        numbers
+            .filter(|numbers| {
+                (count[0]..=count[1]).contains(&numbers.len())
+                    && numbers.iter().all(|&number| bounds.admits(number))
+                    && numbers.windows(2).all(|pair| pair[0] < pair[1])
+            })
+            .ok_or_else(|| self.refuse(key, &wanted))
+    }
+
     /// A text, if the key is there.
     pub(super) fn text(&mut self, key: &'static str, allowed: &str) -> Result<Option<&'a str>, Fault> {
         let Some(value) = self.get(key) else {

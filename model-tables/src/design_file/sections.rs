@@ -1,11 +1,13 @@
 //! The sections of a design file, in the order of the file.
 
+use super::calibration::Calibration;
 use super::error::Problem;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::{
     Accuracy, DesignFile, MembraneSection, RestSection, TransducerKindSection, TransducerSection, Transfer,
 };
 use crate::material::Law;
+use crate::material::preset::{PRESETS, Preset};
 use toml::de::DeTable;
 
 /// Lengths of a fingertip, from a hair to a hand.
@@ -27,7 +29,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         "membrane",
         "radial_semi_axis_mm, axial_semi_axis_mm, thickness_mm",
     )?)?;
-    let material = material(root.needed_sub("material", "law and its constants")?)?;
+    let material = material(root.needed_sub("material", "preset, or law and its constants")?)?;
     let rest = rest(root.needed_sub("rest", REST_KEYS)?)?;
     let compliance = root.sub("fluid")?.map(fluid).transpose()?;
     root.sub("model")?.map(model).transpose()?;
@@ -35,11 +37,17 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
     let transducer = root.sub("transducer")?.map(transducer).transpose()?;
     let accuracy = root.sub("accuracy")?.map(accuracy).transpose()?;
     let actuator = root.sub("actuator")?.map(actuator).transpose()?;
-    if root.has("calibration") {
-        return Err(root.unsupported(
-            "calibration",
-            "remove the section and put the calibrated values into [membrane] and [material]",
-        ));
+    let calibration = root.sub("calibration")?.map(Calibration::parse).transpose()?;
+    let thickness = membrane.thickness_mm * calibration.as_ref().map_or(1.0, |c| c.thickness_factor);
+    let least = membrane.radial_semi_axis_mm.min(membrane.axial_semi_axis_mm);
+    if thickness >= least
+        && let Some(section) = root.sub("calibration")?
+    {
+        let allowed = format!(
+            "less than {}: the wall stays under the smaller semi-axis, {least} mm",
+            least / membrane.thickness_mm
+        );
+        return Err(section.refuse("thickness_factor", &allowed));
     }
     root.finish()?;
     Ok(DesignFile {
@@ -52,6 +60,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         transducer,
         accuracy,
         actuator_diameter_mm: actuator,
+        calibration: calibration.unwrap_or_default(),
     })
 }
 
@@ -87,6 +96,21 @@ fn material(mut section: Section<'_>) -> Result<Law, Fault> {
     const LAWS: &str = "\"neo-hookean\", \"mooney-rivlin\" or \"yeoh\"";
     // The higher constants may have either sign; whether the law is then stable is the solver's to say.
     const HIGHER: Bounds = Bounds::within(-1e12, 1e12, "Pa");
+    let names = || {
+        let names: Vec<String> = PRESETS
+            .iter()
+            .map(|preset| format!("{:?}", preset.name))
+            .collect();
+        format!("one of {}", names.join(", "))
+    };
+    if let Some(name) = section.text("preset", &names())? {
+        let preset = Preset::named(name).ok_or_else(|| section.refuse("preset", &names()))?;
+        if section.has("law") {
+            return Err(section.refuse("law", "left out, as preset is given"));
+        }
+        section.finish()?;
+        return Ok(preset.law);
+    }
     let law = match section.needed_text("law", LAWS)? {
         "neo-hookean" => Law::NeoHookean {
             c1: section.needed_number("c1_pa", STIFFNESS)?,

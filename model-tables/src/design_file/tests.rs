@@ -314,7 +314,104 @@ const IMPOSSIBLE: &[(&str, &str, &str)] = &[
         "actuator.diameter_mm",
     ),
     ("[press]", "[model]\nkind = \"beam\"\n[press]", "model.kind"),
+    (
+        "[press]",
+        "[calibration]\npressure_gain = 0\n[press]",
+        "calibration.pressure_gain",
+    ),
+    (
+        "[press]",
+        "[calibration]\nthickness_factor = 2.7\n[press]",
+        "calibration.thickness_factor",
+    ),
+    (
+        "law = \"mooney-rivlin\"\nc1_pa = 160_355.0\nc2_pa = 46559\n",
+        "preset = \"rubber\"\n",
+        "material.preset",
+    ),
+    (
+        "law = \"mooney-rivlin\"",
+        "preset = \"agilus30\"\nlaw = \"mooney-rivlin\"",
+        "material.law",
+    ),
 ];
+
+/// A curve from data with one of its lines replaced.
+fn with_curve(from: &str, to: &str) -> Result<DesignFile, DesignFileError> {
+    const CURVE: &str = "[calibration]\nrest_pressure_kpa = 0.5\n\
+        curve_pressure_rise_kpa = [0.1, 0.3, 0.6, 1.0, 1.5, 2.1]\n\
+        curve_force_n = [0.05, 0.2, 0.5, 0.9, 1.4, 2.0]\n\
+        curve_indentation_mm = [0.2, 0.5, 0.9, 1.3, 1.7, 2.0]\n";
+    assert!(CURVE.contains(from), "{from}");
+    DesignFile::parse(&(GOOD.to_owned() + &CURVE.replacen(from, to, 1)), "c.toml")
+}
+
+#[test]
+fn a_calibration_scales_the_design_and_leaves_its_text() {
+    let text = GOOD.to_owned()
+        + "[calibration]\nmaterial_factor = 2\nthickness_factor = 0.5\npole_stretch = 1.5\n\
+           compliance_mm3_per_kpa = 3\npressure_gain = 1.1\npressure_offset_kpa = 0.2\nindentation_offset_mm = 0.1\n";
+    let file = DesignFile::parse(&text, "c.toml").expect("a calibration");
+    let design = file.design();
+    assert_eq!(
+        design.law,
+        Law::MooneyRivlin {
+            c1: 320_710.0,
+            c2: 93_118.0
+        }
+    );
+    assert!((design.membrane.thickness - 0.5e-3).abs() < 1e-17);
+    assert_eq!(design.rest, RestBy::PoleStretch(1.5));
+    assert!((design.compliance - 3e-12).abs() < 1e-24);
+    assert_eq!(file.membrane, good().membrane);
+    // 1.1 times 10 kPa and 0.2 kPa.
+    assert!((file.calibration.pressure_read(10e3) - 11_200.0).abs() < 1e-9);
+    assert!((file.calibration.indentation_of(0.5e-3) - 0.4e-3).abs() < 1e-15);
+    let again = DesignFile::parse(&file.canonical(), "again.toml").expect("its canonical text");
+    assert_eq!(file, again);
+    assert_ne!(file.hash(), good().hash());
+}
+
+#[test]
+fn an_empty_calibration_is_none() {
+    let file = DesignFile::parse(&(GOOD.to_owned() + "[calibration]\n"), "c.toml").expect("empty");
+    assert_eq!(file.hash(), good().hash());
+}
+
+#[test]
+fn a_material_by_name_is_its_constants() {
+    let law = "law = \"mooney-rivlin\"\nc1_pa = 160_355.0\nc2_pa = 46559\n";
+    let named = DesignFile::parse(&GOOD.replace(law, "preset = \"agilus30\"\n"), "n.toml").expect("a preset");
+    assert_eq!(named, good());
+    assert!(
+        error("law = \"mooney-rivlin\"", "preset = \"skin\"").contains("`material.c1_pa` is not a known")
+    );
+}
+
+#[test]
+fn a_curve_from_data_is_read_back_and_runs_through_its_knots() {
+    let file = with_curve("0.5", "0.5").expect("a curve");
+    assert_eq!(
+        DesignFile::parse(&file.canonical(), "again.toml").expect("its canonical text"),
+        file
+    );
+    let curve = file.calibration.curve.expect("given");
+    let points = curve.points(1.3e-3);
+    let end = points.last().expect("points");
+    assert!((end.pressure_rise - 1000.0).abs() < 1e-6 && (end.force - 0.9).abs() < 1e-9);
+    assert!(points.windows(2).all(|pair| pair[0].force < pair[1].force));
+}
+
+#[test]
+fn a_curve_from_data_grows_and_is_whole() {
+    let text = |from: &str, to: &str| with_curve(from, to).expect_err("must be refused").to_string();
+    assert!(text("0.9, 1.4", "0.9, 0.8").contains("`calibration.curve_force_n` is [0.05"));
+    assert!(text("rest_pressure_kpa = 0.5\n", "").contains("`calibration.rest_pressure_kpa` is missing"));
+    assert!(
+        text("[0.2, 0.5, ", "[0.1, 0.2, 0.5, ").contains("as many numbers as curve_pressure_rise_kpa has, 6")
+    );
+    assert!(text("[0.1, 0.3,", "[0.3,").contains("6 to 1000 strictly increasing numbers"));
+}
 
 #[test]
 fn names_an_impossible_value_the_line_and_what_is_allowed() {
@@ -351,11 +448,6 @@ fn refuses_what_it_cannot_do_yet() {
     let text = error("[press]", "[model]\nkind = \"solid\"\n[press]");
     assert!(
         text.contains("`model.kind` is not supported by this version"),
-        "{text}"
-    );
-    let text = error("[press]", "[calibration]\npressure_gain = 1.01\n[press]");
-    assert!(
-        text.contains("`calibration` is not supported by this version"),
         "{text}"
     );
 }

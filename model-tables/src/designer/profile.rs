@@ -1,7 +1,7 @@
 //! `designer profile`: the meridian of one state.
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Field, Refusal, finite, read};
+use super::{Answer, Field, Refusal, bench, finite, read};
 use crate::press::Press;
 use std::path::PathBuf;
 
@@ -52,13 +52,14 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let file = &arguments.design;
-    let design = read(file)?.design();
+    let design_file = read(file)?;
+    let calibration = &design_file.calibration;
     let points = arguments.points as usize;
-    let mut press =
-        Press::new(&design, arguments.tension_field.into()).map_err(|error| Refusal::about(file, &error))?;
-    let meridian = press
-        .profile(arguments.indentation_mm / 1e3, points)
+    let mut press = Press::new(&design_file.design(), arguments.tension_field.into())
         .map_err(|error| Refusal::about(file, &error))?;
+    let meridian = press
+        .profile(bench::depth(calibration, arguments.indentation_mm), points)
+        .map_err(|error| Refusal::about(file, &bench::as_read(calibration, error)))?;
     let mut rows = Rows::new(COLUMNS);
     let mut found = 0;
     for point in meridian {

@@ -1,7 +1,7 @@
 //! `designer rest`: the rest state and the limits.
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, read, warn_of_instability};
+use super::{Answer, Refusal, bench, read, warn_of_instability};
 use crate::membrane::TensionField;
 use crate::press::Press;
 use crate::rest::Branch;
@@ -18,26 +18,28 @@ const COLUMNS: &[&str] = &[
 ];
 
 pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
-    let design = read(file)?.design();
-    let mut press =
-        Press::new(&design, TensionField::Relaxed).map_err(|error| Refusal::about(file, &error))?;
+    let design_file = read(file)?;
+    let calibration = &design_file.calibration;
+    let mut press = Press::new(&design_file.design(), TensionField::Relaxed)
+        .map_err(|error| Refusal::about(file, &error))?;
     let rest = *press.rest();
     let limit = press.limit().map_err(|error| Refusal::about(file, &error))?;
     warn_of_instability(file, "at rest", press.rest_stability());
     if press.rest_stability().is_stable() {
         warn_of_instability(file, "at the end of the press", press.stability());
     }
+    bench::warn_of_strain(file, &design_file, &mut press, 0.0);
     let mut rows = Rows::new(COLUMNS);
     rows.push(vec![
-        Cell::Number(rest.pressure * 1e-3),
+        Cell::Number(calibration.pressure_read(rest.pressure) * 1e-3),
         Cell::Number(rest.pole_stretch),
         Cell::Number(rest.edge_radius * 1e3),
         Cell::Number(rest.height * 1e3),
         Cell::Number(rest.volume * 1e9),
-        Cell::Number(limit.indentation * 1e3),
+        Cell::Number(calibration.indentation_read(limit.indentation) * 1e3),
         Cell::word(limit.ends_by.word()),
     ]);
-    let notes = match press.branch() {
+    let mut notes = match press.branch() {
         Branch::Only => Vec::new(),
         Branch::Lower { other } => vec![format!(
             "two rest states: this is the less stretched, the other has a pole stretch of {other:.6}"
@@ -46,5 +48,6 @@ pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
             "two rest states: this is the more stretched, the other has a pole stretch of {other:.6}"
         )],
     };
+    notes.extend(bench::caution(&design_file));
     Ok(Answer { rows, notes })
 }

@@ -1,7 +1,7 @@
 //! `designer solve`: pressed states.
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Field, Refusal, finite, read, warn_of_instability};
+use super::{Answer, Field, Refusal, bench, finite, read, warn, warn_of_instability};
 use crate::press::Press;
 use crate::stability::Margin;
 use crate::state::PressedState;
@@ -24,7 +24,7 @@ const COLUMNS: &[&str] = &[
 pub(super) struct Arguments {
     /// The design file
     design: PathBuf,
-    /// Indentations in millimetres, separated by commas
+    /// Indentations in millimetres, separated by commas; of a calibrated design, as its bench reads them
     #[arg(long, value_name = "LIST", required = true, value_delimiter = ',',
           value_parser = finite, allow_hyphen_values = true)]
     indentation_mm: Vec<f64>,
@@ -35,18 +35,27 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let file = &arguments.design;
-    let design = read(file)?.design();
-    let mut press =
-        Press::new(&design, arguments.tension_field.into()).map_err(|error| Refusal::about(file, &error))?;
+    let design_file = read(file)?;
+    let calibration = &design_file.calibration;
+    if calibration.curve.is_some() {
+        warn(
+            file,
+            &"its tables come from the data in [calibration]; these states are the model's",
+        );
+    }
+    let mut press = Press::new(&design_file.design(), arguments.tension_field.into())
+        .map_err(|error| Refusal::about(file, &error))?;
     // Solved from shallow to deep, given in the order asked.
     let mut order: Vec<usize> = (0..arguments.indentation_mm.len()).collect();
     order.sort_by(|&a, &b| arguments.indentation_mm[a].total_cmp(&arguments.indentation_mm[b]));
     let mut states: Vec<Option<PressedState>> = vec![None; order.len()];
-    let mut worst = None;
+    let (mut worst, mut deepest) = (None, 0.0_f64);
     for i in order {
+        let depth = bench::depth(calibration, arguments.indentation_mm[i]);
         let state = press
-            .at_indentation(arguments.indentation_mm[i] / 1e3)
-            .map_err(|error| Refusal::about(file, &error))?;
+            .at_indentation(depth)
+            .map_err(|error| Refusal::about(file, &bench::as_read(calibration, error)))?;
+        deepest = deepest.max(depth);
         states[i] = Some(state);
         let margin = press.stability();
         if worst.is_none_or(|(_, least): (f64, Margin)| margin.value < least.value) {
@@ -56,12 +65,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     if let Some((indentation, margin)) = worst {
         warn_of_instability(file, &format!("at indentation {indentation} mm"), margin);
     }
+    bench::warn_of_strain(file, &design_file, &mut press, deepest);
     let mut rows = Rows::new(COLUMNS);
     for (state, &asked) in states.iter().flatten().zip(&arguments.indentation_mm) {
         rows.push(vec![
             Cell::Number(asked),
-            Cell::Number(state.shape.pressure * 1e-3),
-            Cell::Number(state.pressure_rise * 1e-3),
+            Cell::Number(calibration.pressure_read(state.shape.pressure) * 1e-3),
+            Cell::Number(calibration.pressure_read(state.pressure_rise) * 1e-3),
             Cell::Number(state.force),
             Cell::Number(state.contact_radius * 1e3),
             Cell::Number(state.contact_area() * 1e6),

@@ -2,8 +2,10 @@
 
 use super::{Certified, NoTables, emit, tables};
 use crate::constants::{Transducer, TransducerKind};
-use crate::curve::Contact;
-use crate::design_file::{DesignFile, DesignFileError, TransducerKindSection, TransducerSection, Transfer};
+use crate::curve::{Contact, Curve};
+use crate::design_file::{
+    DataCurve, DesignFile, DesignFileError, TransducerKindSection, TransducerSection, Transfer,
+};
 use crate::membrane::TensionField;
 use crate::press::{CurveFailure, ModelError, Press};
 use std::fmt;
@@ -46,6 +48,13 @@ pub enum GenerateError {
         pressure: f64,
         /// The range, kilopascals.
         range: [f64; 2],
+    },
+    /// The data that the tables are to come from end before `max_indentation_mm`.
+    BeyondData {
+        /// The indentation asked for, millimetres.
+        asked: f64,
+        /// The deepest one of the data, millimetres.
+        deepest: f64,
     },
     /// No tables meet the accuracy.
     NoTables(NoTables),
@@ -99,6 +108,11 @@ impl fmt::Display for GenerateError {
                     }
                 }
             }
+            Self::BeyondData { asked, deepest } => write!(
+                f,
+                "press.max_indentation_mm = {asked} is beyond the data in [calibration], which end at {deepest} mm: \
+                 ask for less, or measure deeper"
+            ),
             Self::NoTables(error) => error.fmt(f),
         }
     }
@@ -124,16 +138,16 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
     let transducer = design.transducer.ok_or(missing("transducer"))?;
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
     let deepest = indentation * 1e-3;
-    let mut press = Press::new(&design.design(), TensionField::Relaxed).map_err(GenerateError::Model)?;
-    let rest_pressure = press.rest().pressure;
+    let (rest_pressure, curve) = match &design.calibration.curve {
+        Some(data) => (data.rest_pressure_kpa * 1e3, measured(data, deepest)?),
+        None => pressed(&design, &transducer, indentation)?,
+    };
     in_range(&transducer, State::Rest, rest_pressure)?;
-    let end = press.at_indentation(deepest).map_err(GenerateError::Model)?;
     in_range(
         &transducer,
         State::Pressed { indentation },
-        rest_pressure + end.pressure_rise,
+        rest_pressure + curve.end().pressure_rise,
     )?;
-    let curve = press.curve(deepest).map_err(GenerateError::Curve)?;
     let certified = tables(&curve, &accuracy, transducer.resolution_pa).map_err(GenerateError::NoTables)?;
     Ok(Generated {
         rest_pressure,
@@ -142,6 +156,49 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
         transducer,
         design,
     })
+}
+
+/// What the transducer reads at rest, and the curve of the model as it reads it: its own zero takes the offset away.
+fn pressed(
+    design: &DesignFile,
+    transducer: &TransducerSection,
+    indentation: f64,
+) -> Result<(f64, Curve), GenerateError> {
+    let calibration = &design.calibration;
+    let deepest = indentation * 1e-3;
+    let mut press = Press::new(&design.design(), TensionField::Relaxed).map_err(GenerateError::Model)?;
+    let rest_pressure = calibration.pressure_read(press.rest().pressure);
+    // What cannot be read is refused before the curve is solved.
+    in_range(transducer, State::Rest, rest_pressure)?;
+    let end = press.at_indentation(deepest).map_err(GenerateError::Model)?;
+    in_range(
+        transducer,
+        State::Pressed { indentation },
+        calibration.pressure_read(press.rest().pressure + end.pressure_rise),
+    )?;
+    let curve = press.curve(deepest).map_err(GenerateError::Curve)?;
+    if calibration.pressure_gain.to_bits() == 1.0_f64.to_bits() {
+        return Ok((rest_pressure, curve));
+    }
+    let read = |point: &Contact| Contact {
+        pressure_rise: calibration.pressure_gain * point.pressure_rise,
+        ..*point
+    };
+    let curve = Curve::new(curve.points().iter().map(read).collect())
+        .map_err(|error| GenerateError::Curve(CurveFailure::Shape(error)))?;
+    Ok((rest_pressure, curve))
+}
+
+/// The curve of the data down to an indentation within them.
+fn measured(data: &DataCurve, deepest: f64) -> Result<Curve, GenerateError> {
+    let end = data.end();
+    if deepest > end.indentation * (1.0 + 1e-9) {
+        return Err(GenerateError::BeyondData {
+            asked: deepest * 1e3,
+            deepest: end.indentation * 1e3,
+        });
+    }
+    Curve::new(data.points(deepest)).map_err(|error| GenerateError::Curve(CurveFailure::Shape(error)))
 }
 
 fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Result<(), GenerateError> {
