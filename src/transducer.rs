@@ -3,7 +3,14 @@
 //! A driver knows its part and its bus, and neither clock nor policy: time limits on a bus operation are the
 //! bus's, retries and back-off the caller's, and a sample says how old it is in place of when it was taken.
 
+pub mod abp2;
+pub mod bus;
+pub mod dps310;
+pub mod keeper;
+pub mod ms5837;
 pub mod ratiometric;
+#[cfg(test)]
+mod script;
 
 use crate::report::{Fault, Warnings};
 use model_tables::constants::TransducerKind;
@@ -40,8 +47,9 @@ impl Quantity {
 pub const fn period(kind: &TransducerKind) -> u32 {
     match kind {
         TransducerKind::Ratiometric { .. } => crate::counts::PERIOD,
-        TransducerKind::Abp2 { .. } | TransducerKind::Ms5837 { .. } => 7_000,
-        TransducerKind::Dps310 { .. } => 10_000,
+        TransducerKind::Abp2 { .. } => abp2::PERIOD,
+        TransducerKind::Ms5837 { .. } => ms5837::PERIOD,
+        TransducerKind::Dps310 { .. } => dps310::PERIOD,
     }
 }
 
