@@ -22,6 +22,8 @@ pub enum Failure {
         /// The contact parameter.
         position: f64,
     },
+    /// The solid model's.
+    Solid(crate::solid::Failure),
     /// The edge of a wrinkled zone, or the kind of the pole, did not settle.
     Unsettled,
 }
@@ -42,6 +44,7 @@ impl fmt::Display for Failure {
                 f,
                 "at the contact edge, parameter {position:.4} of the meridian, the membrane would have to push"
             ),
+            Self::Solid(failure) => failure.fmt(f),
             Self::Unsettled => write!(f, "the edge of a wrinkled or slack zone did not settle"),
         }
     }

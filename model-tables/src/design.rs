@@ -16,6 +16,8 @@ pub struct Membrane {
 /// How the rest state (inflated, not pressed) is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RestBy {
+    /// Not inflated: a solid wall as it was made. No rest state of a membrane.
+    Unstretched,
     /// Stretch of the membrane at its pole, > 1. The only one of the four that is one-to-one.
     PoleStretch(f64),
     /// Gauge pressure, pascals, > 0.

@@ -12,6 +12,7 @@ mod sections;
 
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
+use crate::solid::mesh::Elements;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -29,6 +30,8 @@ pub struct DesignFile {
     pub material: Law,
     /// `[rest]`.
     pub rest: RestSection,
+    /// `[model]`.
+    pub model: ModelSection,
     /// `[fluid] compliance_mm3_per_kpa`: tubing, actuator and bubbles, cubic millimetres per kilopascal.
     pub compliance_mm3_per_kpa: f64,
     /// `[press] max_indentation_mm`: end of the tables, millimetres.
@@ -43,20 +46,36 @@ pub struct DesignFile {
     pub calibration: Calibration,
 }
 
-/// `[membrane]`: undeformed, millimetres.
+/// `[membrane]`: undeformed, millimetres. Semi-axes of the outer surface for a solid or `auto`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneSection {
-    /// Radial semi-axis of the mid-surface.
+    /// Radial semi-axis.
     pub radial_semi_axis_mm: f64,
-    /// Axial semi-axis of the mid-surface.
+    /// Axial semi-axis.
     pub axial_semi_axis_mm: f64,
     /// Wall thickness.
     pub thickness_mm: f64,
 }
 
-/// `[rest]`: exactly one of the four.
+/// `[model]`: what the fingertip is solved with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelSection {
+    /// `kind = "membrane"`, also where the section is left out.
+    Membrane,
+    /// `kind = "solid"`, with elements through the wall and along the meridian.
+    Solid {
+        /// `through`.
+        through: u32,
+        /// `along`.
+        along: u32,
+    },
+}
+
+/// `[rest]`: exactly one of its keys; left out for a solid that is not inflated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RestSection {
+    /// No section: as it was made.
+    Unstretched,
     /// `pole_stretch`, > 1.
     PoleStretch(f64),
     /// `pressure_kpa`, gauge, > 0.
@@ -161,6 +180,17 @@ impl DesignFile {
         Sha256::digest(self.canonical()).into()
     }
 
+    /// The elements of a solid; `None` of a membrane.
+    pub fn elements(&self) -> Option<Elements> {
+        match self.model {
+            ModelSection::Membrane => None,
+            ModelSection::Solid { through, along } => Some(Elements {
+                through: through as usize,
+                along: along as usize,
+            }),
+        }
+    }
+
     /// What the model needs of the design as it is calibrated, in SI units.
     pub fn design(&self) -> Design {
         const MM: f64 = 1e-3;
@@ -177,6 +207,7 @@ impl DesignFile {
                 .pole_stretch
                 .map_or(self.rest, RestSection::PoleStretch)
             {
+                RestSection::Unstretched => RestBy::Unstretched,
                 RestSection::PoleStretch(stretch) => RestBy::PoleStretch(stretch),
                 RestSection::PressureKpa(pressure) => RestBy::Pressure(pressure * KPA),
                 RestSection::EquatorRadiusMm(radius) => RestBy::EquatorRadius(radius * MM),

@@ -218,6 +218,17 @@ fn usage(error: &clap::Error) -> String {
     format!("{} (see `designer --help`)", first.join(" "))
 }
 
+/// A solid has no tension field.
+fn refuse_plain(file: &Path, field: Field) -> Result<(), Refusal> {
+    match field {
+        Field::Relaxed => Ok(()),
+        Field::Plain => Err(Refusal::about(
+            file,
+            &"--tension-field plain is for membranes, model.kind is \"solid\": leave the option out",
+        )),
+    }
+}
+
 fn read(design: &Path) -> Result<DesignFile, Refusal> {
     Ok(DesignFile::read(design)?)
 }

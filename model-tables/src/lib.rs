@@ -81,6 +81,9 @@ pub mod methods;
 pub mod monotone;
 pub mod press;
 pub mod rest;
+#[cfg(feature = "std")]
+pub mod rung;
+pub mod solid;
 pub mod solution;
 pub mod solver;
 pub mod stability;

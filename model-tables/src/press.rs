@@ -128,6 +128,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 })
         };
         let (rest, branch) = match rest {
+            RestBy::Unstretched => return Err(ModelError::Unstretched),
             RestBy::PoleStretch(stretch) => {
                 let rest = solver.rest_by_pole_stretch(stretch).map_err(|end| match end {
                     End::Turns { greatest } => ModelError::NoRestState {

@@ -125,6 +125,9 @@ fn reason(error: &ModelError, press: Option<&Press>) -> &'static str {
         ModelError::BeyondLimit { .. } => return "beyond-limit",
         ModelError::NotAnIndentation { .. } => return "not-an-indentation",
         ModelError::LawUnstable { .. } => return "law-unstable",
+        ModelError::Unstretched | ModelError::RestNotForSolid | ModelError::PressureOutOfReach { .. } => {
+            return "no-rest-state";
+        }
         ModelError::RestUnsolved { failure } | ModelError::PressUnsolved { failure, .. } => failure,
     };
     match (error, failure) {
@@ -141,6 +144,8 @@ fn reason(error: &ModelError, press: Option<&Press>) -> &'static str {
         (_, Failure::Newton(Outcome::Singular { .. })) => "press-singular",
         (_, Failure::Newton(_)) => "press-stalled",
         (_, Failure::EdgePushes { .. }) => "plain-edge-pushes",
+        // Membranes alone are judged here.
+        (_, Failure::Solid(_)) => "solid",
         (_, Failure::Unsettled) => "press-unsettled",
     }
 }

@@ -1,6 +1,6 @@
 //! The canonical text of a design: the same design always gives the same bytes.
 
-use super::{DesignFile, RestSection, TransducerKindSection, Transfer};
+use super::{DesignFile, ModelSection, RestSection, TransducerKindSection, Transfer};
 use crate::material::Law;
 use std::fmt::{self, Write};
 
@@ -31,8 +31,11 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
             )?;
         }
     }
-    writeln!(out, "\n[rest]")?;
+    if file.rest != RestSection::Unstretched {
+        writeln!(out, "\n[rest]")?;
+    }
     match file.rest {
+        RestSection::Unstretched => {}
         RestSection::PoleStretch(stretch) => writeln!(out, "pole_stretch = {stretch:?}")?,
         RestSection::PressureKpa(pressure) => writeln!(out, "pressure_kpa = {pressure:?}")?,
         RestSection::EquatorRadiusMm(radius) => writeln!(out, "equator_radius_mm = {radius:?}")?,
@@ -40,6 +43,16 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
     }
     writeln!(out, "\n[fluid]")?;
     writeln!(out, "compliance_mm3_per_kpa = {:?}", file.compliance_mm3_per_kpa)?;
+    match file.model {
+        // What designs are unless they say otherwise.
+        ModelSection::Membrane => {}
+        ModelSection::Solid { through, along } => {
+            writeln!(
+                out,
+                "\n[model]\nkind = \"solid\"\nthrough = {through}\nalong = {along}"
+            )?;
+        }
+    }
     if let Some(depth) = file.max_indentation_mm {
         writeln!(out, "\n[press]\nmax_indentation_mm = {depth:?}")?;
     }

@@ -4,10 +4,12 @@ use super::calibration::Calibration;
 use super::error::Problem;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::{
-    Accuracy, DesignFile, MembraneSection, RestSection, TransducerKindSection, TransducerSection, Transfer,
+    Accuracy, DesignFile, MembraneSection, ModelSection, RestSection, TransducerKindSection,
+    TransducerSection, Transfer,
 };
 use crate::material::Law;
 use crate::material::preset::{PRESETS, Preset};
+use crate::solid::press::FULL;
 use toml::de::DeTable;
 
 /// Lengths of a fingertip, from a hair to a hand.
@@ -30,9 +32,20 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         "radial_semi_axis_mm, axial_semi_axis_mm, thickness_mm",
     )?)?;
     let material = material(root.needed_sub("material", "preset, or law and its constants")?)?;
-    let rest = rest(root.needed_sub("rest", REST_KEYS)?)?;
+    let model = root
+        .sub("model")?
+        .map(model)
+        .transpose()?
+        .unwrap_or(ModelSection::Membrane);
+    let rest = match model {
+        ModelSection::Membrane => rest(root.needed_sub("rest", REST_KEYS)?)?,
+        ModelSection::Solid { .. } => root
+            .sub("rest")?
+            .map(rest_of_solid)
+            .transpose()?
+            .unwrap_or(RestSection::Unstretched),
+    };
     let compliance = root.sub("fluid")?.map(fluid).transpose()?;
-    root.sub("model")?.map(model).transpose()?;
     let press = root.sub("press")?.map(press).transpose()?;
     let transducer = root.sub("transducer")?.map(transducer).transpose()?;
     let accuracy = root.sub("accuracy")?.map(accuracy).transpose()?;
@@ -55,6 +68,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         membrane,
         material,
         rest,
+        model,
         compliance_mm3_per_kpa: compliance.unwrap_or(0.0),
         max_indentation_mm: press,
         transducer,
@@ -178,6 +192,27 @@ fn rest(mut section: Section<'_>) -> Result<RestSection, Fault> {
     }
 }
 
+fn rest_of_solid(mut section: Section<'_>) -> Result<RestSection, Fault> {
+    const ONLY: &str = "left out: a solid rests unstretched (no [rest]) or at a pressure_kpa";
+    let pressure = section.number("pressure_kpa", PRESSURE)?;
+    for key in ["pole_stretch", "equator_radius_mm", "height_mm"] {
+        if section.has(key) {
+            return Err(section.refuse(key, ONLY));
+        }
+    }
+    if let Some(pressure) = pressure {
+        section.finish()?;
+        return Ok(RestSection::PressureKpa(pressure));
+    }
+    // A misspelt key is the likelier reason, and the better message.
+    let missing = section.missing(
+        "pressure_kpa",
+        "a pressure, or no [rest] at all for an unstretched solid",
+    );
+    section.finish()?;
+    Err(missing)
+}
+
 fn fluid(mut section: Section<'_>) -> Result<f64, Fault> {
     let bounds = Bounds::within(0.0, 1e6, "mm^3/kPa");
     let compliance = section.number("compliance_mm3_per_kpa", bounds)?;
@@ -185,12 +220,32 @@ fn fluid(mut section: Section<'_>) -> Result<f64, Fault> {
     Ok(compliance.unwrap_or(0.0))
 }
 
-fn model(mut section: Section<'_>) -> Result<(), Fault> {
-    const KINDS: &str = "\"membrane\" (the only model of this version)";
-    match section.text("kind", KINDS)? {
-        None | Some("membrane") => section.finish(),
-        Some("solid" | "auto") => Err(section.unsupported("kind", "set it to \"membrane\" or leave it out")),
-        Some(_) => Err(section.refuse("kind", KINDS)),
+fn model(mut section: Section<'_>) -> Result<ModelSection, Fault> {
+    const KINDS: &str = "\"membrane\" or \"solid\"";
+    let model = match section.text("kind", KINDS)? {
+        None | Some("membrane") => ModelSection::Membrane,
+        Some("solid") => ModelSection::Solid {
+            through: elements(&mut section, "through", 1.0, 8.0)?.unwrap_or(FULL.through as u32),
+            along: elements(&mut section, "along", 4.0, 400.0)?.unwrap_or(FULL.along as u32),
+        },
+        Some("auto") => return Err(section.unsupported("kind", "choose \"membrane\" or \"solid\"")),
+        Some(_) => return Err(section.refuse("kind", KINDS)),
+    };
+    section.finish()?;
+    Ok(model)
+}
+
+/// A number of elements, if the key is there.
+fn elements(
+    section: &mut Section<'_>,
+    key: &'static str,
+    least: f64,
+    most: f64,
+) -> Result<Option<u32>, Fault> {
+    let number = section.number(key, Bounds::within(least, most, "(a whole number)"))?;
+    match number {
+        Some(number) if libm::fmod(number, 1.0) > 0.0 => Err(section.refuse(key, "a whole number")),
+        other => Ok(other.map(|number| number as u32)),
     }
 }
 

@@ -444,10 +444,69 @@ fn wants_exactly_one_kind_of_rest() {
 }
 
 #[test]
-fn refuses_what_it_cannot_do_yet() {
-    let text = error("[press]", "[model]\nkind = \"solid\"\n[press]");
+fn a_solid_rests_unstretched_or_at_a_pressure() {
+    let solid = |rest: &str, keys: &str| {
+        let text = GOOD.replacen("[rest]\npole_stretch = 2.3\n", rest, 1);
+        DesignFile::parse(&format!("{text}[model]\nkind = \"solid\"\n{keys}"), "solid.toml")
+    };
+    let file = solid("", "").expect("an unstretched solid");
+    assert_eq!(file.rest, RestSection::Unstretched);
+    assert_eq!(
+        file.model,
+        ModelSection::Solid {
+            through: 2,
+            along: 24
+        }
+    );
+    let finer = solid("[rest]\npressure_kpa = 20\n", "through = 1\nalong = 60\n").expect("an inflated solid");
+    assert_eq!(finer.rest, RestSection::PressureKpa(20.0));
+    assert_eq!(
+        finer.model,
+        ModelSection::Solid {
+            through: 1,
+            along: 60
+        }
+    );
+    for file in [file, finer] {
+        assert_eq!(DesignFile::parse(&file.canonical(), "canonical.toml"), Ok(file));
+    }
+    for (rest, keys, says) in [
+        (
+            "[rest]\npole_stretch = 2.3\n",
+            "",
+            "`rest.pole_stretch` is 2.3: must be left out: a solid",
+        ),
+        (
+            "[rest]\n",
+            "",
+            "`rest.pressure_kpa` is missing: needs a pressure, or no [rest]",
+        ),
+        (
+            "",
+            "through = 1.5\n",
+            "`model.through` is 1.5: must be a whole number",
+        ),
+        (
+            "",
+            "along = 0\n",
+            "`model.along` is 0: must be a number at least 4",
+        ),
+        (
+            "",
+            "layers = 2\n",
+            "`model.layers` is not a known key: allowed are kind, through, along",
+        ),
+    ] {
+        let text = solid(rest, keys).expect_err(says).to_string();
+        assert!(text.contains(says), "{text}");
+    }
+}
+
+#[test]
+fn a_membrane_has_no_elements_to_choose() {
+    let text = error("[press]", "[model]\nthrough = 2\n[press]");
     assert!(
-        text.contains("`model.kind` is not supported by this version"),
+        text.contains("`model.through` is not a known key: allowed are kind"),
         "{text}"
     );
 }

@@ -1,8 +1,12 @@
 //! `designer profile`: the meridian of one state.
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Field, Refusal, bench, finite, read};
-use crate::press::Press;
+use super::{Answer, Field, Refusal, bench, finite, read, refuse_plain};
+use crate::design_file::DesignFile;
+use crate::membrane::Zone;
+use crate::press::{ModelError, Press};
+use crate::solid;
+use crate::solid::mesh::Elements;
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &[
@@ -32,7 +36,10 @@ Columns:
   wrinkled                    no, wrinkled (hoop wrinkles; with `plain`: some tension is negative) or slack
 
 Points are equally spaced in the parameter within the contact and within the free zone; one is on the
-contact edge.";
+contact edge.
+
+Of a solid: the middle of its wall, forces across the whole wall for tensions, nothing under `wrinkled`;
+points are equally spaced throughout.";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -55,6 +62,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let design_file = read(file)?;
     let calibration = &design_file.calibration;
     let points = arguments.points as usize;
+    if let Some(elements) = design_file.elements() {
+        refuse_plain(file, arguments.tension_field)?;
+        return solid(arguments, &design_file, elements);
+    }
     let mut press = Press::new(&design_file.design(), arguments.tension_field.into())
         .map_err(|error| Refusal::about(file, &error))?;
     let meridian = press
@@ -84,6 +95,43 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
              for another indentation"
         );
         return Err(Refusal::about(file, &reason));
+    }
+    Ok(Answer {
+        rows,
+        notes: Vec::new(),
+    })
+}
+
+/// The meridian of a solid: the middle of its wall.
+fn solid(arguments: &Arguments, design_file: &DesignFile, elements: Elements) -> Result<Answer, Refusal> {
+    let calibration = &design_file.calibration;
+    let refuse = |error: ModelError| Refusal::about(&arguments.design, &bench::as_read(calibration, error));
+    let mut press = solid::press::Press::new(&design_file.design(), elements).map_err(refuse)?;
+    let stations = press
+        .profile(
+            bench::depth(calibration, arguments.indentation_mm),
+            arguments.points as usize,
+        )
+        .map_err(refuse)?;
+    let mut rows = Rows::new(COLUMNS);
+    for station in stations {
+        let zone = if station.in_contact {
+            Zone::Contact
+        } else {
+            Zone::Free
+        };
+        rows.push(vec![
+            Cell::Number(station.parameter),
+            Cell::Number(station.radius * 1e3),
+            Cell::Number(station.height * 1e3),
+            Cell::Number(station.meridional_stretch),
+            Cell::Number(station.hoop_stretch),
+            Cell::Number(station.meridional_tension),
+            Cell::Number(station.hoop_tension),
+            Cell::Number(station.angle.to_degrees()),
+            Cell::word(zone.word()),
+            Cell::Empty,
+        ]);
     }
     Ok(Answer {
         rows,

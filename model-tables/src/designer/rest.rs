@@ -2,9 +2,12 @@
 
 use super::rows::{Cell, Rows};
 use super::{Answer, Refusal, bench, read, warn_of_instability};
+use crate::design_file::DesignFile;
 use crate::membrane::TensionField;
-use crate::press::Press;
+use crate::press::{ModelError, Press};
 use crate::rest::Branch;
+use crate::solid;
+use crate::solid::mesh::Elements;
 use std::path::Path;
 
 const COLUMNS: &[&str] = &[
@@ -20,6 +23,9 @@ const COLUMNS: &[&str] = &[
 pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
     let design_file = read(file)?;
     let calibration = &design_file.calibration;
+    if let Some(elements) = design_file.elements() {
+        return solid(file, &design_file, elements);
+    }
     let mut press = Press::new(&design_file.design(), TensionField::Relaxed)
         .map_err(|error| Refusal::about(file, &error))?;
     let rest = *press.rest();
@@ -50,4 +56,27 @@ pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
     };
     notes.extend(bench::caution(&design_file));
     Ok(Answer { rows, notes })
+}
+
+/// The rest state of a solid.
+fn solid(file: &Path, design_file: &DesignFile, elements: Elements) -> Result<Answer, Refusal> {
+    let calibration = &design_file.calibration;
+    let refuse = |error: ModelError| Refusal::about(file, &error);
+    let mut press = solid::press::Press::new(&design_file.design(), elements).map_err(refuse)?;
+    let rest = *press.rest();
+    let limit = press.limit().map_err(refuse)?;
+    let mut rows = Rows::new(COLUMNS);
+    rows.push(vec![
+        Cell::Number(calibration.pressure_read(rest.pressure) * 1e-3),
+        Cell::Number(rest.pole_stretch),
+        Cell::Number(rest.edge_radius * 1e3),
+        Cell::Number(rest.height * 1e3),
+        Cell::Number(rest.volume * 1e9),
+        Cell::Number(calibration.indentation_read(limit.indentation) * 1e3),
+        Cell::word(limit.ends_by.word()),
+    ]);
+    Ok(Answer {
+        rows,
+        notes: bench::caution(design_file).into_iter().collect(),
+    })
 }

@@ -28,6 +28,8 @@ pub(super) enum Cell {
     Count(usize),
     /// A word.
     Text(String),
+    /// What has no meaning here.
+    Empty,
 }
 
 /// Columns and rows.
@@ -80,6 +82,7 @@ impl Rows {
                         Cell::Number(number) => serde_json::Value::from(*number),
                         Cell::Count(count) => serde_json::Value::from(*count),
                         Cell::Text(text) => serde_json::Value::from(text.as_str()),
+                        Cell::Empty => serde_json::Value::Null,
                     };
                     (column.to_owned(), value)
                 });
@@ -131,6 +134,7 @@ impl Cell {
             Self::Number(number) => significant(*number, digits),
             Self::Count(count) => count.to_string(),
             Self::Text(text) => text.clone(),
+            Self::Empty => String::new(),
         }
     }
 }

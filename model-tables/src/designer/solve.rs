@@ -1,8 +1,11 @@
 //! `designer solve`: pressed states.
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Field, Refusal, bench, finite, read, warn, warn_of_instability};
-use crate::press::Press;
+use super::{Answer, Field, Refusal, bench, finite, read, refuse_plain, warn, warn_of_instability};
+use crate::design_file::DesignFile;
+use crate::press::{ModelError, Press};
+use crate::solid;
+use crate::solid::mesh::Elements;
 use crate::stability::Margin;
 use crate::state::PressedState;
 use std::path::PathBuf;
@@ -43,6 +46,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             &"its tables come from the data in [calibration]; these states are the model's",
         );
     }
+    if let Some(elements) = design_file.elements() {
+        refuse_plain(file, arguments.tension_field)?;
+        return solid(arguments, &design_file, elements);
+    }
     let mut press = Press::new(&design_file.design(), arguments.tension_field.into())
         .map_err(|error| Refusal::about(file, &error))?;
     // Solved from shallow to deep, given in the order asked.
@@ -79,6 +86,37 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             Cell::Number(state.shape.edge_angle.to_degrees()),
             Cell::Number(state.shape.least_tension()),
             Cell::word(state.shape.wrinkling.word()),
+        ]);
+    }
+    Ok(Answer {
+        rows,
+        notes: Vec::new(),
+    })
+}
+
+/// The states of a solid.
+fn solid(arguments: &Arguments, design_file: &DesignFile, elements: Elements) -> Result<Answer, Refusal> {
+    let calibration = &design_file.calibration;
+    let refuse = |error: ModelError| Refusal::about(&arguments.design, &bench::as_read(calibration, error));
+    let mut press = solid::press::Press::new(&design_file.design(), elements).map_err(refuse)?;
+    let mut rows = Rows::new(COLUMNS);
+    // States on the way serve all that follow, in whatever order.
+    for &asked in &arguments.indentation_mm {
+        let state = press
+            .at_indentation(bench::depth(calibration, asked))
+            .map_err(refuse)?;
+        rows.push(vec![
+            Cell::Number(asked),
+            Cell::Number(calibration.pressure_read(state.pressure) * 1e-3),
+            Cell::Number(calibration.pressure_read(state.pressure_rise) * 1e-3),
+            Cell::Number(state.force),
+            Cell::Number(state.contact_radius * 1e3),
+            Cell::Number(state.contact_area() * 1e6),
+            Cell::Number(state.pole_stretch),
+            // The rim is held over the whole wall, and a wall may push.
+            Cell::Empty,
+            Cell::Empty,
+            Cell::Empty,
         ]);
     }
     Ok(Answer {

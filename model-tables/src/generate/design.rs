@@ -6,8 +6,8 @@ use crate::curve::{Contact, Curve};
 use crate::design_file::{
     DataCurve, DesignFile, DesignFileError, TransducerKindSection, TransducerSection, Transfer,
 };
-use crate::membrane::TensionField;
-use crate::press::{CurveFailure, ModelError, Press};
+use crate::press::{CurveFailure, ModelError};
+use crate::rung::Rung;
 use std::fmt;
 use std::path::Path;
 
@@ -166,15 +166,15 @@ fn pressed(
 ) -> Result<(f64, Curve), GenerateError> {
     let calibration = &design.calibration;
     let deepest = indentation * 1e-3;
-    let mut press = Press::new(&design.design(), TensionField::Relaxed).map_err(GenerateError::Model)?;
-    let rest_pressure = calibration.pressure_read(press.rest().pressure);
+    let mut press = Rung::new(design).map_err(GenerateError::Model)?;
+    let rest_pressure = calibration.pressure_read(press.rest_pressure());
     // What cannot be read is refused before the curve is solved.
     in_range(transducer, State::Rest, rest_pressure)?;
-    let end = press.at_indentation(deepest).map_err(GenerateError::Model)?;
+    let end = press.contact_at(deepest).map_err(GenerateError::Model)?;
     in_range(
         transducer,
         State::Pressed { indentation },
-        calibration.pressure_read(press.rest().pressure + end.pressure_rise),
+        calibration.pressure_read(press.rest_pressure() + end.pressure_rise),
     )?;
     let curve = press.curve(deepest).map_err(GenerateError::Curve)?;
     if calibration.pressure_gain.to_bits() == 1.0_f64.to_bits() {

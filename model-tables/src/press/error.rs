@@ -27,6 +27,17 @@ pub enum ModelError {
         /// Where it loses it, and how.
         margin: Margin,
     },
+    /// A membrane that nothing stretches has no shape to press.
+    Unstretched,
+    /// A solid rests unstretched, or at a pressure.
+    RestNotForSolid,
+    /// Inflation of a solid does not reach this pressure; pascals.
+    PressureOutOfReach {
+        /// What was asked for.
+        asked: f64,
+        /// The greatest that inflation passes.
+        greatest: f64,
+    },
     /// The rest state was not found.
     RestUnsolved {
         /// What failed.
@@ -91,10 +102,24 @@ impl fmt::Display for ModelError {
                  {:.4} along and {:.4} around ({}); ask for less, or fit the law up to such stretches",
                 margin.meridional_stretch, margin.hoop_stretch, margin.mode
             ),
+            Self::Unstretched => write!(
+                f,
+                "an unstretched membrane has no rest state: give one in [rest], or set model.kind to \"solid\""
+            ),
+            Self::RestNotForSolid => write!(
+                f,
+                "a solid rests unstretched or at a pressure: leave [rest] out, or give rest.pressure_kpa"
+            ),
+            Self::PressureOutOfReach { asked, greatest } => write!(
+                f,
+                "no rest state has a pressure of {} kPa: inflation reaches {:.6} kPa and softens there; ask for less",
+                asked * 1e-3,
+                greatest * 1e-3
+            ),
             Self::RestUnsolved { failure } => {
                 write!(
                     f,
-                    "the rest state was not found ({failure}); try a smaller pole stretch"
+                    "the rest state was not found ({failure}); ask for a less inflated one"
                 )
             }
             Self::BeyondLimit { asked, limit } => write!(

@@ -15,6 +15,8 @@ pub enum EndsBy {
     BulgeTouchesBase,
     /// All fluid has been pressed into the compliance: the membrane lies flat.
     FluidDrained,
+    /// The inner surface of a solid wall reaches the base plane.
+    WallTouchesBase,
 }
 
 impl EndsBy {
@@ -23,6 +25,7 @@ impl EndsBy {
         match self {
             Self::BulgeTouchesBase => "bulge-touches-base",
             Self::FluidDrained => "fluid-drained",
+            Self::WallTouchesBase => "wall-touches-base",
         }
     }
 }

@@ -1,5 +1,7 @@
 use super::*;
 use crate::generate::{OwnedTables, tables as make_tables};
+use crate::membrane::TensionField;
+use crate::press::Press;
 use crate::table::{Reading, Segment, Tables};
 use crate::units::PressureRise;
 

@@ -1,0 +1,366 @@
+//! One element: its forces and its stiffness.
+//!
+//! In-plane gradient `F` (2 x 2), hoop stretch `f = r/R`, `D = det F`, `S = |F|^2`, `J = D f`; the invariants are
+//! `I1 = S + f^2` and `I2 = D^2 + f^2 S` (as `J = 1`). The density is `W(I1, I2) + p (J - 1)`, with the pressure `p`
+//! linear in each element and discontinuous between them.
+
+use super::mesh::{NODES, PLACES, POINTS, PRESSURES, Point};
+use crate::material::Law;
+
+/// Unknowns of an element: radii, heights, pressures.
+pub const UNKNOWNS: usize = 2 * NODES + PRESSURES;
+
+/// Derivatives of the energy by the invariants; `W` of these laws has no other second derivatives.
+#[derive(Clone, Copy, Debug)]
+struct ByInvariants {
+    first: f64,
+    second: f64,
+    first_first: f64,
+}
+
+/// Strain-energy density and its derivatives at the invariants.
+fn by_invariants(law: &Law, i1: f64) -> ByInvariants {
+    match *law {
+        Law::NeoHookean { c1 } => ByInvariants {
+            first: c1,
+            second: 0.0,
+            first_first: 0.0,
+        },
+        Law::MooneyRivlin { c1, c2 } => ByInvariants {
+            first: c1,
+            second: c2,
+            first_first: 0.0,
+        },
+        Law::Yeoh { c1, c2, c3 } => {
+            let e = i1 - 3.0;
+            ByInvariants {
+                first: c1 + e * (2.0 * c2 + 3.0 * c3 * e),
+                second: 0.0,
+                first_first: 2.0 * c2 + 6.0 * c3 * e,
+            }
+        }
+    }
+}
+
+/// Strain-energy density at the invariants.
+fn energy_density(law: &Law, i1: f64, i2: f64) -> f64 {
+    let e = i1 - 3.0;
+    match *law {
+        Law::NeoHookean { c1 } => c1 * e,
+        Law::MooneyRivlin { c1, c2 } => c1 * e + c2 * (i2 - 3.0),
+        Law::Yeoh { c1, c2, c3 } => e * (c1 + e * (c2 + e * c3)),
+    }
+}
+
+/// The pressure of an undeformed wall free of stress.
+pub fn pressure_at_rest(law: &Law) -> f64 {
+    let w = by_invariants(law, 3.0);
+    -(2.0 * w.first + 4.0 * w.second)
+}
+
+/// Deformation at a Gauss point: `F11, F12, f, F21, F22`.
+pub type Deformation = [f64; 5];
+
+/// Radii and heights of an element's nodes, deformed.
+pub type Positions = [[f64; NODES]; 2];
+
+/// The deformation at a point.
+pub fn deformation(point: &Point, positions: &Positions) -> Deformation {
+    let [g1, g2, g3] = &point.gradient;
+    let [r, z] = positions;
+    let mut d = [0.0; 5];
+    for i in 0..NODES {
+        d[0] += g1[i] * r[i];
+        d[1] += g2[i] * r[i];
+        d[2] += g3[i] * r[i];
+        d[3] += g1[i] * z[i];
+        d[4] += g2[i] * z[i];
+    }
+    d
+}
+
+/// What follows from a deformation and a pressure.
+pub struct Stress {
+    /// Nominal stress: derivatives of the density by the deformation.
+    pub nominal: Deformation,
+    /// Volume ratio.
+    pub volume_ratio: f64,
+    /// The lesser of the in-plane determinant and the hoop stretch: positive unless turned inside out.
+    pub least: f64,
+    /// Its derivatives by the deformation.
+    by_volume: Deformation,
+    /// Second derivatives of the density.
+    stiffness: [Deformation; 5],
+}
+
+/// The stress, also where the wall is turned inside out, as on the way to a solution it may be.
+pub fn stress(law: &Law, [f11, f12, f, f21, f22]: Deformation, pressure: f64) -> Stress {
+    let determinant = f11 * f22 - f12 * f21;
+    let squares = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22;
+    let w = by_invariants(law, squares + f * f);
+    // Derivatives of the density by S, D and f.
+    let by_s = w.first + w.second * f * f;
+    let by_d = 2.0 * w.second * determinant + pressure * f;
+    let by_f = 2.0 * f * (w.first + squares * w.second) + pressure * determinant;
+    let in_plane = [2.0 * f11, 2.0 * f12, 0.0, 2.0 * f21, 2.0 * f22];
+    let cofactor = [f22, -f21, 0.0, -f12, f11];
+    let hoop = [0.0, 0.0, 1.0, 0.0, 0.0];
+    let by_sf = 2.0 * f * (w.second + w.first_first);
+    let by_ff = 2.0 * (w.first + squares * w.second) + 4.0 * f * f * w.first_first;
+    let mut nominal = [0.0; 5];
+    let mut by_volume = [0.0; 5];
+    let mut stiffness = [[0.0; 5]; 5];
+    for i in 0..5 {
+        nominal[i] = by_s * in_plane[i] + by_d * cofactor[i] + by_f * hoop[i];
+        by_volume[i] = f * cofactor[i] + determinant * hoop[i];
+        for j in 0..5 {
+            stiffness[i][j] = w.first_first * in_plane[i] * in_plane[j]
+                + by_sf * (in_plane[i] * hoop[j] + hoop[i] * in_plane[j])
+                + 2.0 * w.second * cofactor[i] * cofactor[j]
+                + pressure * (cofactor[i] * hoop[j] + hoop[i] * cofactor[j])
+                + by_ff * hoop[i] * hoop[j];
+        }
+        if i != 2 {
+            stiffness[i][i] += 2.0 * by_s;
+        }
+    }
+    // The determinant's own second derivatives.
+    for (i, j, sign) in [(0, 4, 1.0), (1, 3, -1.0)] {
+        stiffness[i][j] += sign * by_d;
+        stiffness[j][i] += sign * by_d;
+    }
+    Stress {
+        nominal,
+        volume_ratio: determinant * f,
+        least: determinant.min(f),
+        by_volume,
+        stiffness,
+    }
+}
+
+/// Values of the pressure's three terms at a Gauss point.
+pub fn pressure_terms(point: usize) -> [f64; PRESSURES] {
+    [1.0, PLACES[point / 3], PLACES[point % 3]]
+}
+
+/// Pressure at a Gauss point.
+pub fn pressure_at(point: usize, pressures: &[f64; PRESSURES]) -> f64 {
+    let terms = pressure_terms(point);
+    terms[0] * pressures[0] + terms[1] * pressures[1] + terms[2] * pressures[2]
+}
+
+/// Forces and stiffness of an element; unknowns are the radii, the heights, the pressures.
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// Forces, and the volumes' excess.
+    pub residual: [f64; UNKNOWNS],
+    /// Their derivatives.
+    pub stiffness: [[f64; UNKNOWNS]; UNKNOWNS],
+}
+
+impl Default for Element {
+    fn default() -> Self {
+        Self {
+            residual: [0.0; UNKNOWNS],
+            stiffness: [[0.0; UNKNOWNS]; UNKNOWNS],
+        }
+    }
+}
+
+impl Element {
+    /// Sums over the Gauss points, and gives the least [`Stress::least`] of those
+    /// outside the crease.
+    pub fn assemble(
+        &mut self,
+        law: &Law,
+        points: &[Point; POINTS],
+        positions: &Positions,
+        pressures: &[f64; PRESSURES],
+    ) -> f64 {
+        const Z: usize = NODES;
+        const P: usize = 2 * NODES;
+        let mut residual = [0.0; UNKNOWNS];
+        let mut radial = [[0.0; NODES]; NODES];
+        let mut mixed = [[0.0; NODES]; NODES];
+        let mut axial = [[0.0; NODES]; NODES];
+        let mut volume = [[0.0; P]; PRESSURES];
+        let mut least = f64::INFINITY;
+        for (index, point) in points.iter().enumerate() {
+            let stress = stress(law, deformation(point, positions), pressure_at(index, pressures));
+            if !point.in_crease {
+                least = least.min(stress.least);
+            }
+            let [g1, g2, g3] = &point.gradient;
+            let w = point.weight;
+            let n = stress.nominal.map(|x| w * x);
+            let v = stress.by_volume.map(|x| w * x);
+            let k = stress.stiffness.map(|row| row.map(|x| w * x));
+            // Columns of stiffness times gradient, of each node's radius and height.
+            let mut by_radius = [[0.0; NODES]; 5];
+            let mut by_height = [[0.0; NODES]; 2];
+            let mut of_volume = [0.0; P];
+            for b in 0..NODES {
+                residual[b] += n[0] * g1[b] + n[1] * g2[b] + n[2] * g3[b];
+                residual[Z + b] += n[3] * g1[b] + n[4] * g2[b];
+                of_volume[b] = v[0] * g1[b] + v[1] * g2[b] + v[2] * g3[b];
+                of_volume[Z + b] = v[3] * g1[b] + v[4] * g2[b];
+                for i in 0..5 {
+                    by_radius[i][b] = k[i][0] * g1[b] + k[i][1] * g2[b] + k[i][2] * g3[b];
+                }
+                for i in 0..2 {
+                    by_height[i][b] = k[3 + i][3] * g1[b] + k[3 + i][4] * g2[b];
+                }
+            }
+            for a in 0..NODES {
+                let (a1, a2, a3) = (g1[a], g2[a], g3[a]);
+                for b in 0..NODES {
+                    radial[a][b] += a1 * by_radius[0][b] + a2 * by_radius[1][b] + a3 * by_radius[2][b];
+                    mixed[a][b] += a1 * by_radius[3][b] + a2 * by_radius[4][b];
+                    axial[a][b] += a1 * by_height[0][b] + a2 * by_height[1][b];
+                }
+            }
+            let terms = pressure_terms(index);
+            for i in 0..PRESSURES {
+                residual[P + i] += w * terms[i] * (stress.volume_ratio - 1.0);
+                for b in 0..P {
+                    volume[i][b] += terms[i] * of_volume[b];
+                }
+            }
+        }
+        self.residual = residual;
+        for a in 0..NODES {
+            for b in 0..NODES {
+                self.stiffness[a][b] = radial[a][b];
+                self.stiffness[Z + a][b] = mixed[a][b];
+                self.stiffness[b][Z + a] = mixed[a][b];
+                self.stiffness[Z + a][Z + b] = axial[a][b];
+            }
+        }
+        for i in 0..PRESSURES {
+            for b in 0..P {
+                self.stiffness[P + i][b] = volume[i][b];
+                self.stiffness[b][P + i] = volume[i][b];
+            }
+        }
+        least
+    }
+}
+
+/// Strain energy of an element.
+pub fn energy(law: &Law, points: &[Point; POINTS], positions: &Positions) -> f64 {
+    points
+        .iter()
+        .map(|point| {
+            let [f11, f12, f, f21, f22] = deformation(point, positions);
+            let determinant = f11 * f22 - f12 * f21;
+            let squares = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22;
+            point.weight * energy_density(law, squares + f * f, determinant * determinant + f * f * squares)
+        })
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::mesh::{Elements, Mesh};
+
+    const LAWS: [Law; 3] = [
+        Law::NeoHookean { c1: 0.5 },
+        Law::MooneyRivlin { c1: 0.3, c2: 0.2 },
+        Law::Yeoh {
+            c1: 0.5,
+            c2: 0.2,
+            c3: 0.1,
+        },
+    ];
+
+    /// An element that is stretched, bent and sheared.
+    fn deformed() -> (Mesh, Positions) {
+        let mesh = Mesh::new(0.8, 0.2, Elements { through: 1, along: 4 });
+        let nodes = mesh.element_nodes(1, 0).map(|node| mesh.nodes[node]);
+        let positions = [
+            nodes.map(|[r, z]| 1.1 * r + 0.1 * r * z),
+            nodes.map(|[r, z]| 0.9 * z + 0.2 * r * r),
+        ];
+        (mesh, positions)
+    }
+
+    #[test]
+    fn the_undeformed_wall_is_free_of_forces() {
+        for law in LAWS {
+            let mesh = Mesh::new(0.8, 0.2, Elements { through: 1, along: 4 });
+            let nodes = mesh.element_nodes(1, 0).map(|node| mesh.nodes[node]);
+            let positions = [nodes.map(|x| x[0]), nodes.map(|x| x[1])];
+            let mut element = Element::default();
+            let least = element.assemble(
+                &law,
+                &mesh.points[1],
+                &positions,
+                &[pressure_at_rest(&law), 0.0, 0.0],
+            );
+            assert!((least - 1.0).abs() < 1e-12);
+            assert!(
+                element.residual.iter().all(|x| x.abs() < 1e-14),
+                "{law:?} {:?}",
+                element.residual
+            );
+        }
+    }
+
+    /// Forces are derivatives of the energy with the constraint, stiffness that of the forces; both by central differences.
+    #[test]
+    fn forces_and_stiffness_are_derivatives() {
+        let (mesh, positions) = deformed();
+        let pressures = [-1.3, 0.2, -0.1];
+        for law in LAWS {
+            let unknowns: [f64; UNKNOWNS] = core::array::from_fn(|i| match i {
+                0..NODES => positions[0][i],
+                NODES..18 => positions[1][i - NODES],
+                _ => pressures[i - 18],
+            });
+            let split = |u: &[f64; UNKNOWNS]| {
+                let positions: Positions = [
+                    core::array::from_fn(|i| u[i]),
+                    core::array::from_fn(|i| u[NODES + i]),
+                ];
+                (positions, [u[18], u[19], u[20]])
+            };
+            let assembled = |u: &[f64; UNKNOWNS]| {
+                let (positions, pressures) = split(u);
+                let mut element = Element::default();
+                element.assemble(&law, &mesh.points[1], &positions, &pressures);
+                element
+            };
+            let potential = |u: &[f64; UNKNOWNS]| {
+                let (positions, pressures) = split(u);
+                let excess = assembled(u).residual;
+                energy(&law, &mesh.points[1], &positions)
+                    + (0..PRESSURES).map(|i| pressures[i] * excess[18 + i]).sum::<f64>()
+            };
+            let element = assembled(&unknowns);
+            let step = 1e-5;
+            for j in 0..UNKNOWNS {
+                let [below, above] = [-step, step].map(|by| {
+                    let mut moved = unknowns;
+                    moved[j] += by;
+                    moved
+                });
+                let force = (potential(&above) - potential(&below)) / (2.0 * step);
+                assert!(
+                    (force - element.residual[j]).abs() < 1e-6,
+                    "{law:?} {j}: {force} {}",
+                    element.residual[j]
+                );
+                let (below, above) = (assembled(&below).residual, assembled(&above).residual);
+                for i in 0..UNKNOWNS {
+                    let slope = (above[i] - below[i]) / (2.0 * step);
+                    let found = element.stiffness[i][j];
+                    assert!(
+                        (slope - found).abs() < 1e-6 * (1.0 + found.abs()),
+                        "{law:?} {i} {j}: {slope} {found}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,372 @@
+//! Newton's method on the wall, the fluid and the plate together.
+//!
+//! Dimensionless: lengths in outer radial semi-axes, stresses in shear moduli.
+
+use super::Failure;
+use super::element::{self, Element, UNKNOWNS};
+use super::fluid;
+use super::front::{Fronts, SIDES};
+use super::mesh::{Elements, Mesh, NODES, PRESSURES};
+use super::plate::{self, Penalty};
+use crate::material::Law;
+
+/// Contact stiffness times wall thickness, over the shear modulus: a contact pressure of a quarter of the modulus
+/// penetrates 2e-4 of the wall.
+const CONTACT_STIFFNESS: f64 = 1400.0;
+/// Width of the contact's smooth beginning over the wall thickness.
+const CONTACT_WIDTH: f64 = 5e-4;
+/// Largest unbalanced force of a node, in moduli times radius times thickness, and largest excess of an element's volume, in
+/// square radii times thickness.
+const TOLERANCE: f64 = 1e-9;
+/// Iterations after which a state counts as lost.
+const MAX_ITERATIONS: usize = 30;
+/// Largest displacement of a node in an iteration, over the wall thickness.
+const STEP_LIMIT: f64 = 0.5;
+
+/// Unknowns of a state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Radius and height of every node.
+    pub nodes: Vec<[f64; 2]>,
+    /// Pressure in the wall, three terms an element.
+    pub pressures: Vec<[f64; PRESSURES]>,
+    /// Gauge pressure of the fluid.
+    pub fluid: f64,
+}
+
+impl State {
+    /// Takes over another state of the same mesh, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.nodes.copy_from_slice(&other.nodes);
+        self.pressures.copy_from_slice(&other.pressures);
+        self.fluid = other.fluid;
+    }
+
+    /// Adds a multiple of another vector of unknowns.
+    pub fn add(&mut self, factor: f64, other: &Self) {
+        for (x, y) in self.nodes.iter_mut().zip(&other.nodes) {
+            x[0] += factor * y[0];
+            x[1] += factor * y[1];
+        }
+        for (x, y) in self.pressures.iter_mut().zip(&other.pressures) {
+            for (x, y) in x.iter_mut().zip(y) {
+                *x += factor * y;
+            }
+        }
+        self.fluid += factor * other.fluid;
+    }
+
+    /// All zero.
+    pub fn clear(&mut self) {
+        self.nodes.fill([0.0; 2]);
+        self.pressures.fill([0.0; PRESSURES]);
+        self.fluid = 0.0;
+    }
+}
+
+/// The equation of the fluid: `by_volume (V - volume) + by_pressure (P - pressure) = 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fluid {
+    /// Weight of the volume.
+    pub by_volume: f64,
+    /// Volume to have, `V` over `by_volume`'s unit.
+    pub volume: f64,
+    /// Weight of the pressure: the compliance, where volume is kept.
+    pub by_pressure: f64,
+    /// Pressure to have.
+    pub pressure: f64,
+}
+
+/// What a converged state comes with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Balance {
+    /// Volume of the fluid.
+    pub volume: f64,
+    /// Force on the plate.
+    pub force: f64,
+    /// Energy in the contact.
+    pub contact_energy: f64,
+    /// Least determinant or hoop stretch at a Gauss point outside the crease; positive.
+    pub least: f64,
+    /// Largest entry of the residual, in units of the tolerance's scale.
+    pub residual: f64,
+}
+
+/// A wall, and room to solve it.
+#[derive(Clone, Debug)]
+pub struct Wall {
+    /// The undeformed wall.
+    pub mesh: Mesh,
+    /// Its law, in shear moduli.
+    pub law: Law,
+    penalty: Penalty,
+    areas: Vec<[f64; plate::POINTS]>,
+    fronts: Fronts,
+    element: Element,
+    /// Derivative of the volume by the inner nodes.
+    volume_by_node: Vec<[f64; 2]>,
+    /// Newton's step.
+    step: State,
+    /// Newton iterations so far.
+    pub iterations: u64,
+}
+
+impl Wall {
+    /// A wall of outer semi-axes 1 and `height`, with a law in shear moduli.
+    pub fn new(height: f64, thickness: f64, law: Law, elements: Elements) -> Self {
+        let mesh = Mesh::new(height, thickness, elements);
+        let station = 2 * mesh.layers();
+        let outer = mesh.layers() - 1;
+        let areas = (0..elements.along)
+            .map(|column| {
+                let edge = edge(&mesh, &mesh.nodes, column, outer);
+                plate::areas(&edge[0], &edge[1])
+            })
+            .collect();
+        let step = State {
+            nodes: vec![[0.0; 2]; mesh.nodes.len()],
+            pressures: vec![[0.0; PRESSURES]; mesh.points.len()],
+            fluid: 0.0,
+        };
+        Self {
+            penalty: Penalty {
+                stiffness: CONTACT_STIFFNESS / thickness,
+                width: CONTACT_WIDTH * thickness,
+            },
+            areas,
+            fronts: Fronts::new(station, station + PRESSURES * elements.through, elements.along),
+            element: Element::default(),
+            volume_by_node: vec![[0.0; 2]; mesh.stations()],
+            step,
+            iterations: 0,
+            mesh,
+            law,
+        }
+    }
+
+    /// The undeformed state, free of stress.
+    pub fn undeformed(&self) -> State {
+        State {
+            nodes: self.mesh.nodes.clone(),
+            pressures: vec![[element::pressure_at_rest(&self.law), 0.0, 0.0]; self.mesh.points.len()],
+            fluid: 0.0,
+        }
+    }
+
+    /// Volume of the fluid in a state.
+    pub fn volume(&self, state: &State) -> f64 {
+        (0..self.mesh.elements.along)
+            .map(|column| {
+                let [r, z] = edge(&self.mesh, &state.nodes, column, 0);
+                fluid::share(&r, &z).volume
+            })
+            .sum()
+    }
+
+    /// Strain energy of the wall.
+    pub fn energy(&self, state: &State) -> f64 {
+        let through = self.mesh.elements.through;
+        self.mesh
+            .points
+            .iter()
+            .enumerate()
+            .map(|(e, points)| {
+                let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
+                element::energy(&self.law, points, &positions)
+            })
+            .sum()
+    }
+
+    /// Solves for the state in balance with a plate at a height and the fluid's equation, starting from `state`.
+    ///
+    /// # Errors
+    /// [`Failure`]; `state` is then of no use.
+    pub fn settle(&mut self, state: &mut State, plate: f64, fluid: &Fluid) -> Result<Balance, Failure> {
+        let mut residual = f64::INFINITY;
+        for _ in 0..MAX_ITERATIONS {
+            let balance = self.assemble(state, plate);
+            self.iterations += 1;
+            let excess = fluid.by_volume * (balance.volume - fluid.volume)
+                + fluid.by_pressure * (state.fluid - fluid.pressure);
+            residual = balance.residual.max(excess.abs() / self.mesh.thickness);
+            if !residual.is_finite() {
+                return Err(Failure::Singular);
+            }
+            if residual < TOLERANCE {
+                // Admissible only right side out: the equations go on beyond.
+                return if balance.least > 0.0 {
+                    Ok(Balance { residual, ..balance })
+                } else {
+                    Err(Failure::InsideOut)
+                };
+            }
+            let largest = self.solve(fluid, excess).ok_or(Failure::Singular)?;
+            state.add((STEP_LIMIT * self.mesh.thickness / largest).min(1.0), &self.step);
+        }
+        Err(Failure::Stalled { residual })
+    }
+
+    /// Sets up the linear equations at a state.
+    fn assemble(&mut self, state: &State, plate: f64) -> Balance {
+        let Self {
+            mesh,
+            law,
+            penalty,
+            areas,
+            fronts,
+            element,
+            volume_by_node,
+            ..
+        } = self;
+        let Elements { through, along } = mesh.elements;
+        let layers = mesh.layers();
+        let station = 2 * layers;
+        let own = station + PRESSURES * through;
+        let size = 2 * station + own;
+        let starts = [0, station, station + own];
+        let mut balance = Balance {
+            least: f64::INFINITY,
+            ..Balance::default()
+        };
+        // Forces on the column's nodes and volumes of its elements; the right station's go on to the next column.
+        fronts.clear();
+        volume_by_node.fill([0.0; 2]);
+        for column in 0..along {
+            let mut front = fronts.column(column);
+            for layer in 0..through {
+                let index = column * through + layer;
+                let positions = positions(mesh, &state.nodes, column, layer);
+                let least = element.assemble(law, &mesh.points[index], &positions, &state.pressures[index]);
+                balance.least = balance.least.min(least);
+                let place: [usize; UNKNOWNS] = core::array::from_fn(|i| {
+                    if i < 2 * NODES {
+                        let (node, component) = (i % NODES, i / NODES);
+                        starts[node / 3] + 2 * (2 * layer + node % 3) + component
+                    } else {
+                        2 * station + PRESSURES * layer + (i - 2 * NODES)
+                    }
+                });
+                for i in 0..UNKNOWNS {
+                    let row = front.row(place[i]);
+                    for j in 0..UNKNOWNS {
+                        row[place[j]] += element.stiffness[i][j];
+                    }
+                    row[size] -= element.residual[i];
+                }
+            }
+            let [r, z] = edge(mesh, &state.nodes, column, 0);
+            let share = fluid::share(&r, &z);
+            balance.volume += share.volume;
+            let inner: [usize; 6] = core::array::from_fn(|i| starts[i % 3] + i / 3);
+            for i in 0..6 {
+                volume_by_node[2 * column + i % 3][i / 3] += share.first[i];
+                let row = front.row(inner[i]);
+                row[size] += state.fluid * share.first[i];
+                row[size + 1] += share.first[i];
+                for j in 0..6 {
+                    row[inner[j]] -= state.fluid * share.second[i][j];
+                }
+            }
+            let [_, z] = edge(mesh, &state.nodes, column, layers - 1);
+            let action = plate::action(*penalty, &areas[column], &z, plate);
+            balance.force += action.force;
+            balance.contact_energy += action.energy;
+            for i in 0..3 {
+                let row = front.row(starts[i] + station - 1);
+                row[size] -= action.first[i];
+                for j in 0..3 {
+                    row[starts[j] + station - 1] += action.second[i][j];
+                    row[size + 2] += action.second[i][j];
+                }
+            }
+        }
+        for layer in 0..layers {
+            fronts.hold_first(2 * layer);
+        }
+        balance.residual = residual(fronts, station, own, along) / mesh.thickness;
+        balance
+    }
+
+    /// Newton's step at the assembled state; the largest displacement in it.
+    fn solve(&mut self, fluid: &Fluid, excess: f64) -> Option<f64> {
+        self.fronts.eliminate()?;
+        let mut parts: [State; 2] = [self.step.clone(), self.step.clone()];
+        for part in &mut parts {
+            part.clear();
+        }
+        let layers = self.mesh.layers();
+        let station = 2 * layers;
+        let through = self.mesh.elements.through;
+        self.fronts.solutions(|column, i, x: [f64; SIDES]| {
+            for (part, x) in parts.iter_mut().zip(x) {
+                if i < 2 * station {
+                    let at = 2 * column + i / station;
+                    part.nodes[at * layers + (i % station) / 2][i % 2] = x;
+                } else {
+                    let p = i - 2 * station;
+                    part.pressures[column * through + p / PRESSURES][p % PRESSURES] = x;
+                }
+            }
+        });
+        let volumes = parts.each_ref().map(|part| {
+            self.volume_by_node
+                .iter()
+                .enumerate()
+                .map(|(station, d)| {
+                    let x = part.nodes[station * layers];
+                    d[0] * x[0] + d[1] * x[1]
+                })
+                .sum::<f64>()
+        });
+        let pressure =
+            -(excess + fluid.by_volume * volumes[0]) / (fluid.by_volume * volumes[1] + fluid.by_pressure);
+        if !pressure.is_finite() {
+            return None;
+        }
+        let [rest, by_pressure] = parts;
+        self.step.copy_from(&rest);
+        self.step.add(pressure, &by_pressure);
+        self.step.fluid = pressure;
+        Some(
+            self.step
+                .nodes
+                .iter()
+                .map(|x| x[0].abs().max(x[1].abs()))
+                .fold(0.0, f64::max),
+        )
+    }
+}
+
+/// Largest entry of the residual on the unknowns that are free.
+fn residual(fronts: &mut Fronts, station: usize, own: usize, along: usize) -> f64 {
+    let size = 2 * station + own;
+    let complete = station + own;
+    let mut largest = 0.0_f64;
+    let mut carried = vec![0.0; station];
+    for column in 0..along {
+        let mut front = fronts.column(column);
+        for i in 0..complete {
+            let from_left = if i < station { carried[i] } else { 0.0 };
+            let value: f64 = front.row(i)[size] + from_left;
+            largest = largest.max(value.abs());
+            if value.is_nan() {
+                return f64::NAN;
+            }
+        }
+        for i in 0..station {
+            carried[i] = front.row(complete + i)[size];
+        }
+    }
+    largest
+}
+
+/// Radii and heights of the three nodes of a column's edge in a layer of nodes.
+pub fn edge(mesh: &Mesh, nodes: &[[f64; 2]], column: usize, layer: usize) -> [[f64; 3]; 2] {
+    [0, 1].map(|c| core::array::from_fn(|i| nodes[mesh.node(2 * column + i, layer)][c]))
+}
+
+/// Radii and heights of an element's nodes.
+pub fn positions(mesh: &Mesh, nodes: &[[f64; 2]], column: usize, layer: usize) -> element::Positions {
+    let at = mesh.element_nodes(column, layer);
+    [0, 1].map(|c| at.map(|node| nodes[node][c]))
+}

@@ -1,0 +1,175 @@
+//! The undeformed wall, cut into biquadratic elements.
+//!
+//! `X(t, s) = ((a - h + h s) sin t, (b - h + h s) cos t)`: `a` and `b` are the semi-axes of the outer surface, `h` the
+//! wall's thickness, `t` runs from the pole to the rim, `s` from inside to outside. Lengths are in units of `a`.
+
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// Nodes of an element.
+pub const NODES: usize = 9;
+/// Gauss points of an element.
+pub const POINTS: usize = 9;
+/// Terms of an element's pressure: constant, along, through.
+pub const PRESSURES: usize = 3;
+
+/// `sqrt(3/5)`: Gauss points of order six on `[-1, 1]` are at 0 and at plus and minus this.
+const GAUSS: f64 = 0.774_596_669_241_483_4;
+/// Gauss points of order six on `[-1, 1]`.
+pub const PLACES: [f64; 3] = [-GAUSS, 0.0, GAUSS];
+/// Their weights.
+pub const WEIGHTS: [f64; 3] = [5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0];
+
+/// Values of the three quadratic shape functions of an edge at `x` in `[-1, 1]`.
+pub fn shape(x: f64) -> [f64; 3] {
+    [0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)]
+}
+
+/// Their slopes.
+pub fn slope(x: f64) -> [f64; 3] {
+    [x - 0.5, -2.0 * x, x + 0.5]
+}
+
+/// Height over the base, in wall thicknesses, up to which the wall belongs to the crease at the rim. Where a free surface meets
+/// a bonded one the strains are singular: pressed deep, the surface rolls over the base there in a place that is the
+/// smaller the finer the mesh, and of no consequence for the rest.
+pub const CREASE: f64 = 0.5;
+
+/// Elements of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Elements {
+    /// Through the wall.
+    pub through: usize,
+    /// Along the meridian.
+    pub along: usize,
+}
+
+/// A Gauss point of an element.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// Undeformed volume that it stands for.
+    pub weight: f64,
+    /// Whether it lies in the crease at the rim.
+    pub in_crease: bool,
+    /// Of each node's shape function: derivatives by the undeformed radius and height, and the value over the undeformed
+    /// radius.
+    pub gradient: [[f64; NODES]; 3],
+}
+
+/// The undeformed wall.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// How many elements.
+    pub elements: Elements,
+    /// Wall thickness.
+    pub thickness: f64,
+    /// Outer axial semi-axis.
+    pub height: f64,
+    /// Radius and height of the nodes: station by station from the pole, each from inside to outside.
+    pub nodes: Vec<[f64; 2]>,
+    /// Gauss points: column by column, within it from inside to outside.
+    pub points: Vec<[Point; POINTS]>,
+}
+
+impl Mesh {
+    /// The wall of an outer half ellipsoid with semi-axes 1 and `height`.
+    pub fn new(height: f64, thickness: f64, elements: Elements) -> Self {
+        let Elements { through, along } = elements;
+        let (stations, layers) = (2 * along + 1, 2 * through + 1);
+        let mut nodes = Vec::with_capacity(stations * layers);
+        for station in 0..stations {
+            let t = FRAC_PI_2 * station as f64 / (stations - 1) as f64;
+            // Exactly on the axis and on the base plane.
+            let (sin, cos) = match station {
+                0 => (0.0, 1.0),
+                last if last + 1 == stations => (1.0, 0.0),
+                _ => (libm::sin(t), libm::cos(t)),
+            };
+            for layer in 0..layers {
+                let inset = thickness * (1.0 - layer as f64 / (layers - 1) as f64);
+                nodes.push([(1.0 - inset) * sin, (height - inset) * cos]);
+            }
+        }
+        let mut mesh = Self {
+            elements,
+            thickness,
+            height,
+            nodes,
+            points: Vec::with_capacity(through * along),
+        };
+        for column in 0..along {
+            for layer in 0..through {
+                let corners = mesh.element_nodes(column, layer).map(|node| mesh.nodes[node]);
+                mesh.points.push(core::array::from_fn(|i| {
+                    let weight = WEIGHTS[i / 3] * WEIGHTS[i % 3];
+                    point(&corners, PLACES[i / 3], PLACES[i % 3], weight, CREASE * thickness)
+                }));
+            }
+        }
+        mesh
+    }
+
+    /// Nodes through the wall.
+    pub fn layers(&self) -> usize {
+        2 * self.elements.through + 1
+    }
+
+    /// Nodes along the meridian.
+    pub fn stations(&self) -> usize {
+        2 * self.elements.along + 1
+    }
+
+    /// Number of a node.
+    pub fn node(&self, station: usize, layer: usize) -> usize {
+        station * self.layers() + layer
+    }
+
+    /// Nodes of an element: three stations from the pole, each from inside to outside.
+    pub fn element_nodes(&self, column: usize, layer: usize) -> [usize; NODES] {
+        core::array::from_fn(|i| self.node(2 * column + i / 3, 2 * layer + i % 3))
+    }
+}
+
+/// The Gauss point at `along`, `through` in `[-1, 1]`.
+fn point(corners: &[[f64; 2]; NODES], along: f64, through: f64, weight: f64, crease: f64) -> Point {
+    let (n, m) = (shape(along), shape(through));
+    let height: f64 = (0..NODES).map(|i| n[i / 3] * m[i % 3] * corners[i][1]).sum();
+    let (point, _, radius) = sample(&[0, 1].map(|c| corners.map(|x| x[c])), along, through);
+    Point {
+        weight: 2.0 * PI * radius * point.weight * weight,
+        in_crease: height < crease,
+        ..point
+    }
+}
+
+/// A point at `along`, `through` in `[-1, 1]` of the element with these radii and heights: with the area of the meridian
+/// plane per unit of both for its weight, the derivative of the place by `through`, and the radius.
+pub fn sample([r, z]: &[[f64; NODES]; 2], along: f64, through: f64) -> (Point, [f64; 2], f64) {
+    let (n, m) = (shape(along), shape(through));
+    let (dn, dm) = (slope(along), slope(through));
+    let mut radius = 0.0;
+    // d(R, Z) / d(along, through)
+    let mut jacobian = [[0.0; 2]; 2];
+    for i in 0..NODES {
+        let (a, b) = (i / 3, i % 3);
+        radius += n[a] * m[b] * r[i];
+        for (row, x) in jacobian.iter_mut().zip([r[i], z[i]]) {
+            row[0] += dn[a] * m[b] * x;
+            row[1] += n[a] * dm[b] * x;
+        }
+    }
+    let determinant = jacobian[0][0] * jacobian[1][1] - jacobian[0][1] * jacobian[1][0];
+    let mut gradient = [[0.0; NODES]; 3];
+    for i in 0..NODES {
+        let (a, b) = (i / 3, i % 3);
+        let (by_along, by_through) = (dn[a] * m[b], n[a] * dm[b]);
+        gradient[0][i] = (by_along * jacobian[1][1] - by_through * jacobian[1][0]) / determinant;
+        gradient[1][i] = (by_through * jacobian[0][0] - by_along * jacobian[0][1]) / determinant;
+        gradient[2][i] = n[a] * m[b] / radius;
+    }
+    let point = Point {
+        weight: determinant.abs(),
+        in_crease: false,
+        gradient,
+    };
+    (point, [jacobian[0][1], jacobian[1][1]], radius)
+}

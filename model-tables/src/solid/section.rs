@@ -1,0 +1,256 @@
+//! What is read off a state along the meridian: contact, touch of the base, stretches and section forces.
+
+use super::element;
+use super::equilibrium::{State, Wall, edge, positions};
+use super::mesh::{CREASE, NODES, PLACES, WEIGHTS, shape, slope};
+use crate::press::EndsBy;
+use core::f64::consts::FRAC_PI_2;
+
+/// Samples of an edge where a crossing is looked for.
+const SAMPLES: usize = 24;
+
+/// The outer edge of the contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactEdge {
+    /// Deformed radius.
+    pub radius: f64,
+    /// Meridian's parameter.
+    pub parameter: f64,
+}
+
+/// A station of the meridian: the middle of the wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Station {
+    /// Meridian's parameter, 0 = pole, pi/2 = rim.
+    pub parameter: f64,
+    /// Radius of the middle of the wall.
+    pub radius: f64,
+    /// Its height over the base.
+    pub height: f64,
+    /// Stretch along the meridian.
+    pub meridional_stretch: f64,
+    /// Stretch around.
+    pub hoop_stretch: f64,
+    /// Wall thickness over the undeformed one.
+    pub thickness_stretch: f64,
+    /// Shear: by how much the right angle between the directions along and through changes where in the wall it changes most,
+    /// radians; positive where the outside runs ahead towards the rim.
+    pub shear: f64,
+    /// Force across the section along the meridian, per deformed length around.
+    pub meridional_tension: f64,
+    /// Force across the section around, per deformed length along.
+    pub hoop_tension: f64,
+    /// Angle of the tangent, radians: 0 is horizontal, pi/2 vertical.
+    pub angle: f64,
+    /// Whether the outer surface is in contact here.
+    pub in_contact: bool,
+}
+
+impl Station {
+    /// In metres and newtons per metre, from units of length and stress.
+    #[must_use]
+    pub fn in_units(self, length: f64, stress: f64) -> Self {
+        Self {
+            radius: self.radius * length,
+            height: self.height * length,
+            meridional_tension: self.meridional_tension * length * stress,
+            hoop_tension: self.hoop_tension * length * stress,
+            ..self
+        }
+    }
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The column at a share of the parameter's range, and the place in it.
+fn column_at(wall: &Wall, share: f64) -> (usize, f64) {
+    let along = wall.mesh.elements.along;
+    let scaled = share * along as f64;
+    let column = (scaled as usize).min(along - 1);
+    (column, 2.0 * (scaled - column as f64) - 1.0)
+}
+
+/// Where the outer surface leaves the plate.
+pub fn contact_edge(wall: &Wall, state: &State, plate: f64) -> ContactEdge {
+    let along = wall.mesh.elements.along;
+    let outer = wall.mesh.layers() - 1;
+    // From the rim inwards: the first place that touches.
+    for column in (0..along).rev() {
+        let [r, z] = edge(&wall.mesh, &state.nodes, column, outer);
+        let depth = |x: f64| dot(&shape(x), &z) - plate;
+        let found = |x: f64| ContactEdge {
+            radius: dot(&shape(x), &r),
+            parameter: FRAC_PI_2 * (column as f64 + 0.5 * (x + 1.0)) / along as f64,
+        };
+        let place = |i: usize| -1.0 + 2.0 * i as f64 / SAMPLES as f64;
+        for i in (0..SAMPLES).rev() {
+            if depth(place(i)) > 0.0 {
+                let (mut touching, mut free) = (place(i), place(i + 1));
+                if depth(free) > 0.0 {
+                    return found(free);
+                }
+                for _ in 0..40 {
+                    let middle = 0.5 * (touching + free);
+                    if depth(middle) > 0.0 {
+                        touching = middle;
+                    } else {
+                        free = middle;
+                    }
+                }
+                return found(touching);
+            }
+        }
+    }
+    ContactEdge::default()
+}
+
+/// Whether, and with which side, the wall has gone through the base plane; the crease does not count.
+pub fn touches_base(wall: &Wall, state: &State) -> Option<EndsBy> {
+    let layers = wall.mesh.layers();
+    let crease = CREASE * wall.mesh.thickness;
+    let below = |layer: usize| {
+        (0..wall.mesh.stations()).any(|station| {
+            let node = wall.mesh.node(station, layer);
+            wall.mesh.nodes[node][1] > crease && state.nodes[node][1] < 0.0
+        })
+    };
+    if below(layers - 1) {
+        Some(EndsBy::BulgeTouchesBase)
+    } else if below(0) {
+        Some(EndsBy::WallTouchesBase)
+    } else {
+        None
+    }
+}
+
+/// Stretch of the middle of the wall at the pole.
+pub fn pole_stretch(wall: &Wall, state: &State) -> f64 {
+    station(wall, state, 0.0, -1.0).meridional_stretch
+}
+
+/// The station at a share of the parameter's range, 0 = pole, 1 = rim.
+pub fn station(wall: &Wall, state: &State, share: f64, contact: f64) -> Station {
+    let mesh = &wall.mesh;
+    let (column, x) = column_at(wall, share);
+    let (n, dn) = (shape(x), slope(x));
+    let through = mesh.elements.through;
+    let parameter = FRAC_PI_2 * share;
+    // Middle of the wall: a layer of nodes.
+    let [r, z] = edge(mesh, &state.nodes, column, through);
+    let [big_r, big_z] = edge(mesh, &mesh.nodes, column, through);
+    let (tangent, undeformed_tangent) = ([dot(&dn, &r), dot(&dn, &z)], [dot(&dn, &big_r), dot(&dn, &big_z)]);
+    let (arc, undeformed_arc) = (
+        libm::hypot(tangent[0], tangent[1]),
+        libm::hypot(undeformed_tangent[0], undeformed_tangent[1]),
+    );
+    let (radius, undeformed_radius) = (dot(&n, &r), dot(&n, &big_r));
+    let meridional_stretch = arc / undeformed_arc;
+    // At the pole both directions are one.
+    let hoop_stretch = if share <= 0.0 {
+        meridional_stretch
+    } else {
+        radius / undeformed_radius
+    };
+    let surface = |nodes: &[[f64; 2]], layer: usize| {
+        let [r, z] = edge(mesh, nodes, column, layer);
+        [dot(&n, &r), dot(&n, &z)]
+    };
+    let fibre = |nodes: &[[f64; 2]]| {
+        let (inner, outer) = (surface(nodes, 0), surface(nodes, mesh.layers() - 1));
+        [outer[0] - inner[0], outer[1] - inner[1]]
+    };
+    let (deformed_fibre, undeformed_fibre) = (fibre(&state.nodes), fibre(&mesh.nodes));
+    let [meridional, hoop] = forces(wall, state, column, x, [tangent[0] / arc, tangent[1] / arc]);
+    Station {
+        parameter,
+        radius,
+        height: dot(&n, &z),
+        meridional_stretch,
+        hoop_stretch,
+        thickness_stretch: libm::hypot(deformed_fibre[0], deformed_fibre[1])
+            / libm::hypot(undeformed_fibre[0], undeformed_fibre[1]),
+        shear: shear(wall, state, column, x),
+        // Per radian of the undeformed middle and per unit of its parameter.
+        meridional_tension: meridional / hoop_stretch,
+        hoop_tension: hoop / arc,
+        angle: libm::atan2(-tangent[1], tangent[0]),
+        in_contact: parameter <= contact,
+    }
+}
+
+/// The largest shear of the places through the wall.
+fn shear(wall: &Wall, state: &State, column: usize, x: f64) -> f64 {
+    let mesh = &wall.mesh;
+    let lean = |positions: &element::Positions, y: f64| {
+        let (along, through) = tangents(positions, x, y);
+        // The normal points outward: the tangent, from pole to rim, turned left.
+        let normal = [-along[1], along[0]];
+        libm::atan2(
+            through[0] * along[0] + through[1] * along[1],
+            through[0] * normal[0] + through[1] * normal[1],
+        )
+    };
+    let mut largest = 0.0_f64;
+    for layer in 0..mesh.elements.through {
+        let deformed = positions(mesh, &state.nodes, column, layer);
+        let undeformed = positions(mesh, &mesh.nodes, column, layer);
+        for y in [-1.0, -0.5, 0.0, 0.5, 1.0] {
+            let shear = lean(&deformed, y) - lean(&undeformed, y);
+            if shear.abs() > largest.abs() {
+                largest = shear;
+            }
+        }
+    }
+    largest
+}
+
+/// Derivatives of the place by the element's two coordinates.
+fn tangents([r, z]: &element::Positions, x: f64, y: f64) -> ([f64; 2], [f64; 2]) {
+    let (n, m, dn, dm) = (shape(x), shape(y), slope(x), slope(y));
+    let (mut along, mut through) = ([0.0; 2], [0.0; 2]);
+    for i in 0..NODES {
+        let (a, b) = (i / 3, i % 3);
+        for (c, value) in [r[i], z[i]].into_iter().enumerate() {
+            along[c] += dn[a] * m[b] * value;
+            through[c] += n[a] * dm[b] * value;
+        }
+    }
+    (along, through)
+}
+
+/// Force across the wall along the middle's `tangent`, per undeformed length around the middle; and around, per unit of the
+/// place in the column.
+fn forces(wall: &Wall, state: &State, column: usize, x: f64, tangent: [f64; 2]) -> [f64; 2] {
+    let mesh = &wall.mesh;
+    let through = mesh.elements.through;
+    let [middle, _] = edge(mesh, &mesh.nodes, column, through);
+    let (mut meridional, mut hoop) = (0.0, 0.0);
+    for layer in 0..through {
+        let deformed = positions(mesh, &state.nodes, column, layer);
+        let undeformed = positions(mesh, &mesh.nodes, column, layer);
+        let pressures = &state.pressures[column * through + layer];
+        for (y, weight) in PLACES.into_iter().zip(WEIGHTS) {
+            // On the axis the hoop stretch is the limit beside it.
+            let x = x.max(if column == 0 { -1.0 + 1e-6 } else { -1.0 });
+            let (point, across, radius) = super::mesh::sample(&undeformed, x, y);
+            let stress = element::stress(
+                &wall.law,
+                element::deformation(&point, &deformed),
+                pressures[0] + pressures[1] * x + pressures[2] * y,
+            );
+            // The section's undeformed normal times its length: the fibre turned right.
+            let normal = [across[1], -across[0]];
+            let p = &stress.nominal;
+            let traction = [
+                p[0] * normal[0] + p[1] * normal[1],
+                p[3] * normal[0] + p[4] * normal[1],
+            ];
+            let around = radius / dot(&shape(x), &middle);
+            meridional += weight * around * (traction[0] * tangent[0] + traction[1] * tangent[1]);
+            hoop += weight * p[2] * point.weight;
+        }
+    }
+    [meridional, hoop]
+}

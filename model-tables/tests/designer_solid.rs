@@ -1,0 +1,122 @@
+//! The `designer` binary on designs solved as a solid.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The printed fingertip, with its `[model]` and whatever else is given.
+const PRINTED: &str = "name = \"printed\"\n\
+    [membrane]\nradial_semi_axis_mm = 9\naxial_semi_axis_mm = 7\nthickness_mm = 1\n\
+    [material]\nlaw = \"mooney-rivlin\"\nc1_pa = 160355\nc2_pa = 46559\n\
+    [model]\nkind = \"solid\"\n";
+
+fn design(name: &str, more: &str) -> String {
+    let path: PathBuf = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("solid-{name}.toml"));
+    fs::write(&path, format!("{PRINTED}{more}")).expect("the test folder");
+    path.display().to_string()
+}
+
+fn designer(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_designer"))
+        .args(arguments)
+        .output()
+        .expect("the binary runs")
+}
+
+fn rows(arguments: &[&str]) -> Vec<Vec<String>> {
+    let output = designer(arguments);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = String::from_utf8(output.stdout).expect("text");
+    text.lines()
+        .skip(1)
+        .map(|line| line.split(',').map(str::to_owned).collect())
+        .collect()
+}
+
+fn refusal(arguments: &[&str]) -> String {
+    let output = designer(arguments);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    let text = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text
+}
+
+fn number(text: &str) -> f64 {
+    text.parse().expect("a number")
+}
+
+/// Values: an independent finite-element solution.
+#[test]
+fn solve_gives_states_in_the_order_asked_and_leaves_empty_what_has_no_meaning() {
+    let file = design("solve", "");
+    let rows = rows(&["solve", &file, "--indentation-mm", "2.0,0.5,0"]);
+    for (row, [pressure, force, radius]) in rows.iter().zip([[41.525, 5.754, 6.02], [1.790, 0.1800, 1.77]]) {
+        assert!((number(&row[1]) / pressure - 1.0).abs() < 0.01, "{row:?}");
+        assert!((number(&row[3]) / force - 1.0).abs() < 0.01, "{row:?}");
+        assert!((number(&row[4]) - radius).abs() < 0.15, "{row:?}");
+    }
+    assert!(number(&rows[2][1]).abs() < 1e-300 && number(&rows[2][3]).abs() < 1e-300);
+    for row in &rows {
+        assert_eq!(row.len(), 10);
+        assert!(row[7..].iter().all(String::is_empty), "{row:?}");
+    }
+}
+
+#[test]
+fn rest_gives_the_inflated_state_and_the_limit() {
+    let unstretched = &rows(&["rest", &design("rest", "")])[0];
+    assert!(number(&unstretched[0]).abs() < 1e-300);
+    assert!((number(&unstretched[3]) - 7.0).abs() < 1e-9);
+    assert!((3.2..3.8).contains(&number(&unstretched[5])), "{unstretched:?}");
+    assert_eq!(unstretched[6], "bulge-touches-base");
+    let inflated = &rows(&["rest", &design("inflated", "[rest]\npressure_kpa = 30\n")])[0];
+    assert!((number(&inflated[0]) - 30.0).abs() < 1e-9);
+    assert!(
+        number(&inflated[3]) > 7.5 && number(&inflated[1]) > 1.05,
+        "{inflated:?}"
+    );
+}
+
+#[test]
+fn profile_runs_along_the_middle_of_the_wall() {
+    let file = design("profile", "through = 1\n");
+    let rows = rows(&["profile", &file, "--indentation-mm", "1", "--points", "51"]);
+    assert_eq!(rows.len(), 51);
+    assert!(number(&rows[0][1]).abs() < 1e-12 && number(&rows[50][2]).abs() < 1e-12);
+    assert!((number(&rows[50][1]) - 8.5).abs() < 1e-9);
+    // Under the plate the outer surface is flat, half a wall above the middle.
+    assert!((number(&rows[1][2]) - 5.5).abs() < 0.03, "{:?}", rows[1]);
+    assert_eq!((rows[0][8].as_str(), rows[50][8].as_str()), ("contact", "free"));
+}
+
+#[test]
+fn refuses_in_one_line() {
+    let file = design("refusals", "through = 1\n");
+    let deep = refusal(&["solve", &file, "--indentation-mm", "1,5"]);
+    assert!(
+        deep.contains("indentation 5 mm is beyond the limit of 3."),
+        "{deep}"
+    );
+    let plain = refusal(&[
+        "solve",
+        &file,
+        "--indentation-mm",
+        "1",
+        "--tension-field",
+        "plain",
+    ]);
+    assert!(
+        plain.contains("--tension-field plain is for membranes"),
+        "{plain}"
+    );
+    let hard = refusal(&["rest", &design("hard", "[rest]\npressure_kpa = 5000\n")]);
+    assert!(
+        hard.contains("no rest state has a pressure of 5000 kPa: inflation reaches"),
+        "{hard}"
+    );
+}
