@@ -101,14 +101,47 @@ pub struct Graded<const S: usize> {
     pub outcome: Outcome,
 }
 
+impl<const S: usize> Graded<S> {
+    /// Room for a solution.
+    pub(crate) const BLANK: Self = Self {
+        solution: Solution::BLANK,
+        depth: Depth {
+            contact_parameter: 0.0,
+            bend: LARGEST_BEND,
+        },
+        breaks: Breaks::NONE,
+        outcome: Outcome::Stalled { step: f64::INFINITY },
+    };
+}
+
+impl<L, const S: usize> Adaptive<L, S> {
+    /// Room to work in, to be set.
+    pub(crate) const fn blank(membrane: Membrane<L>) -> Self {
+        Self {
+            equilibrium: Equilibrium::blank(membrane),
+            resolution: Resolution {
+                density: 0.0,
+                contact_elements: 0,
+                tolerance: 0.0,
+            },
+            iterations: 0,
+        }
+    }
+}
+
 impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// Ready to solve.
     pub fn new(membrane: Membrane<L>, resolution: Resolution) -> Self {
-        Self {
-            equilibrium: Equilibrium::new(membrane, resolution.tolerance),
-            resolution,
-            iterations: 0,
-        }
+        let mut adaptive = Self::blank(membrane);
+        adaptive.set(resolution);
+        adaptive
+    }
+
+    /// Makes it ready to solve, as [`Adaptive::new`].
+    pub(crate) fn set(&mut self, resolution: Resolution) {
+        self.equilibrium.set(resolution.tolerance);
+        self.resolution = resolution;
+        self.iterations = 0;
     }
 
     fn membrane(&self) -> &Membrane<L> {
@@ -146,6 +179,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     }
 
     /// The same state with a pole of the other kind, where that can help: a relaxed membrane under a plate.
+    #[inline(never)] // its copies of a solution stay off the caller's stack
     pub fn with_other_pole(&self, graded: &Graded<S>) -> Option<Graded<S>> {
         let relaxed = self.membrane().tension_field == TensionField::Relaxed;
         (relaxed && graded.solution.contact_elements > 0).then(|| match graded.solution.pole {

@@ -126,18 +126,33 @@ fn unit_row(index: usize, residual: f64) -> Row {
 
 const CONTACT_EDGE: usize = 2;
 
+impl<L, const S: usize> Equilibrium<L, S> {
+    /// Room to work in, to be set.
+    pub(crate) const fn blank(membrane: Membrane<L>) -> Self {
+        Self {
+            membrane,
+            gauss: Gauss::BLANK,
+            condensed: [Condensed::BLANK; MAX_ELEMENTS],
+            chain: Chain::BLANK,
+            tolerance: 0.0,
+        }
+    }
+
+    /// Makes it ready to solve, as [`Equilibrium::new`].
+    pub(crate) fn set(&mut self, tolerance: f64) {
+        self.gauss = Gauss::new();
+        self.tolerance = tolerance;
+    }
+}
+
 impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     /// Ready to solve.
     ///
     /// `tolerance` bounds the relative change that one more iteration would make.
     pub fn new(membrane: Membrane<L>, tolerance: f64) -> Self {
-        Self {
-            membrane,
-            gauss: Gauss::new(),
-            condensed: [Condensed::default(); MAX_ELEMENTS],
-            chain: Chain::new([[0.0; PARAMETERS]; STATES]),
-            tolerance,
-        }
+        let mut equilibrium = Self::blank(membrane);
+        equilibrium.set(tolerance);
+        equilibrium
     }
 
     /// Values of the first node and their derivative by the pole parameter.

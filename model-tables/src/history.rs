@@ -22,15 +22,28 @@ pub struct History<const S: usize> {
     count: usize,
 }
 
+impl<const S: usize> Default for History<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<const S: usize> History<S> {
-    /// No states yet; `blank` gives the slots a value.
-    pub fn new(blank: &Graded<S>) -> Self {
+    /// No states yet.
+    #[must_use]
+    pub const fn new() -> Self {
         Self {
-            slots: core::array::from_fn(|_| blank.clone()),
+            slots: [const { Graded::BLANK }; SLOTS],
             places: [0.0; SLOTS],
             newest: 0,
             count: 0,
         }
+    }
+
+    /// Forgets all states.
+    pub fn clear(&mut self) {
+        self.newest = 0;
+        self.count = 0;
     }
 
     fn slot(&self, age: usize) -> usize {
@@ -53,6 +66,7 @@ impl<const S: usize> History<S> {
 
     /// Makes the state being worked on the newest, at an indentation. Older states are put on its mesh, so that they
     /// go on telling what comes next.
+    #[inline(never)] // its copies of a solution stay off the caller's stack
     pub fn accept(&mut self, indentation: f64, gauss: &Gauss<S>) {
         self.newest = self.working_slot();
         self.places[self.newest] = libm::log(indentation);

@@ -81,11 +81,12 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             })
     }
 
-    /// The rest state of a pole stretch, by inflation from nearly nothing.
+    /// Makes `state` the rest state of a pole stretch, by inflation from nearly nothing. Of its content nothing is used.
     ///
     /// # Errors
-    /// [`End`] where inflation ends before.
-    pub fn inflate_to(&mut self, pole_stretch: f64) -> Result<Graded<S>, End> {
+    /// [`End`] where inflation ends before; `state` is then the last one found.
+    #[inline(never)] // its copy of a solution stays off the stack of those that do not need it
+    pub fn inflate_to(&mut self, pole_stretch: f64, state: &mut Graded<S>) -> Result<(), End> {
         let pole_of = |state: &Graded<S>| state.solution.parameters[POLE];
         let equator_of = |state: &Graded<S>| state.solution.nodes[state.solution.elements()][0];
         if let Some(stretch) = stability::equibiaxial_limit(&self.equilibrium.membrane.law, pole_stretch) {
@@ -96,19 +97,18 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             )));
         }
         let mut control = Control::Pole;
-        let mut state = self
-            .rest_from_sphere(pole_stretch.min(1.0 + FIRST))
+        self.rest_from_sphere(pole_stretch.min(1.0 + FIRST), state)
             .map_err(End::Lost)?;
         let mut step = LARGEST_STEP.min(4.0 * FIRST);
-        let mut greatest = pole_of(&state);
+        let mut greatest = pole_of(state);
         let mut failure = Failure::Unsettled;
         loop {
-            if pole_of(&state) >= pole_stretch {
-                return Ok(state);
+            if pole_of(state) >= pole_stretch {
+                return Ok(());
             }
             if step < SMALLEST_STEP {
                 if control == Control::Equator {
-                    let margin = self.stability(&state);
+                    let margin = self.stability(state);
                     return Err(if margin.value < NO_MARGIN {
                         End::Unstable(margin)
                     } else {
@@ -120,14 +120,14 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             }
             let mut next = state.clone();
             let target = match control {
-                Control::Pole => RestControl::PoleStretch((pole_of(&state) + step).min(pole_stretch)),
-                Control::Equator => RestControl::EquatorStretch(equator_of(&state) + step),
+                Control::Pole => RestControl::PoleStretch((pole_of(state) + step).min(pole_stretch)),
+                Control::Equator => RestControl::EquatorStretch(equator_of(state) + step),
             };
             match self.settle(&mut next, &Closure::Rest(target)) {
                 // A leap is another branch.
                 Ok(())
-                    if (equator_of(&next) - equator_of(&state)).abs() < 6.0 * step + SMALLEST_STEP
-                        && (pole_of(&next) - pole_of(&state)).abs() < 6.0 * step + SMALLEST_STEP => {}
+                    if (equator_of(&next) - equator_of(state)).abs() < 6.0 * step + SMALLEST_STEP
+                        && (pole_of(&next) - pole_of(state)).abs() < 6.0 * step + SMALLEST_STEP => {}
                 Ok(()) => {
                     step *= 0.5;
                     continue;
@@ -142,7 +142,8 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                 if pole_of(&next) >= pole_stretch {
                     // Near enough for the pole to take over.
                     let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
-                    return self.settle(&mut next, &closure).map(|()| next).map_err(End::Lost);
+                    state.clone_from(&next);
+                    return self.settle(state, &closure).map_err(End::Lost);
                 }
                 if pole_of(&next) < greatest - TURN {
                     return Err(End::Turns { greatest });
@@ -152,8 +153,8 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                 }
             }
             greatest = greatest.max(pole_of(&next));
-            state = next;
-            let margin = self.stability(&state);
+            state.clone_from(&next);
+            let margin = self.stability(state);
             if !margin.is_stable() {
                 return Err(End::Unstable(margin));
             }

@@ -41,7 +41,8 @@
 //! | `cli` | no | the `designer` command line; implies `std` |
 //!
 //! On a chip: `model-tables = { ..., default-features = false }`. The look-up works in integers alone. The model works in
-//! `f64` and keeps everything in one [`press::Press`] of less than 200 kB.
+//! `f64` and keeps everything in one [`press::Press`] of less than 200 kB; a [`press::workspace::Workspace`] keeps that in
+//! a static, so that it never passes through the stack.
 //!
 //! # What it promises
 //!

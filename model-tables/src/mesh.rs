@@ -21,6 +21,12 @@ pub struct Breaks {
 }
 
 impl Breaks {
+    /// None.
+    pub const NONE: Self = Self {
+        positions: [0.0; MAX_BREAKS],
+        count: 0,
+    };
+
     /// Adds a position larger than all before it; silently full beyond [`MAX_BREAKS`], which costs accuracy only.
     pub fn push(&mut self, position: f64) {
         if self.count < MAX_BREAKS {

@@ -17,14 +17,16 @@ use crate::design::Membrane as Dimensions;
 use crate::design::{Design, RestBy};
 use crate::equilibrium::{Closure, PressControl};
 use crate::history::History;
-use crate::inflation::End;
 use crate::material::{Hyperelastic, Law, Scaled};
-use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, Membrane, PRESSURE, TensionField};
-use crate::rest::{Branch, Quantity, RestFailure};
+use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, PRESSURE, TensionField};
+use crate::press::workspace::Workspace;
+use crate::rest::Branch;
 use crate::stability::Margin;
 use crate::state::{self, MeridianPoint, PressedState, Scale, Shape};
 use core::f64::consts::{FRAC_PI_2, PI};
 use way::Stop;
+
+pub mod workspace;
 
 /// Gauss points an element: order twelve.
 pub const STAGES: usize = 6;
@@ -93,6 +95,8 @@ impl<const S: usize> Press<Law, S> {
 impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// Inflates a membrane of any law to its rest state; `compliance` in cubic metres per pascal.
     ///
+    /// The press passes through the caller's stack: where that is small, inflate it in a [`Workspace`].
+    ///
     /// # Errors
     /// [`ModelError::NoRestState`] and [`ModelError::RestUnsolved`].
     pub fn inflate(
@@ -103,63 +107,9 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         tension_field: TensionField,
         resolution: Resolution,
     ) -> Result<Self, ModelError> {
-        let modulus = law.shear_modulus();
-        let scale = Scale::new(dimensions, modulus);
-        let membrane = Membrane {
-            aspect: dimensions.axial_semi_axis / dimensions.radial_semi_axis,
-            law: Scaled {
-                law,
-                factor: 1.0 / modulus,
-            },
-            tension_field,
-        };
-        let mut solver = Adaptive::new(membrane, resolution);
-        let by = |solver: &mut Adaptive<Scaled<L>, S>, quantity, asked, unit: f64| {
-            solver
-                .rest_by(quantity, asked / unit)
-                .map_err(|failure| match failure {
-                    RestFailure::OutOfReach { least, greatest, .. } => ModelError::NoRestState {
-                        quantity,
-                        asked,
-                        least: least * unit,
-                        greatest: greatest * unit,
-                    },
-                    RestFailure::Solver(failure) => ModelError::RestUnsolved { failure },
-                })
-        };
-        let (rest, branch) = match rest {
-            RestBy::Unstretched => return Err(ModelError::Unstretched),
-            RestBy::PoleStretch(stretch) => {
-                let rest = solver.rest_by_pole_stretch(stretch).map_err(|end| match end {
-                    End::Turns { greatest } => ModelError::NoRestState {
-                        quantity: Quantity::PoleStretch,
-                        asked: stretch,
-                        least: 1.0,
-                        greatest,
-                    },
-                    End::Unstable(margin) => ModelError::LawUnstable {
-                        asked: stretch,
-                        margin,
-                    },
-                    End::Lost(failure) => ModelError::RestUnsolved { failure },
-                })?;
-                (rest, Branch::Only)
-            }
-            RestBy::Pressure(pascals) => by(&mut solver, Quantity::Pressure, pascals, scale.pressure)?,
-            RestBy::EquatorRadius(metres) => by(&mut solver, Quantity::EquatorRadius, metres, scale.length)?,
-            RestBy::Height(metres) => by(&mut solver, Quantity::Height, metres, scale.length)?,
-        };
-        let rest_shape = state::shape(&solver.equilibrium, &scale, &rest.solution);
-        Ok(Self {
-            solver,
-            scale,
-            compliance: compliance * scale.pressure / scale.volume(),
-            history: History::new(&rest),
-            rest,
-            rest_shape,
-            branch,
-            limit: None,
-        })
+        let mut workspace = Workspace::new(law);
+        workspace.inflate(dimensions, rest, compliance, tension_field, resolution)?;
+        Ok(workspace.into_press())
     }
 
     /// The rest state.

@@ -6,7 +6,7 @@ use crate::inflation::End;
 use crate::material::Hyperelastic;
 use crate::membrane::{POLE, PRESSURE, TensionField};
 use crate::mesh::{Breaks, Depth};
-use crate::solution::{MAX_ELEMENTS, Pole, Solution};
+use crate::solution::Pole;
 use core::f64::consts::FRAC_PI_2;
 
 /// What the rest state is given by, for messages.
@@ -72,38 +72,32 @@ const MAX_ROOT_STEPS: usize = 60;
 const STEP_GROWTH: f64 = 1.15;
 
 impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
-    /// A mesh without a solution on it: uniformly stretched, the tangent of the undeformed membrane.
-    fn inflated_guess(&self, pole_stretch: f64) -> Graded<S> {
+    /// Makes `state` a guess: uniformly stretched, the tangent of the undeformed membrane.
+    fn guess_inflated(&self, pole_stretch: f64, state: &mut Graded<S>) {
         let membrane = &self.equilibrium.membrane;
-        let depth = Depth {
+        state.depth = Depth {
             contact_parameter: 0.0,
             bend: 0.5,
         };
-        let mut fractions = [0.0; MAX_ELEMENTS + 2];
+        state.breaks = Breaks::default();
+        state.outcome = Outcome::Stalled { step: f64::INFINITY };
+        let solution = &mut state.solution;
+        let fractions = &mut solution.fractions;
+        fractions[..2].fill(0.0);
         let mut count = 0;
-        let free_elements = depth.spread(0.0, FRAC_PI_2, REST_FINENESS * self.resolution.density, |t| {
+        let fineness = REST_FINENESS * self.resolution.density;
+        let free_elements = state.depth.spread(0.0, FRAC_PI_2, fineness, |t| {
             count += 1;
             fractions[1 + count] = t / FRAC_PI_2;
         });
         let tension = membrane.law.derivatives(pole_stretch, pole_stretch).w1;
-        let mut solution = Solution {
-            pole: Pole::Taut,
-            contact_elements: 0,
-            free_elements,
-            fractions,
-            nodes: [[0.0; 2]; MAX_ELEMENTS + 1],
-            stages: [[[0.0; 2]; S]; MAX_ELEMENTS],
-            stretches: [[pole_stretch; S]; MAX_ELEMENTS],
-            // Exact for a sphere; of an ellipsoid, the curvature at the pole is b0 / a0^2.
-            parameters: [
-                pole_stretch,
-                2.0 * tension / (pole_stretch * pole_stretch) * membrane.aspect,
-                0.0,
-                0.0,
-            ],
-            height: 0.0,
-            volume: 0.0,
-        };
+        solution.pole = Pole::Taut;
+        solution.contact_elements = 0;
+        solution.free_elements = free_elements;
+        solution.stretches.fill([pole_stretch; S]);
+        // Exact for a sphere; of an ellipsoid, the curvature at the pole is b0 / a0^2.
+        let pressure = 2.0 * tension / (pole_stretch * pole_stretch) * membrane.aspect;
+        solution.parameters = [pole_stretch, pressure, 0.0, 0.0];
         let guess = |t: f64| {
             let meridian = membrane.meridian(t);
             [pole_stretch, tension * meridian.x_rate / meridian.arc_rate]
@@ -116,38 +110,36 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             }
         }
         solution.nodes[free_elements] = guess(FRAC_PI_2);
-        Graded {
-            solution,
-            depth,
-            breaks: Breaks::default(),
-            outcome: Outcome::Stalled { step: f64::INFINITY },
-        }
     }
 
-    /// The rest state of a pole stretch.
+    /// Makes `state` the rest state of a pole stretch. Of its content nothing is used.
     ///
     /// # Errors
-    /// [`End`] of inflation, when even the slow ways do not arrive.
-    pub fn rest_by_pole_stretch(&mut self, pole_stretch: f64) -> Result<Graded<S>, End> {
-        let Ok(direct) = self.rest_from_sphere(pole_stretch) else {
-            return self.inflate_to(pole_stretch);
-        };
-        if !self.softens(&direct) {
-            return Ok(direct);
+    /// [`End`] of inflation, when even the slow ways do not arrive; `state` is then no equilibrium.
+    pub fn rest_by_pole_stretch(&mut self, pole_stretch: f64, state: &mut Graded<S>) -> Result<(), End> {
+        let direct = self.rest_from_sphere(pole_stretch, state);
+        if direct.is_ok() && !self.softens(state) {
+            return Ok(());
         }
         // Perhaps a state that inflation does not reach.
-        match self.inflate_to(pole_stretch) {
-            Err(End::Lost(_)) => Ok(direct),
+        match self.inflate_to(pole_stretch, state) {
+            Err(End::Lost(_)) if direct.is_ok() => {
+                self.rest_from_sphere(pole_stretch, state).map_err(End::Lost)
+            }
             inflated => inflated,
         }
     }
 
-    /// The rest state of a pole stretch, at once or by way of the sphere, whose state is known.
-    pub(crate) fn rest_from_sphere(&mut self, pole_stretch: f64) -> Result<Graded<S>, Failure> {
+    /// Makes `state` the rest state of a pole stretch, at once or by way of the sphere, whose state is known.
+    pub(crate) fn rest_from_sphere(
+        &mut self,
+        pole_stretch: f64,
+        state: &mut Graded<S>,
+    ) -> Result<(), Failure> {
         let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
-        let mut state = self.inflated_guess(pole_stretch);
-        if self.settle(&mut state, &closure).is_ok() {
-            return Ok(state);
+        self.guess_inflated(pole_stretch, state);
+        if self.settle(state, &closure).is_ok() {
+            return Ok(());
         }
         // Continuation in the aspect, from the sphere; a plain membrane first, so that kinks come last.
         let (aspect, field) = (
@@ -158,23 +150,23 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         for steps in [4, 16, 64] {
             self.equilibrium.membrane.tension_field = TensionField::Plain;
             self.equilibrium.membrane.aspect = 1.0;
-            let mut state = self.inflated_guess(pole_stretch);
-            result = self.settle(&mut state, &closure);
+            self.guess_inflated(pole_stretch, state);
+            result = self.settle(state, &closure);
             for k in 1..=steps {
                 if result.is_err() {
                     break;
                 }
                 self.equilibrium.membrane.aspect = libm::pow(aspect, f64::from(k) / f64::from(steps));
-                result = self.settle(&mut state, &closure);
+                result = self.settle(state, &closure);
             }
             self.equilibrium.membrane.aspect = aspect;
             self.equilibrium.membrane.tension_field = field;
-            result = result.and_then(|()| self.settle(&mut state, &closure));
+            result = result.and_then(|()| self.settle(state, &closure));
             if result.is_ok() {
-                return Ok(state);
+                return Ok(());
             }
         }
-        Err(result.err().unwrap_or(Failure::Unsettled))
+        result
     }
 
     /// The rest state of a pressure, equator radius or height, all dimensionless.
@@ -186,6 +178,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     ///
     /// # Errors
     /// [`RestFailure`] with the reachable values if there is no such state.
+    #[inline(never)] // its copies of a solution stay off the caller's stack
     pub fn rest_by(&mut self, quantity: Quantity, value: f64) -> Result<(Graded<S>, Branch), RestFailure> {
         let mut scan = Scan {
             quantity,
@@ -226,16 +219,14 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// The rest state of a pole stretch, from a neighbour if there is one.
     fn rest_near(&mut self, from: Option<&Graded<S>>, pole_stretch: f64) -> Result<Graded<S>, Failure> {
         let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
-        match from {
-            Some(from) => {
-                let mut state = from.clone();
-                match self.settle(&mut state, &closure) {
-                    Ok(()) => Ok(state),
-                    Err(_) => self.rest_from_sphere(pole_stretch),
-                }
+        let mut state = Graded::BLANK;
+        if let Some(from) = from {
+            state.clone_from(from);
+            if self.settle(&mut state, &closure).is_ok() {
+                return Ok(state);
             }
-            None => self.rest_from_sphere(pole_stretch),
         }
+        self.rest_from_sphere(pole_stretch, &mut state).map(|()| state)
     }
 }
 

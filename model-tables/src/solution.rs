@@ -45,6 +45,20 @@ pub struct Solution<const S: usize> {
 }
 
 impl<const S: usize> Solution<S> {
+    /// Room for a solution.
+    pub(crate) const BLANK: Self = Self {
+        pole: Pole::Taut,
+        contact_elements: 0,
+        free_elements: 0,
+        fractions: [0.0; MAX_ELEMENTS + 2],
+        nodes: [[0.0; STATES]; MAX_ELEMENTS + 1],
+        stages: [[[0.0; STATES]; S]; MAX_ELEMENTS],
+        stretches: [[0.0; S]; MAX_ELEMENTS],
+        parameters: [0.0; PARAMETERS],
+        height: 0.0,
+        volume: 0.0,
+    };
+
     /// Number of elements.
     pub fn elements(&self) -> usize {
         self.contact_elements + self.free_elements

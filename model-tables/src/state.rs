@@ -22,6 +22,14 @@ pub struct Scale {
 }
 
 impl Scale {
+    /// Units to be set.
+    pub(crate) const BLANK: Self = Self {
+        length: 1.0,
+        stress: 1.0,
+        tension: 1.0,
+        pressure: 1.0,
+    };
+
     /// The units of a membrane whose law has the shear modulus `stress`, pascals.
     pub fn new(dimensions: &Dimensions, stress: f64) -> Self {
         Self {
@@ -95,6 +103,22 @@ pub struct Shape {
 }
 
 impl Shape {
+    /// Room for a shape.
+    pub(crate) const BLANK: Self = Self {
+        pressure: 0.0,
+        pole_stretch: 1.0,
+        slack_edge: 0.0,
+        height: 0.0,
+        volume: 0.0,
+        energy: 0.0,
+        edge_angle: 0.0,
+        edge_radius: 0.0,
+        largest_radius: 0.0,
+        least_meridional_tension: 0.0,
+        least_hoop_tension: 0.0,
+        wrinkling: Wrinkling::Taut,
+    };
+
     /// The smaller of the two smallest tensions, newtons per metre of deformed length.
     pub fn least_tension(&self) -> f64 {
         self.least_meridional_tension.min(self.least_hoop_tension)

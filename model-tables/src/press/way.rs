@@ -105,6 +105,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     ///
     /// `H = (P0 r^2 / 2 T0) ln(K / r)`, with the edge radius for the design's length `K`; under the plate the pole's
     /// state, outside the rest state with the plate's share taken off the vertical balance.
+    #[inline(never)] // its copies of a solution stay off the caller's stack
     fn first_contact(&self, indentation: f64) -> Graded<S> {
         let rest = &self.rest.solution;
         let [pole_stretch, pressure, ..] = rest.parameters;

@@ -31,14 +31,17 @@ pub struct Chain<const MAX: usize> {
 }
 
 impl<const MAX: usize> Chain<MAX> {
+    /// Room for a chain, to be restarted.
+    pub(crate) const BLANK: Self = Self {
+        eliminated: [[[0.0; UNKNOWNS + 1]; STATES]; MAX],
+        nodes: 0,
+        link: [[0.0; UNKNOWNS + 1]; STATES],
+        borders: [[0.0; UNKNOWNS + 1]; BORDERS],
+    };
+
     /// A chain whose first node obeys `y_0 = by_parameter p` in the changes.
     pub fn new(by_parameter: [[f64; PARAMETERS]; STATES]) -> Self {
-        let mut chain = Self {
-            eliminated: [[[0.0; UNKNOWNS + 1]; STATES]; MAX],
-            nodes: 0,
-            link: [[0.0; UNKNOWNS + 1]; STATES],
-            borders: [[0.0; UNKNOWNS + 1]; BORDERS],
-        };
+        let mut chain = Self::BLANK;
         chain.restart(by_parameter);
         chain
     }

@@ -42,6 +42,15 @@ impl<const S: usize> Default for Gauss<S> {
 }
 
 impl<const S: usize> Gauss<S> {
+    /// Room for the method.
+    pub(crate) const BLANK: Self = Self {
+        nodes: [0.0; S],
+        weights: [0.0; S],
+        stages: [[0.0; S]; S],
+        end: [0.0; S],
+        barycentric: [0.0; MAX_STAGES + 1],
+    };
+
     /// The method, computed from the roots of the Legendre polynomial of degree `S`.
     ///
     /// # Panics
@@ -177,14 +186,19 @@ pub struct Condensed<const S: usize> {
     pub residual: f64,
 }
 
+impl<const S: usize> Condensed<S> {
+    /// Room for an element.
+    pub(crate) const BLANK: Self = Self {
+        stages: [[[0.0; COLUMNS]; STATES]; S],
+        end: [[0.0; COLUMNS]; STATES],
+        integrals: [[0.0; COLUMNS]; INTEGRALS],
+        residual: 0.0,
+    };
+}
+
 impl<const S: usize> Default for Condensed<S> {
     fn default() -> Self {
-        Self {
-            stages: [[[0.0; COLUMNS]; STATES]; S],
-            end: [[0.0; COLUMNS]; STATES],
-            integrals: [[0.0; COLUMNS]; INTEGRALS],
-            residual: 0.0,
-        }
+        Self::BLANK
     }
 }
 

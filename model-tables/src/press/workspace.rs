@@ -1,0 +1,155 @@
+//! Memory for a press, where it stays.
+//!
+//! A [`Press`] is larger than the stack of most chips. A workspace is made at compile time, so that it can be a static,
+//! and inflates and presses in place.
+
+use crate::adapt::Resolution;
+use crate::adapt::{Adaptive, Graded};
+use crate::design::{Membrane as Dimensions, RestBy};
+use crate::history::History;
+use crate::inflation::End;
+use crate::material::{Hyperelastic, Law, Scaled};
+use crate::membrane::{Membrane, TensionField};
+use crate::press::{ModelError, Press, STAGES};
+use crate::rest::{Branch, Quantity, RestFailure};
+use crate::state::{self, Scale, Shape};
+
+/// Memory for a press of a membrane of the law `L`, with `S` Gauss points an element.
+#[derive(Clone, Debug)]
+pub struct Workspace<L = Law, const S: usize = STAGES> {
+    press: Press<L, S>,
+}
+
+impl<L, const S: usize> Workspace<L, S> {
+    /// Nothing inflated yet.
+    pub const fn new(law: L) -> Self {
+        let membrane = Membrane {
+            aspect: 1.0,
+            law: Scaled { law, factor: 1.0 },
+            tension_field: TensionField::Relaxed,
+        };
+        Self {
+            press: Press {
+                solver: Adaptive::blank(membrane),
+                scale: Scale::BLANK,
+                compliance: 0.0,
+                rest: Graded::BLANK,
+                rest_shape: Shape::BLANK,
+                branch: Branch::Only,
+                history: History::new(),
+                limit: None,
+            },
+        }
+    }
+}
+
+impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
+    /// Inflates a membrane to its rest state, in place of whatever was here; `compliance` in cubic metres per pascal.
+    ///
+    /// # Errors
+    /// [`ModelError::NoRestState`], [`ModelError::LawUnstable`] and [`ModelError::RestUnsolved`].
+    pub fn inflate(
+        &mut self,
+        dimensions: &Dimensions,
+        rest: RestBy,
+        compliance: f64,
+        tension_field: TensionField,
+        resolution: Resolution,
+    ) -> Result<&mut Press<L, S>, ModelError> {
+        let press = &mut self.press;
+        let membrane = &mut press.solver.equilibrium.membrane;
+        let modulus = membrane.law.law.shear_modulus();
+        let scale = Scale::new(dimensions, modulus);
+        membrane.aspect = dimensions.axial_semi_axis / dimensions.radial_semi_axis;
+        membrane.law.factor = 1.0 / modulus;
+        membrane.tension_field = tension_field;
+        press.solver.set(resolution);
+        press.scale = scale;
+        press.compliance = compliance * scale.pressure / scale.volume();
+        press.history.clear();
+        press.limit = None;
+        match rest {
+            RestBy::Unstretched => return Err(ModelError::Unstretched),
+            RestBy::PoleStretch(stretch) => {
+                let found = press.solver.rest_by_pole_stretch(stretch, &mut press.rest);
+                found.map_err(|end| match end {
+                    End::Turns { greatest } => ModelError::NoRestState {
+                        quantity: Quantity::PoleStretch,
+                        asked: stretch,
+                        least: 1.0,
+                        greatest,
+                    },
+                    End::Unstable(margin) => ModelError::LawUnstable {
+                        asked: stretch,
+                        margin,
+                    },
+                    End::Lost(failure) => ModelError::RestUnsolved { failure },
+                })?;
+                press.branch = Branch::Only;
+            }
+            RestBy::Pressure(pascals) => press.rest_by(Quantity::Pressure, pascals, scale.pressure)?,
+            RestBy::EquatorRadius(metres) => press.rest_by(Quantity::EquatorRadius, metres, scale.length)?,
+            RestBy::Height(metres) => press.rest_by(Quantity::Height, metres, scale.length)?,
+        }
+        press.rest_shape = state::shape(&press.solver.equilibrium, &scale, &press.rest.solution);
+        Ok(press)
+    }
+
+    /// The press by value.
+    pub(super) fn into_press(self) -> Press<L, S> {
+        self.press
+    }
+}
+
+impl<L: Hyperelastic, const S: usize> Press<L, S> {
+    /// The rest state in which a quantity is `asked`, in its SI `unit`.
+    fn rest_by(&mut self, quantity: Quantity, asked: f64, unit: f64) -> Result<(), ModelError> {
+        let found = self.solver.rest_by(quantity, asked / unit);
+        (self.rest, self.branch) = found.map_err(|failure| match failure {
+            RestFailure::OutOfReach { least, greatest, .. } => ModelError::NoRestState {
+                quantity,
+                asked,
+                least: least * unit,
+                greatest: greatest * unit,
+            },
+            RestFailure::Solver(failure) => ModelError::RestUnsolved { failure },
+        })?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::press::SWEEP;
+
+    #[test]
+    fn a_second_design_finds_nothing_of_the_first() {
+        let law = Law::MooneyRivlin {
+            c1: 160_355.0,
+            c2: 46_559.0,
+        };
+        let dimensions = Dimensions {
+            radial_semi_axis: 4.5e-3,
+            axial_semi_axis: 2.7e-3,
+            thickness: 1e-3,
+        };
+        let force = |workspace: &mut Workspace<Law, 5>, stretch: f64| {
+            let rest = RestBy::PoleStretch(stretch);
+            let press = workspace
+                .inflate(&dimensions, rest, 0.0, TensionField::Relaxed, SWEEP)
+                .expect("it inflates");
+            let force = press.contact_at(0.5e-3).expect("it can be pressed").force;
+            (
+                force.to_bits(),
+                press.iterations(),
+                press.rest().pressure.to_bits(),
+            )
+        };
+        let mut used = Workspace::new(law);
+        let other = force(&mut used, 1.5);
+        let again = force(&mut used, 2.3);
+        assert_ne!(other, again);
+        assert_eq!(again, force(&mut Workspace::new(law), 2.3));
+    }
+}
