@@ -3,7 +3,7 @@
 //! One sample's way: [`counts`] -> [`transducer`] -> [`pressure`] -> [`tare`] -> [`filter`] -> [`contact`] -> [`report`], called
 //! in that order by [`pipeline`]; [`telemetry`] puts reports on the wire and [`design`] says for which
 //! fingertip, [`image`] for the one this
-//! build is for. Integers only; nothing here knows a clock or a bus: time and samples are
+//! build is for. Integers only, but for the full model's [`solver_states`], which the firmware does not solve; nothing here knows a clock or a bus: time and samples are
 //! arguments.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
@@ -17,6 +17,7 @@ pub mod lookup_sweep;
 pub mod pipeline;
 pub mod pressure;
 pub mod report;
+pub mod solver_states;
 pub mod tare;
 pub mod telemetry;
 pub mod transducer;

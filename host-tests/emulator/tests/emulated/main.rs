@@ -5,6 +5,7 @@ mod faults;
 mod integers;
 mod press;
 mod readme;
+mod solver;
 
 use emulator::bench::{self, Outcome};
 use emulator::fingertip_design::{FingertipDesign, default_path};
