@@ -1,10 +1,11 @@
 //! Pressure rise -> force and indentation, through the tables of the design.
 
 use crate::design::Design;
-use crate::report::{Measurement, Warnings};
+use crate::report::{Measurement, Sigma, Warnings};
+use crate::touch::Touch;
 use model_tables::units::PressureRise;
 
-/// Force and indentation at a rise. Below zero both are 0; below [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) that is flagged.
+/// Force and indentation at a rise; 1-sigma and touch are left to whoever knows the zero. Below zero both are 0; below [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) that is flagged.
 #[inline]
 pub fn contact<D: Design>(rise: PressureRise, warnings: Warnings) -> Measurement {
     let lowest_rest = const { D::CONSTANTS.transducer.lowest_rest(D::PRESSURE_FRACTION_BITS) };
@@ -13,6 +14,8 @@ pub fn contact<D: Design>(rise: PressureRise, warnings: Warnings) -> Measurement
         pressure_rise: rise,
         force: reading.force,
         indentation: reading.indentation,
+        sigma: Sigma::default(),
+        touch: Touch::Unknown,
         warnings: warnings
             .and(Warnings::SATURATED.when(reading.saturated))
             .and(Warnings::BELOW_ZERO.when(rise < lowest_rest)),

@@ -44,21 +44,29 @@ mod probe {
                 pressure_fraction_bits: ImageDesign::PRESSURE_FRACTION_BITS as u8,
             };
             // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
-            let _ = line.write(&encode(&Frame { sequence, message })).await;
+            let frame = Frame {
+                sequence,
+                dropped: 0,
+                message,
+            };
+            let _ = line.write(&encode(&frame)).await;
             sequence = sequence.wrapping_add(1);
             watchdog.pet();
         }
         loop {
             let message = Message::Hello(Hello {
                 time: clock.now(),
-                firmware: [0; 3],
                 reset_cause,
                 design_hash: ImageDesign::CONSTANTS.hash,
                 report_period: PERIOD,
-                blocks_lost: 0,
-                frames_dropped: 0,
+                ..Hello::default()
             });
-            let _ = line.write(&encode(&Frame { sequence, message })).await;
+            let frame = Frame {
+                sequence,
+                dropped: 0,
+                message,
+            };
+            let _ = line.write(&encode(&frame)).await;
             sequence = sequence.wrapping_add(1);
             watchdog.pet();
             Timer::after_millis(10).await;

@@ -1,19 +1,39 @@
 //! The stages, called in order.
 
+use crate::calibration::{Calibration, Gain};
 use crate::contact::contact;
 use crate::design::Design;
-use crate::filter::{Filter, GROUP_DELAY};
-use crate::pressure::Scale;
-use crate::report::{Fault, Measurement, Microseconds, Report};
-use crate::tare::{Gates, StartUp, Tare};
-use crate::transducer::{self, Sample};
+use crate::drift::{Drift, Pace};
+use crate::filter::{Filter, GROUP_DELAY, Leaps};
+use crate::fluid::{Fall, Fluid};
+use crate::pressure::{Pressure, Scale};
+use crate::report::{Fault, Measurement, Microseconds, Report, Warnings};
+use crate::stuck::StuckDetector;
+use crate::tare::{Gates, StartUp, Tare, TareRefusal, Zero};
+use crate::temperature::Temperature;
+use crate::touch::{Thresholds, Touch, TouchDetector};
+use crate::transducer::{self, Centidegrees, Millipascals, Sample};
+use crate::uncertainty::{Uncertainty, through_tables};
 use core::marker::PhantomData;
+use model_tables::units::Nanometres;
 
 /// The signal path of one fingertip.
 #[derive(Clone, Debug)]
 pub struct Pipeline<D> {
+    calibration: Calibration,
+    /// What qualifies every reading since start-up.
+    standing: Warnings,
+    stuck: StuckDetector,
+    temperature: Temperature,
+    /// The last one measured.
+    celsius: Option<Centidegrees>,
     tare: Tare,
+    gain: Gain,
     filter: Filter,
+    detector: TouchDetector,
+    touch: Touch,
+    drift: Drift,
+    fluid: Fluid,
     design: PhantomData<D>,
 }
 
@@ -23,12 +43,37 @@ impl<D: Design> Pipeline<D> {
 
     const SCALE: Scale = Scale::of(D::PRESSURE_FRACTION_BITS);
     const GATES: Gates = Gates::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
+    const LEAPS: Leaps = Leaps::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::PERIOD);
+    const THRESHOLDS: Thresholds = Thresholds::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
+    const PACE: Pace = Pace::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.far);
+    const FALL: Fall = Fall::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
+    const UNCERTAINTY: Uncertainty =
+        Uncertainty::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.far);
 
-    /// A signal path that has seen nothing yet.
-    pub const fn new(start_up: StartUp) -> Self {
+    /// A signal path that has seen nothing yet, with what is stored of this fingertip. `standing` qualifies every
+    /// reading.
+    pub fn new(start_up: StartUp, calibration: Calibration, standing: Warnings) -> Self {
+        let gates = match calibration.zero_counts(Self::SCALE) {
+            Some(zero) => Self::GATES.with_stored(zero),
+            None => Self::GATES,
+        };
         Self {
-            tare: Tare::new(Self::GATES, start_up),
-            filter: Filter::NEW,
+            calibration,
+            standing,
+            stuck: StuckDetector::NEW,
+            temperature: Temperature::new(
+                calibration.coefficient,
+                calibration.temperature,
+                D::PRESSURE_FRACTION_BITS,
+            ),
+            celsius: None,
+            tare: Tare::new(gates, start_up),
+            gain: Gain::new(calibration.gain),
+            filter: Filter::new(Self::LEAPS),
+            detector: TouchDetector::new(Self::THRESHOLDS),
+            touch: Touch::Unknown,
+            drift: Drift::new(Self::PACE),
+            fluid: Fluid::new(Self::FALL),
             design: PhantomData,
         }
     }
@@ -38,6 +83,7 @@ impl<D: Design> Pipeline<D> {
     pub fn step(&mut self, now: Microseconds, sample: Result<Sample, Fault>) -> Report {
         let age = sample.map_or(Self::PERIOD / 2, |sample| sample.age);
         let measured = Microseconds(now.0.saturating_sub(u64::from(age)));
+        let sample = sample.and_then(|sample| self.stuck.step(measured, sample.raw).map(|()| sample));
         let outcome = match sample {
             Ok(sample) => self.measure(measured, sample),
             Err(fault) => {
@@ -55,170 +101,128 @@ impl<D: Design> Pipeline<D> {
 
     #[inline]
     fn measure(&mut self, time: Microseconds, sample: Sample) -> Result<Measurement, Fault> {
-        let pressure = Self::SCALE.pressure(sample.pressure);
-        let (rise, zero) = self.tare.step(time, pressure)?;
+        if sample.temperature.is_some() {
+            self.celsius = sample.temperature;
+            self.temperature.step(sample.temperature, self.touch);
+        }
+        let Pressure(pressure) = Self::SCALE.pressure(sample.pressure);
+        let pressure = Pressure(pressure.saturating_sub(self.temperature.correction()));
+        let (rise, zero) = self.tare.step(time, pressure, self.drift.counts())?;
+        if self.tare.take_moved() {
+            self.zero_moved(time);
+        }
+        let rise = self.gain.apply_to(rise);
         let (rise, warnings) = self.filter.step(rise, zero.and(sample.warnings()))?;
-        Ok(contact::<D>(rise, warnings))
+        let verified = !warnings.contains(Warnings::ZERO_UNVERIFIED);
+        let touch = self.detector.step(rise, verified);
+        self.touch = touch;
+        self.drift.step(time, rise, touch);
+        let (drifted, aged) = self.drift.missed(time, touch);
+        self.fluid.step(time, rise, self.zero_over_reference(), touch);
+
+        let missed = self.temperature.missed();
+        let warnings = warnings
+            .and(self.standing)
+            .and(self.fluid.suspicions())
+            .and(Warnings::ZERO_AGED.when(aged && verified))
+            .and(Warnings::TEMPERATURE.when(missed > Self::THRESHOLDS.touch.0));
+        let mut measurement = contact::<D>(rise, warnings);
+        measurement.touch = touch;
+        let sigma = Self::UNCERTAINTY.rise(verified, drifted, missed);
+        measurement.sigma = through_tables::<D>(&measurement, sigma);
+        Ok(measurement)
+    }
+
+    /// What was measured over the old zero is void.
+    #[cold]
+    fn zero_moved(&mut self, time: Microseconds) {
+        self.drift.reset(time);
+        self.detector.forget();
+        self.touch = Touch::Unknown;
+        self.filter.interrupt();
+    }
+
+    fn zero_over_reference(&self) -> i32 {
+        let zero = self
+            .tare
+            .zero()
+            .map_or(self.tare.reference(), |zero| zero.pressure);
+        zero.0
+            .saturating_add(self.drift.counts())
+            .saturating_sub(self.tare.reference().0)
+    }
+
+    /// Someone says that nothing presses: takes a new zero if it may be one. What came of it is asked with
+    /// [`Pipeline::take_tare_answer`].
+    ///
+    /// # Errors
+    /// [`TareRefusal`] when that is plain at once.
+    pub fn tare(&mut self) -> Result<(), TareRefusal> {
+        self.tare.command()
+    }
+
+    /// Takes back the last commanded zero.
+    ///
+    /// # Errors
+    /// [`TareRefusal::NothingToUndo`], [`TareRefusal::Busy`].
+    pub fn undo_tare(&mut self) -> Result<(), TareRefusal> {
+        self.tare.undo()
+    }
+
+    /// What came of the last commanded tare, once.
+    pub fn take_tare_answer(&mut self) -> Option<Result<(), TareRefusal>> {
+        self.tare.take_answer()
+    }
+
+    /// The zero that serves, drift included: what survives a reset that nobody saw coming.
+    pub fn zero(&self) -> Option<Zero> {
+        self.tare.zero().map(|zero| Zero {
+            pressure: Pressure(zero.pressure.0.saturating_add(self.drift.counts())),
+            ..zero
+        })
+    }
+
+    /// The calibration that serves with the zero that serves, to be stored; nothing while no verified zero is.
+    pub fn calibration_to_store(&self) -> Option<Calibration> {
+        let zero = self.zero().filter(|zero| zero.verified)?;
+        let counts = i64::from(zero.pressure.0) + i64::from(self.temperature.correction());
+        // 2^33 * 1000.
+        let millipascals = (counts * 1000) >> D::PRESSURE_FRACTION_BITS;
+        let zero = Millipascals(i32::try_from(millipascals).ok()?);
+        Some(self.calibration.rezeroed(zero, self.celsius))
+    }
+
+    /// The calibration was stored, and is what the next zero is compared with.
+    pub fn calibrated(&mut self, calibration: Calibration) {
+        self.calibration = calibration;
+        self.standing = self.standing.without(Warnings::CALIBRATION_REFUSED);
+        self.gain = Gain::new(calibration.gain);
+        self.fluid.clear();
+        if let Some(zero) = self.zero() {
+            self.tare.stored(zero.pressure);
+        }
+    }
+
+    /// The calibration that serves.
+    pub fn calibration(&self) -> Calibration {
+        self.calibration
+    }
+
+    /// Whether something presses, as of the last reading.
+    pub fn touch(&self) -> Touch {
+        self.touch
+    }
+
+    /// Wild samples replaced so far.
+    pub fn rejected(&self) -> u32 {
+        self.filter.rejected()
+    }
+
+    /// Someone presses to a known indentation while `read` is reported: whether the fingertip is as firm as its model.
+    pub fn compare(&mut self, read: Nanometres, known: Nanometres) -> bool {
+        self.fluid.compare(read, known)
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::report::{Status, Warnings};
-    use crate::test_design::{Linear, RISE_END};
-    use crate::transducer::Millipascals;
-    use proptest::prelude::*;
-
-    /// A sample at a gauge pressure, of a transducer up to 100 kPa; half a millisecond old.
-    fn at(pascals: f64) -> Sample {
-        let millipascals = (pascals * 1000.0).round() as i32;
-        Sample {
-            pressure: Millipascals(millipascals),
-            headroom: Millipascals(100_000_000 - millipascals),
-            age: 500,
-            ..Sample::default()
-        }
-    }
-
-    /// A path and the millisecond it has come to.
-    struct Bench {
-        pipeline: Pipeline<Linear>,
-        milliseconds: u64,
-    }
-
-    impl Bench {
-        fn new(start_up: StartUp) -> Self {
-            Self {
-                pipeline: Pipeline::new(start_up),
-                milliseconds: 0,
-            }
-        }
-
-        fn step(&mut self, sample: Result<Sample, Fault>) -> Report {
-            self.milliseconds += 1;
-            self.pipeline.step(Microseconds(self.milliseconds * 1000), sample)
-        }
-
-        /// The last of `times` reports of the same block.
-        fn steps(&mut self, times: u32, sample: Result<Sample, Fault>) -> Report {
-            (1..times).for_each(|_| {
-                self.step(sample);
-            });
-            self.step(sample)
-        }
-
-        /// At rest and zeroed, 100 Pa off the design's rest pressure.
-        fn zeroed() -> Self {
-            let mut bench = Self::new(StartUp::Measured);
-            assert_eq!(bench.steps(256, Ok(at(20_100.0))).outcome, Err(Fault::Zeroing));
-            assert_eq!(bench.steps(2, Ok(at(20_100.0))).outcome, Err(Fault::Settling));
-            let rest = bench.step(Ok(at(20_100.0)));
-            assert_eq!(rest.status(), Status::Ok);
-            bench
-        }
-    }
-
-    #[test]
-    fn a_press_is_measured_from_its_zero() {
-        let mut bench = Bench::zeroed();
-        let report = bench.steps(3, Ok(at(21_100.0)));
-        let measurement = report.outcome.expect("a plain press");
-        assert_eq!(report.status(), Status::Ok);
-        // 1000 Pa at 1/256 Pa.
-        assert_eq!(measurement.pressure_rise.0, 256_000);
-        assert_eq!(measurement.force.0, measurement.pressure_rise.0);
-    }
-
-    #[test]
-    fn a_moving_press_is_dated_to_the_middle_of_its_samples() {
-        let mut bench = Bench::zeroed();
-        let start = bench.milliseconds;
-        // 100 Pa a millisecond: the block that ends at m ms averages to 100 (m - 1/2 - start) Pa.
-        for _ in 0..200 {
-            let pascals = 100.0 * ((bench.milliseconds - start) as f64 + 0.5);
-            let report = bench.step(Ok(at(20_100.0 + pascals)));
-            let Ok(measurement) = report.outcome else {
-                continue;
-            };
-            let truth = 100.0 * (report.time.0 as f64 / 1000.0 - start as f64);
-            if truth > 200.0 {
-                let got = f64::from(measurement.pressure_rise.0) / 256.0;
-                assert!((got - truth).abs() < 0.5, "{got} Pa for {truth} Pa");
-            }
-        }
-    }
-
-    #[test]
-    fn a_fault_has_no_values_and_ends_with_its_cause() {
-        let mut bench = Bench::zeroed();
-        assert_eq!(bench.step(Err(Fault::SensorOpen)).outcome, Err(Fault::SensorOpen));
-        assert_eq!(bench.step(Ok(at(25_100.0))).outcome, Err(Fault::Settling));
-        assert_eq!(bench.step(Ok(at(25_100.0))).outcome, Err(Fault::Settling));
-        let report = bench.step(Ok(at(25_100.0)));
-        // The zero from before the fault still holds.
-        let rise = report.outcome.expect("settled").pressure_rise.0;
-        assert!(rise.abs_diff(5000 << 8) <= 64);
-    }
-
-    #[test]
-    fn beyond_the_tables_and_beyond_the_transducer_read_as_lower_bounds() {
-        let mut bench = Bench::zeroed();
-        for pascals in [70_000.0, 101_000.0] {
-            let measurement = bench.steps(3, Ok(at(pascals))).outcome.expect("held at the end");
-            assert_eq!(measurement.warnings, Warnings::SATURATED);
-            assert_eq!(measurement.force.0, RISE_END);
-        }
-    }
-
-    #[test]
-    fn powered_up_while_pressed_is_said_so() {
-        let mut bench = Bench::new(StartUp::Measured);
-        let report = bench.steps(2_100, Ok(at(30_000.0)));
-        assert_eq!(report.status().to_string(), "warning: zero unverified");
-        let rise = report
-            .outcome
-            .expect("the design's rest pressure serves")
-            .pressure_rise
-            .0;
-        assert!(rise.abs_diff(10_000 << 8) <= 64);
-    }
-
-    #[test]
-    fn a_leak_is_said_so() {
-        let mut bench = Bench::zeroed();
-        let report = bench.steps(3, Ok(at(19_000.0)));
-        assert_eq!(report.status().to_string(), "warning: below zero");
-    }
-
-    #[test]
-    fn after_a_watchdog_reset_there_are_readings_at_once_with_an_unverified_zero() {
-        let mut bench = Bench::new(StartUp::Stored);
-        let report = bench.steps(3, Ok(at(25_000.0)));
-        assert_eq!(report.status().to_string(), "warning: zero unverified");
-    }
-
-    proptest! {
-        #[test]
-        fn no_history_panics_and_no_fault_has_values(
-            steps in prop::collection::vec((any::<u64>(), any::<[i32; 2]>(), any::<u32>(), 0..30_usize), 0..600),
-            stored in any::<bool>(),
-        ) {
-            let start_up = if stored { StartUp::Stored } else { StartUp::Measured };
-            let mut pipeline = Pipeline::<Linear>::new(start_up);
-            for (time, [pressure, headroom], age, fault) in steps {
-                let sample = Sample {
-                    pressure: Millipascals(pressure),
-                    headroom: Millipascals(headroom),
-                    age,
-                    ..Sample::default()
-                };
-                let sample = Fault::CODES.get(fault).map_or(Ok(sample), |(fault, _)| Err(*fault));
-                let report = pipeline.step(Microseconds(time), sample);
-                if sample.is_err() {
-                    prop_assert_eq!(report.outcome.err(), sample.err());
-                }
-            }
-        }
-    }
-}
+mod tests;

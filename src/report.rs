@@ -1,5 +1,6 @@
 //! What the fingertip says: values with a status, or the reason why there are none.
 
+use crate::touch::Touch;
 use core::fmt;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
@@ -40,17 +41,26 @@ pub enum Fault {
     SensorReset,
     /// The transducer gave what it cannot have measured.
     SensorImplausible,
+    /// The transducer gives the same number for longer than its noise allows.
+    Stuck,
+    /// The pressure changed faster than a fingertip can make it.
+    Jump,
+    /// The chip was reset again and again: it measures nothing until power is switched off and on.
+    ResetLoop,
 }
 
 impl Fault {
     /// Every fault with its code in telemetry; 0 is not used, so that a cleared word names none.
-    pub const CODES: [(Self, u8); 15] = [
+    pub const CODES: [(Self, u8); 18] = [
         (Self::SensorOpen, 1),
         (Self::SensorShort, 2),
         (Self::Zeroing, 3),
         (Self::Settling, 4),
         (Self::SamplesLost, 5),
         (Self::ConverterStalled, 6),
+        (Self::Stuck, 7),
+        (Self::Jump, 8),
+        (Self::ResetLoop, 9),
         (Self::SensorAbsent, 16),
         (Self::BusFault, 17),
         (Self::WrongSensor, 18),
@@ -80,6 +90,9 @@ impl Fault {
             Self::SensorSaturated => "sensor saturated",
             Self::SensorReset => "sensor reset",
             Self::SensorImplausible => "sensor implausible",
+            Self::Stuck => "stuck",
+            Self::Jump => "jump",
+            Self::ResetLoop => "reset loop",
         }
     }
 }
@@ -106,13 +119,35 @@ impl Warnings {
     /// The pressure is below the zero by more than noise: a leak, or a zero taken while pressed. Force and
     /// indentation are 0 but too low by the unknown offset.
     pub const BELOW_ZERO: Self = Self(4);
+    /// The rest pressure fell further than drift explains: fluid is lost, and the tables are for more of it. Latched.
+    pub const LEAK_SUSPECTED: Self = Self(8);
+    /// The fingertip was softer than its model at a known indentation: air in the fluid. Latched.
+    pub const BUBBLE_SUSPECTED: Self = Self(16);
+    /// A stored calibration is there and cannot be used (another design's, or damaged): the design's values serve.
+    pub const CALIBRATION_REFUSED: Self = Self(32);
+    /// The zero could not be followed for so long that drift may pass for a touch, or hide one.
+    pub const ZERO_AGED: Self = Self(64);
+    /// The transducer's temperature changed in contact by so much that what its held compensation misses may pass
+    /// for a touch.
+    pub const TEMPERATURE: Self = Self(128);
+    /// The crystal failed: time comes from the chip's own oscillator and is a percent off.
+    pub const CLOCK: Self = Self(256);
 
     /// Every reason with its word, the gravest first.
-    const REASONS: [(Self, &'static str); 3] = [
+    const REASONS: [(Self, &'static str); 9] = [
         (Self::SATURATED, "saturated"),
+        (Self::LEAK_SUSPECTED, "leak suspected"),
+        (Self::BUBBLE_SUSPECTED, "bubble suspected"),
         (Self::BELOW_ZERO, "below zero"),
         (Self::ZERO_UNVERIFIED, "zero unverified"),
+        (Self::CALIBRATION_REFUSED, "calibration refused"),
+        (Self::ZERO_AGED, "zero aged"),
+        (Self::TEMPERATURE, "temperature"),
+        (Self::CLOCK, "clock"),
     ];
+
+    /// Every warning at once.
+    pub const ALL: Self = Self(511);
 
     /// The bits, as telemetry carries them.
     pub const fn bits(self) -> u16 {
@@ -121,14 +156,19 @@ impl Warnings {
 
     /// The warnings of a word in telemetry, or nothing when it has a bit that no warning owns.
     pub fn from_bits(bits: u16) -> Option<Self> {
-        let known = Self::REASONS.iter().fold(0, |all, (one, _)| all | one.0);
-        (bits & !known == 0).then_some(Self(bits))
+        (bits & !Self::ALL.0 == 0).then_some(Self(bits))
     }
 
     /// These and those.
     #[must_use]
     pub const fn and(self, those: Self) -> Self {
         Self(self.0 | those.0)
+    }
+
+    /// These, but not those.
+    #[must_use]
+    pub const fn without(self, those: Self) -> Self {
+        Self(self.0 & !those.0)
     }
 
     /// These when `condition`, else none.
@@ -158,6 +198,17 @@ impl fmt::Display for Warnings {
 }
 
 /// Force and indentation at a pressure rise, with what qualifies them.
+///
+/// | status | what the fields mean |
+/// |---|---|
+/// | ok | all hold, within their 1-sigma |
+/// | warning: saturated | force and indentation are lower bounds, and so is the rise beyond the transducer's range |
+/// | warning: below zero | force and indentation are 0; a touch may be hidden |
+/// | warning: zero unverified | all may be offset by an unknown rise, which the 1-sigma allows for; never "untouched" |
+/// | warning: leak suspected, bubble suspected | rise and touch hold; force and indentation are for more liquid than there is |
+/// | warning: calibration refused, zero aged, temperature | all hold within their 1-sigma, which is wider than it need be |
+/// | warning: clock | all hold; times are a percent off |
+/// | fault | there is no measurement: no field, touch included, says anything |
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Measurement {
     /// Pressure over the zero, filtered.
@@ -166,8 +217,24 @@ pub struct Measurement {
     pub force: Micronewtons,
     /// Indentation of its pole.
     pub indentation: Nanometres,
-    /// What qualifies the three.
+    /// One standard deviation of the three: the transducer's noise and resolution, and what drift may have done
+    /// since the zero was last known. What the model leaves out is not in it.
+    pub sigma: Sigma,
+    /// Whether something presses.
+    pub touch: Touch,
+    /// What qualifies the others.
     pub warnings: Warnings,
+}
+
+/// One standard deviation of each value, >= 0; the end of the word also stands for more.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Sigma {
+    /// Of the pressure rise.
+    pub pressure_rise: PressureRise,
+    /// Of the force.
+    pub force: Micronewtons,
+    /// Of the indentation.
+    pub indentation: Nanometres,
 }
 
 /// One report of the signal path.
@@ -249,9 +316,20 @@ mod tests {
     }
 
     #[test]
+    fn every_fault_has_words_of_its_own() {
+        for (i, (fault, _)) in Fault::CODES.iter().enumerate() {
+            for (other, _) in &Fault::CODES[..i] {
+                assert!(fault != other && fault.reason() != other.reason());
+            }
+        }
+    }
+
+    #[test]
     fn unknown_warning_bits_are_not_believed() {
         assert_eq!(Warnings::from_bits(7).map(Warnings::bits), Some(7));
-        assert_eq!(Warnings::from_bits(8), None);
+        assert_eq!(Warnings::from_bits(512), None);
+        let named = Warnings::REASONS.iter().fold(0, |all, (one, _)| all | one.0);
+        assert_eq!(Warnings::ALL.bits(), named);
     }
 
     #[test]

@@ -1,77 +1,27 @@
-//! Frames on the wire: one per report, and a hello once a second.
-//!
-//! A frame is a body, its CRC, both stuffed with COBS so that no byte of them is zero, and one zero byte at
-//! the end. A reader that joins in the middle, or meets noise, is in step again after the next zero.
-//!
-//! All numbers are little-endian; signed ones are two's complement. Every body opens alike:
-//!
-//! | offset | bytes | field |
-//! |---|---|---|
-//! | 0 | 1 | protocol version, 1 |
-//! | 1 | 1 | kind: 1 reading, 2 fault, 3 hello |
-//! | 2 | 2 | sequence number; one counter over all kinds, wraps from 65535 to 0. A gap is a lost frame |
-//! | 4 | 8 | time since reset, microseconds. Of a reading or fault: the middle of its samples |
-//!
-//! Kind 1, a reading (27 bytes; on the wire 31 with CRC, COBS and the zero):
-//!
-//! | offset | bytes | field |
-//! |---|---|---|
-//! | 12 | 2 | warnings, one bit each: 0 saturated (force and indentation are lower bounds), 1 zero unverified, 2 below zero; none set: the reading is ok |
-//! | 14 | 1 | `k` of the pressure rise's unit, 0 to 31 |
-//! | 15 | 4 | pressure rise, signed, counts of `1 / 2^k` pascal |
-//! | 19 | 4 | force, signed, micronewtons |
-//! | 23 | 4 | indentation, signed, nanometres |
-//!
-//! Kind 2, a fault (13 bytes; on the wire 17): no reading, because
-//!
-//! | offset | bytes | field |
-//! |---|---|---|
-//! | 12 | 1 | 1 sensor open, 2 sensor short, 3 zeroing, 4 settling, 5 samples lost, 6 converter stalled; of a transducer on a bus: 16 sensor absent, 17 bus fault, 18 wrong sensor, 19 sensor calibration, 20 sensor busy, 21 sensor memory, 22 sensor saturated, 23 sensor reset, 24 sensor implausible |
-//!
-//! Kind 3, hello (36 bytes; on the wire 40):
-//!
-//! | offset | bytes | field |
-//! |---|---|---|
-//! | 12 | 3 | version of the firmware: major, minor, patch |
-//! | 15 | 1 | why the chip was reset last: 0 unknown, 1 power-on, 2 pin, 3 software, 4 watchdog, 5 brown-out, 6 low power |
-//! | 16 | 8 | hash of the design whose tables are in the image |
-//! | 24 | 4 | time from one report to the next, microseconds |
-//! | 28 | 4 | blocks of samples lost since reset |
-//! | 32 | 4 | frames dropped since reset because the line was not free |
-//!
-//! The two bytes after the body are its CRC-16/IBM-3740 (polynomial 0x1021, initial value 0xFFFF, not
-//! reflected, no final exclusive-or; check value 0x29B1), low byte first. Python has it as
-//! `binascii.crc_hqx(body, 0xFFFF)`.
+//! What the board says: a report each period, a hello once a second, an answer to each command. `PROTOCOL.md` beside
+//! this file has the layout of every body.
 //!
 //! A frame of another version, an unknown kind, code or length is refused as a whole: none of it is a number.
 
-use crate::report::{Fault, Measurement, Microseconds, Report, Warnings};
+use crate::command::{CommandKind, Outcome};
+use crate::report::{Fault, Measurement, Microseconds, Report, Sigma, Warnings};
+use crate::touch::Touch;
+pub use crate::wire::{DecodeError, Encoded, MAXIMUM_FRAME, PROTOCOL_VERSION};
+use crate::wire::{Deframer, Reader, Writer, code_of, named_by, unstuff};
 use core::fmt;
-use crc::{CRC_16_IBM_3740, Crc};
-use heapless::Vec;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-/// Version of the layout above.
-pub const PROTOCOL_VERSION: u8 = 1;
-
-const HEADER: usize = 12;
-const READING: usize = HEADER + 15;
+const HEADER: usize = 14;
+const READING: usize = HEADER + 28;
 const FAULT: usize = HEADER + 1;
-const HELLO: usize = HEADER + 24;
-const CRC_BYTES: usize = 2;
-
-/// Longest body with its CRC.
-const MAXIMUM_PLAIN: usize = HELLO + CRC_BYTES;
-
-/// Longest frame on the wire: COBS adds one byte to anything below 255, the zero is one more.
-pub const MAXIMUM_FRAME: usize = MAXIMUM_PLAIN + 2;
-
-const CHECK: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
+const HELLO: usize = HEADER + 48;
+const ANSWER: usize = HEADER + 6;
 
 /// Why the chip was reset last.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub enum ResetCause {
     /// The chip does not say.
+    #[default]
     Unknown,
     /// Power was switched on.
     PowerOn,
@@ -88,7 +38,8 @@ pub enum ResetCause {
 }
 
 impl ResetCause {
-    const CODES: [(Self, u8); 7] = [
+    /// Every cause with its code in telemetry.
+    pub const CODES: [(Self, u8); 7] = [
         (Self::Unknown, 0),
         (Self::PowerOn, 1),
         (Self::Pin, 2),
@@ -113,8 +64,62 @@ impl fmt::Display for ResetCause {
     }
 }
 
-/// Who is speaking, once a second.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+/// What became of the stored calibration.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Stored {
+    /// None was ever stored.
+    #[default]
+    None,
+    /// It serves.
+    Serves,
+    /// It is another design's.
+    OtherDesign,
+    /// There is something, and none of it is whole.
+    Damaged,
+    /// The memory cannot be read.
+    Unreadable,
+}
+
+impl Stored {
+    /// Every state with its code in telemetry.
+    pub const CODES: [(Self, u8); 5] = [
+        (Self::None, 0),
+        (Self::Serves, 1),
+        (Self::OtherDesign, 2),
+        (Self::Damaged, 3),
+        (Self::Unreadable, 4),
+    ];
+}
+
+/// What ended the run before this one.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum LastFault {
+    /// Nothing that left a trace.
+    #[default]
+    None,
+    /// A task did not report in time: its number.
+    Late,
+    /// The code panicked: the line.
+    Panic,
+    /// The core met what it cannot execute: the address.
+    HardFault,
+    /// The watchdog was not fed, and no task was seen to be late: what feeds it hung.
+    Hang,
+}
+
+impl LastFault {
+    /// Every kind with its code in telemetry.
+    pub const CODES: [(Self, u8); 5] = [
+        (Self::None, 0),
+        (Self::Late, 1),
+        (Self::Panic, 2),
+        (Self::HardFault, 3),
+        (Self::Hang, 4),
+    ];
+}
+
+/// Who is speaking, once a second and when asked.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Hello {
     /// When.
     pub time: Microseconds,
@@ -124,12 +129,45 @@ pub struct Hello {
     pub reset_cause: ResetCause,
     /// Hash of the design whose tables are in the image.
     pub design_hash: u64,
-    /// From one report to the next, microseconds.
+    /// Version of those tables' layout.
+    pub table_version: u32,
+    /// From one report on the wire to the next, microseconds.
     pub report_period: u32,
-    /// Blocks of samples lost since reset.
-    pub blocks_lost: u32,
-    /// Frames dropped since reset.
+    /// What became of the stored calibration.
+    pub stored: Stored,
+    /// What ended the run before this one.
+    pub last_fault: LastFault,
+    /// Resets in a row that nobody asked for.
+    pub resets_in_a_row: u8,
+    /// Times the bus or the converter was freed, the last 256.
+    pub recoveries: u8,
+    /// Which task, line or address, as `last_fault` says.
+    pub last_fault_detail: u32,
+    /// Number of the stored calibration.
+    pub stored_sequence: u32,
+    /// Samples lost since reset.
+    pub samples_lost: u32,
+    /// Wild samples replaced since reset.
+    pub samples_rejected: u32,
+    /// Frames dropped since reset because the line was not free.
     pub frames_dropped: u32,
+    /// What came over the line since reset and was no command: frames, and stretches that were lost.
+    pub commands_refused: u32,
+}
+
+/// What came of a command.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Answer {
+    /// When.
+    pub time: Microseconds,
+    /// Which command.
+    pub command: CommandKind,
+    /// Its sequence number, as it came.
+    pub command_sequence: u16,
+    /// What came of it.
+    pub outcome: Outcome,
+    /// Of a self-test: what it found, one bit each.
+    pub findings: u16,
 }
 
 /// What one frame says.
@@ -144,6 +182,8 @@ pub enum Message {
     },
     /// Who is speaking.
     Hello(Hello),
+    /// What came of a command.
+    Answer(Answer),
 }
 
 /// A message and its place in the stream.
@@ -151,92 +191,79 @@ pub enum Message {
 pub struct Frame {
     /// Counts frames, wraps.
     pub sequence: u16,
+    /// Frames dropped since reset, wraps.
+    pub dropped: u16,
     /// What it says.
     pub message: Message,
 }
 
-/// Why bytes are not a frame.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum DecodeError {
-    /// The stuffing is broken, or there are more bytes than any frame has.
-    Stuffing,
-    /// Fewer bytes than the shortest frame has.
-    Short,
-    /// The check value does not fit the bytes.
-    Crc,
-    /// Another version of the layout.
-    Version(u8),
-    /// No such kind.
-    Kind(u8),
-    /// The bytes are not as many as the kind has.
-    Length,
-    /// A field holds what the layout does not allow; its offset.
-    Field(u8),
-}
-
-impl fmt::Display for DecodeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Stuffing => f.write_str("the COBS stuffing is broken or the frame is too long"),
-            Self::Short => f.write_str("the frame is too short"),
-            Self::Crc => f.write_str("the CRC does not fit"),
-            Self::Version(found) => {
-                write!(
-                    f,
-                    "protocol version {found}, this reader knows {PROTOCOL_VERSION}"
-                )
-            }
-            Self::Kind(found) => write!(f, "unknown kind of frame {found}"),
-            Self::Length => f.write_str("the length does not fit the kind of frame"),
-            Self::Field(offset) => write!(f, "the field at offset {offset} holds no allowed value"),
-        }
-    }
-}
-
-impl core::error::Error for DecodeError {}
-
-/// Bytes of one frame, the closing zero included.
-pub type Encoded = Vec<u8, MAXIMUM_FRAME>;
-
 /// The bytes of a frame, ready for the wire.
 pub fn encode(frame: &Frame) -> Encoded {
-    let mut body = Writer(Vec::new());
+    let mut body = Writer::new();
+    let mut header = |kind: u8, time: Microseconds| {
+        body.put([PROTOCOL_VERSION, kind]);
+        body.put(frame.sequence.to_le_bytes());
+        body.put(time.0.to_le_bytes());
+        body.put(frame.dropped.to_le_bytes());
+    };
     match &frame.message {
         Message::Report {
             report,
             pressure_fraction_bits,
         } => match report.outcome {
             Ok(measurement) => {
-                body.header(1, frame.sequence, report.time);
+                header(1, report.time);
                 body.put(measurement.warnings.bits().to_le_bytes());
-                body.put([*pressure_fraction_bits]);
+                body.put([*pressure_fraction_bits, code_of(&Touch::CODES, measurement.touch)]);
                 body.put(measurement.pressure_rise.0.to_le_bytes());
                 body.put(measurement.force.0.to_le_bytes());
                 body.put(measurement.indentation.0.to_le_bytes());
+                body.put(measurement.sigma.pressure_rise.0.to_le_bytes());
+                body.put(measurement.sigma.force.0.to_le_bytes());
+                body.put(measurement.sigma.indentation.0.to_le_bytes());
             }
             Err(fault) => {
-                body.header(2, frame.sequence, report.time);
+                header(2, report.time);
                 body.put([code_of(&Fault::CODES, fault)]);
             }
         },
         Message::Hello(hello) => {
-            body.header(3, frame.sequence, hello.time);
-            body.put(hello.firmware);
-            body.put([code_of(&ResetCause::CODES, hello.reset_cause)]);
-            body.put(hello.design_hash.to_le_bytes());
-            body.put(hello.report_period.to_le_bytes());
-            body.put(hello.blocks_lost.to_le_bytes());
-            body.put(hello.frames_dropped.to_le_bytes());
+            header(3, hello.time);
+            write_hello(&mut body, hello);
+        }
+        Message::Answer(answer) => {
+            header(4, answer.time);
+            body.put([answer.command.code()]);
+            body.put(answer.command_sequence.to_le_bytes());
+            body.put([code_of(&Outcome::CODES, answer.outcome)]);
+            body.put(answer.findings.to_le_bytes());
         }
     }
-    body.put(CHECK.checksum(&body.0).to_le_bytes());
+    body.finish()
+}
 
-    let mut bytes = [0; MAXIMUM_FRAME];
-    // The destination has room for the longest frame, so this cannot fail; a zero alone would be an empty frame.
-    let stuffed = cobs::try_encode(&body.0, &mut bytes[..MAXIMUM_FRAME - 1]).unwrap_or(0);
-    let mut encoded = Encoded::from_array(bytes);
-    encoded.truncate(stuffed + 1);
-    encoded
+fn write_hello(body: &mut Writer, hello: &Hello) {
+    body.put(hello.firmware);
+    body.put([code_of(&ResetCause::CODES, hello.reset_cause)]);
+    body.put(hello.design_hash.to_le_bytes());
+    body.put(hello.table_version.to_le_bytes());
+    body.put(hello.report_period.to_le_bytes());
+    body.put([
+        code_of(&Stored::CODES, hello.stored),
+        code_of(&LastFault::CODES, hello.last_fault),
+        hello.resets_in_a_row,
+        hello.recoveries,
+    ]);
+    for number in [
+        hello.last_fault_detail,
+        hello.stored_sequence,
+        hello.samples_lost,
+        hello.samples_rejected,
+        hello.frames_dropped,
+        hello.commands_refused,
+    ] {
+        body.put(number.to_le_bytes());
+    }
 }
 
 /// The frame in the bytes between two zeros (the zeros themselves left out).
@@ -244,25 +271,13 @@ pub fn encode(frame: &Frame) -> Encoded {
 /// # Errors
 /// [`DecodeError`] for anything that [`encode`] would not have written.
 pub fn decode(stuffed: &[u8]) -> Result<Frame, DecodeError> {
-    let mut plain = [0; MAXIMUM_PLAIN];
-    if stuffed.contains(&0) {
-        return Err(DecodeError::Stuffing);
-    }
-    let length = cobs::decode(stuffed, &mut plain)
-        .map_err(|_| DecodeError::Stuffing)?
-        .frame_size();
-    let plain = plain.get(..length).ok_or(DecodeError::Stuffing)?;
-    let (body, check) = plain
-        .split_last_chunk::<CRC_BYTES>()
-        .filter(|(body, _)| body.len() >= HEADER)
-        .ok_or(DecodeError::Short)?;
-    if CHECK.checksum(body) != u16::from_le_bytes(*check) {
-        return Err(DecodeError::Crc);
-    }
-    read_body(body)
+    read_body(&unstuff(stuffed)?)
 }
 
 fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
+    if body.len() < HEADER {
+        return Err(DecodeError::Short);
+    }
     let mut fields = Reader(body);
     let [version, kind] = fields.take()?;
     if version != PROTOCOL_VERSION {
@@ -270,10 +285,12 @@ fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
     }
     let sequence = u16::from_le_bytes(fields.take()?);
     let time = Microseconds(u64::from_le_bytes(fields.take()?));
+    let dropped = u16::from_le_bytes(fields.take()?);
     let expected = match kind {
         1 => READING,
         2 => FAULT,
         3 => HELLO,
+        4 => ANSWER,
         _ => return Err(DecodeError::Kind(kind)),
     };
     if body.len() != expected {
@@ -281,18 +298,7 @@ fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
     }
     let message = match kind {
         1 => {
-            let bits = u16::from_le_bytes(fields.take()?);
-            let warnings = Warnings::from_bits(bits).ok_or(DecodeError::Field(12))?;
-            let [pressure_fraction_bits] = fields.take()?;
-            if pressure_fraction_bits > 31 {
-                return Err(DecodeError::Field(14));
-            }
-            let measurement = Measurement {
-                pressure_rise: PressureRise(i32::from_le_bytes(fields.take()?)),
-                force: Micronewtons(i32::from_le_bytes(fields.take()?)),
-                indentation: Nanometres(i32::from_le_bytes(fields.take()?)),
-                warnings,
-            };
+            let (measurement, pressure_fraction_bits) = read_measurement(&mut fields)?;
             Message::Report {
                 report: Report {
                     time,
@@ -303,7 +309,7 @@ fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
         }
         2 => {
             let [code] = fields.take()?;
-            let fault = named_by(&Fault::CODES, code).ok_or(DecodeError::Field(12))?;
+            let fault = named_by(&Fault::CODES, code).ok_or(DecodeError::Field(14))?;
             Message::Report {
                 report: Report {
                     time,
@@ -312,89 +318,88 @@ fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
                 pressure_fraction_bits: 0,
             }
         }
+        3 => Message::Hello(read_hello(&mut fields, time)?),
         _ => {
-            let firmware = fields.take()?;
-            let [code] = fields.take()?;
-            let reset_cause = named_by(&ResetCause::CODES, code).ok_or(DecodeError::Field(15))?;
-            Message::Hello(Hello {
+            let [command] = fields.take()?;
+            let command_sequence = u16::from_le_bytes(fields.take()?);
+            let [outcome] = fields.take()?;
+            Message::Answer(Answer {
                 time,
-                firmware,
-                reset_cause,
-                design_hash: u64::from_le_bytes(fields.take()?),
-                report_period: u32::from_le_bytes(fields.take()?),
-                blocks_lost: u32::from_le_bytes(fields.take()?),
-                frames_dropped: u32::from_le_bytes(fields.take()?),
+                command: CommandKind::from_code(command).ok_or(DecodeError::Field(14))?,
+                command_sequence,
+                outcome: named_by(&Outcome::CODES, outcome).ok_or(DecodeError::Field(17))?,
+                findings: u16::from_le_bytes(fields.take()?),
             })
         }
     };
-    Ok(Frame { sequence, message })
+    Ok(Frame {
+        sequence,
+        dropped,
+        message,
+    })
+}
+
+fn read_measurement(fields: &mut Reader<'_>) -> Result<(Measurement, u8), DecodeError> {
+    let bits = u16::from_le_bytes(fields.take()?);
+    let warnings = Warnings::from_bits(bits).ok_or(DecodeError::Field(14))?;
+    let [pressure_fraction_bits, touch] = fields.take()?;
+    if pressure_fraction_bits > 31 {
+        return Err(DecodeError::Field(16));
+    }
+    let touch = named_by(&Touch::CODES, touch).ok_or(DecodeError::Field(17))?;
+    let mut number = || fields.take().map(i32::from_le_bytes);
+    let measurement = Measurement {
+        pressure_rise: PressureRise(number()?),
+        force: Micronewtons(number()?),
+        indentation: Nanometres(number()?),
+        sigma: Sigma {
+            pressure_rise: PressureRise(number()?),
+            force: Micronewtons(number()?),
+            indentation: Nanometres(number()?),
+        },
+        touch,
+        warnings,
+    };
+    Ok((measurement, pressure_fraction_bits))
+}
+
+fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<Hello, DecodeError> {
+    let firmware = fields.take()?;
+    let [reset_cause] = fields.take()?;
+    let design_hash = u64::from_le_bytes(fields.take()?);
+    let table_version = u32::from_le_bytes(fields.take()?);
+    let report_period = u32::from_le_bytes(fields.take()?);
+    let [stored, last_fault, resets_in_a_row, recoveries] = fields.take()?;
+    let mut number = || fields.take().map(u32::from_le_bytes);
+    Ok(Hello {
+        time,
+        firmware,
+        reset_cause: named_by(&ResetCause::CODES, reset_cause).ok_or(DecodeError::Field(17))?,
+        design_hash,
+        table_version,
+        report_period,
+        stored: named_by(&Stored::CODES, stored).ok_or(DecodeError::Field(34))?,
+        last_fault: named_by(&LastFault::CODES, last_fault).ok_or(DecodeError::Field(35))?,
+        resets_in_a_row,
+        recoveries,
+        last_fault_detail: number()?,
+        stored_sequence: number()?,
+        samples_lost: number()?,
+        samples_rejected: number()?,
+        frames_dropped: number()?,
+        commands_refused: number()?,
+    })
 }
 
 /// Frames out of a stream of bytes that come one at a time.
 #[derive(Debug, Default)]
-pub struct Decoder {
-    bytes: Vec<u8, MAXIMUM_FRAME>,
-    /// More bytes came without a zero than any frame has.
-    overflowed: bool,
-}
+pub struct Decoder(Deframer);
 
 impl Decoder {
     /// Takes the next byte; at the zero that closes a frame, what the frame says. Zeros alone say nothing.
     pub fn push(&mut self, byte: u8) -> Option<Result<Frame, DecodeError>> {
-        if byte != 0 {
-            self.overflowed |= self.bytes.push(byte).is_err();
-            return None;
-        }
-        let said = if core::mem::take(&mut self.overflowed) {
-            Some(Err(DecodeError::Stuffing))
-        } else if self.bytes.is_empty() {
-            None
-        } else {
-            Some(decode(&self.bytes))
-        };
-        self.bytes.clear();
-        said
-    }
-}
-
-fn code_of<T: Copy + PartialEq>(codes: &[(T, u8)], wanted: T) -> u8 {
-    codes
-        .iter()
-        .find(|(one, _)| *one == wanted)
-        .map_or(0, |(_, code)| *code)
-}
-
-fn named_by<T: Copy>(codes: &[(T, u8)], wanted: u8) -> Option<T> {
-    codes
-        .iter()
-        .find(|(_, code)| *code == wanted)
-        .map(|(one, _)| *one)
-}
-
-/// Fields put one after the other.
-struct Writer(Vec<u8, MAXIMUM_PLAIN>);
-
-impl Writer {
-    fn put<const N: usize>(&mut self, field: [u8; N]) {
-        // MAXIMUM_PLAIN holds the longest body: nothing is ever left out.
-        let _ = self.0.extend_from_slice(&field);
-    }
-
-    fn header(&mut self, kind: u8, sequence: u16, time: Microseconds) {
-        self.put([PROTOCOL_VERSION, kind]);
-        self.put(sequence.to_le_bytes());
-        self.put(time.0.to_le_bytes());
-    }
-}
-
-/// Fields taken one after the other.
-struct Reader<'a>(&'a [u8]);
-
-impl Reader<'_> {
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], DecodeError> {
-        let (field, rest) = self.0.split_first_chunk::<N>().ok_or(DecodeError::Length)?;
-        self.0 = rest;
-        Ok(*field)
+        let body = self.0.push(byte)?;
+        Some(body.and_then(|body| read_body(&body)))
     }
 }
 

@@ -136,6 +136,7 @@ mod tests {
     use super::*;
     use crate::plant::tests::{closed_form, press, ramp};
     use fingertip::report::Fault;
+    use fingertip::touch::Touch;
 
     /// A row whose force is off by `share`, with a pressure that is off by `pascals`.
     fn row(rise: f64, share: f64, pascals: f64) -> Row {
@@ -149,6 +150,8 @@ mod tests {
                 force: truth.force * (1.0 + share),
                 ..truth
             }),
+            sigma: None,
+            touch: Touch::Touched,
         }
     }
 

@@ -356,6 +356,7 @@ mod tests {
     use crate::noise::Noise;
     use crate::plant::tests::{press, ramp};
     use fingertip::report::{Fault, Warnings};
+    use fingertip::touch::Touch;
 
     fn rows() -> (Vec<Row>, Contact) {
         let plant = press(8e3, ramp());
@@ -374,6 +375,8 @@ mod tests {
                 truth,
                 status,
                 reported: (ms >= 80).then(|| plant.curve().at_pressure_rise(rise)),
+                sigma: None,
+                touch: Touch::Unknown,
             }
         });
         (rows.collect(), plant.full_scale())

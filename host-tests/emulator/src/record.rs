@@ -3,7 +3,8 @@
 use crate::bench::{Listener, Moment};
 use crate::plant::Plant;
 use fingertip::report::{Report, Status};
-use fingertip::telemetry::{DecodeError, Decoder, Frame, Hello, Message};
+use fingertip::telemetry::{Answer, DecodeError, Decoder, Frame, Hello, Message};
+use fingertip::touch::Touch;
 use model_tables::curve::Contact;
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -29,6 +30,10 @@ pub struct Row {
     pub status: Status,
     /// What it reports, unless it reports a fault.
     pub reported: Option<Contact>,
+    /// One standard deviation of each, as it reports it.
+    pub sigma: Option<Contact>,
+    /// Whether it feels a touch.
+    pub touch: Touch,
 }
 
 /// Everything that came over the wire in one run.
@@ -38,6 +43,8 @@ pub struct Record {
     pub rows: Vec<Row>,
     /// The greetings in order.
     pub hellos: Vec<Hello>,
+    /// What came of commands, in order.
+    pub answers: Vec<Answer>,
     /// What did not read as a frame.
     pub broken: Vec<DecodeError>,
     /// Frames that the sequence numbers say are missing.
@@ -83,11 +90,16 @@ impl<F: FnMut(&Row) + Send + 'static> Recorder<F> {
                     truth: plant.truth(time),
                     status: report.status(),
                     reported: contact(report, *pressure_fraction_bits),
+                    sigma: sigma(report, *pressure_fraction_bits),
+                    touch: report
+                        .outcome
+                        .map_or(Touch::Unknown, |measurement| measurement.touch),
                 };
                 (self.on_row)(&row);
                 self.record.rows.push(row);
             }
             Message::Hello(hello) => self.record.hellos.push(*hello),
+            Message::Answer(answer) => self.record.answers.push(*answer),
         }
     }
 }
@@ -112,6 +124,16 @@ fn contact(report: &Report, pressure_fraction_bits: u8) -> Option<Contact> {
             .pascals(u32::from(pressure_fraction_bits)),
         force: measurement.force.newtons(),
         indentation: measurement.indentation.metres(),
+    })
+}
+
+/// One standard deviation of those values.
+fn sigma(report: &Report, pressure_fraction_bits: u8) -> Option<Contact> {
+    let sigma = report.outcome.ok()?.sigma;
+    Some(Contact {
+        pressure_rise: sigma.pressure_rise.pascals(u32::from(pressure_fraction_bits)),
+        force: sigma.force.newtons(),
+        indentation: sigma.indentation.metres(),
     })
 }
 
@@ -159,13 +181,15 @@ pub fn write_csv(rows: &[Row], to: impl Write) -> csv::Result<()> {
 mod tests {
     use super::*;
     use crate::plant::tests::{press, ramp};
-    use fingertip::report::{Fault, Measurement, Microseconds, Warnings};
+    use fingertip::report::{Fault, Measurement, Microseconds, Sigma, Warnings};
     use fingertip::telemetry::encode;
+    use fingertip::touch::Touch;
     use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
     fn frame(sequence: u16, time: u64, outcome: Result<Measurement, Fault>) -> Frame {
         Frame {
             sequence,
+            dropped: 0,
             message: Message::Report {
                 report: Report {
                     time: Microseconds(time),
@@ -195,6 +219,12 @@ mod tests {
         pressure_rise: PressureRise(256_128),
         force: Micronewtons(1_234_567),
         indentation: Nanometres(1_500_001),
+        sigma: Sigma {
+            pressure_rise: PressureRise(742),
+            force: Micronewtons(900),
+            indentation: Nanometres(1_200),
+        },
+        touch: Touch::Touched,
         warnings: Warnings::NONE,
     };
 

@@ -31,7 +31,7 @@ impl Listener for Readings {
                         .push(report.outcome.expect("the sweep has no faults"));
                     ControlFlow::Continue(())
                 }
-                Message::Hello(_) => ControlFlow::Break(()),
+                Message::Hello(_) | Message::Answer(_) => ControlFlow::Break(()),
             },
             Some(Err(error)) => panic!("a broken frame: {error}"),
             None => ControlFlow::Continue(()),

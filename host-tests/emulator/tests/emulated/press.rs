@@ -86,7 +86,7 @@ fn it_says_which_design_and_why_it_started() {
     let hello = run.record.hellos.first().expect("it greets once a second");
     assert_eq!(hello.design_hash, design().hash());
     assert_eq!(hello.reset_cause.to_string(), "power-on");
-    assert_eq!((hello.blocks_lost, hello.frames_dropped), (0, 0));
+    assert_eq!((hello.samples_lost, hello.frames_dropped), (0, 0));
 }
 
 #[test]

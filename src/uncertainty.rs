@@ -1,0 +1,123 @@
+//! One standard deviation of the pressure rise, and through the tables of force and indentation.
+
+use crate::counts::BLOCK_LENGTH;
+use crate::design::Design;
+use crate::pressure::Pressure;
+use crate::report::{Measurement, Sigma};
+use model_tables::constants::{DesignConstants, TransducerKind};
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
+
+/// What is uncertain in a pressure rise, whatever happens: counts.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Uncertainty {
+    /// Noise after averaging and filtering, and resolution.
+    noise: i32,
+    /// An unverified zero, uniform within the bounds of any zero.
+    unverified: i32,
+}
+
+impl Uncertainty {
+    /// For a design; `far` bounds every zero.
+    pub const fn of(constants: &DesignConstants, fraction_bits: u32, far: i32) -> Self {
+        let transducer = &constants.transducer;
+        let averaged = match transducer.kind {
+            TransducerKind::Ratiometric { .. } => BLOCK_LENGTH as i64,
+            _ => 1,
+        };
+        let (noise, resolution) = (transducer.noise as i64, transducer.resolution as i64);
+        // The kernel 1-2-1 over 4 leaves 6/16 of the variance; steps of the resolution have 1/12. Below 2^63.
+        let variance = noise * noise / averaged / 16 * 6 + resolution * resolution / 12;
+        Self {
+            noise: Pressure::from_millipascals(variance.isqrt(), fraction_bits).0,
+            // 1 / sqrt 3.
+            unverified: (far as i64 * 577 / 1000) as i32,
+        }
+    }
+
+    /// Of a rise, with what drift and temperature may have added, counts >= 0.
+    #[inline]
+    pub fn rise(&self, verified: bool, drift: i32, temperature: i32) -> PressureRise {
+        let mut sigma = hypotenuse(self.noise, drift);
+        if temperature != 0 {
+            sigma = hypotenuse(sigma, temperature);
+        }
+        if !verified {
+            sigma = hypotenuse(sigma, self.unverified);
+        }
+        PressureRise(sigma)
+    }
+}
+
+/// `sqrt(a^2 + b^2)` to 3 %, for `a, b >= 0`: the larger one, or 7/8 of it and half the other.
+#[inline]
+fn hypotenuse(a: i32, b: i32) -> i32 {
+    let (small, large) = if a < b { (a, b) } else { (b, a) };
+    large.max((large - (large >> 3)).saturating_add(small >> 1))
+}
+
+/// The same through the tables: what they give one deviation further on, or back at their end.
+#[inline]
+pub fn through_tables<D: Design>(reading: &Measurement, sigma: PressureRise) -> Sigma {
+    let rise = reading.pressure_rise;
+    let mut other = D::lookup(PressureRise(rise.0.max(0).saturating_add(sigma.0)));
+    if other.saturated {
+        other = D::lookup(PressureRise(rise.0.saturating_sub(sigma.0)));
+    }
+    Sigma {
+        pressure_rise: sigma,
+        force: Micronewtons(other.force.0.saturating_sub(reading.force.0).saturating_abs()),
+        indentation: Nanometres(
+            other
+                .indentation
+                .0
+                .saturating_sub(reading.indentation.0)
+                .saturating_abs(),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::contact;
+    use crate::report::Warnings;
+    use crate::test_design::{Linear, RISE_END};
+    use proptest::prelude::*;
+
+    #[test]
+    fn noise_is_what_filtering_leaves_and_resolution_what_steps_leave() {
+        // 5 Pa over 125 and 6/16: 0.274 Pa; 10 Pa / sqrt 12: 2.887 Pa; together 2.900 Pa or 742 counts of 1/256.
+        let uncertainty = Uncertainty::of(&Linear::CONSTANTS, 8, 2_500 << 8);
+        assert_eq!(uncertainty.rise(true, 0, 0), PressureRise(742));
+        // 2500 Pa / sqrt 3 = 1443 Pa.
+        let unverified = uncertainty.rise(false, 0, 0).0;
+        assert!((unverified - (1443 << 8)).abs() < 600, "{unverified}");
+    }
+
+    #[test]
+    fn at_the_end_of_the_tables_it_is_taken_from_below() {
+        let rise = PressureRise(RISE_END - 5);
+        let sigma = through_tables::<Linear>(&contact::<Linear>(rise, Warnings::NONE), PressureRise(700));
+        assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700));
+        let below = contact::<Linear>(PressureRise(-9_000), Warnings::NONE);
+        let below = through_tables::<Linear>(&below, PressureRise(700));
+        assert_eq!(below.force.0, 700);
+    }
+
+    proptest! {
+        #[test]
+        fn the_hypotenuse_is_right_to_three_percent(a in 100..1_000_000_000_i32, b in 100..1_000_000_000_i32) {
+            let exact = f64::from(a).hypot(f64::from(b));
+            let got = f64::from(hypotenuse(a, b));
+            prop_assert!((got / exact - 1.0).abs() < 0.03, "{got} for {exact}");
+        }
+
+        #[test]
+        fn nothing_overflows(rise in any::<i32>(), sigma in 0..=i32::MAX, drift in 0..=i32::MAX) {
+            let reading = contact::<Linear>(PressureRise(rise), Warnings::NONE);
+            let sigma = through_tables::<Linear>(&reading, PressureRise(sigma));
+            prop_assert!(sigma.force.0 >= 0 && sigma.indentation.0 >= 0);
+            prop_assert!(hypotenuse(drift, rise.saturating_abs()) >= drift);
+        }
+    }
+}
