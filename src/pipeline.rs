@@ -192,15 +192,18 @@ impl<D: Design> Pipeline<D> {
         Some(self.calibration.rezeroed(zero, self.celsius))
     }
 
-    /// The calibration was stored, and is what the next zero is compared with.
-    pub fn calibrated(&mut self, calibration: Calibration) {
-        self.calibration = calibration;
+    /// The calibration was stored, and is what the next zero is compared with; nothing: what was stored is void, and the
+    /// design's rest pressure is.
+    pub fn calibrated(&mut self, calibration: Option<Calibration>) {
         self.standing = self.standing.without(Warnings::CALIBRATION_REFUSED);
-        self.gain = Gain::new(calibration.gain);
         self.fluid.clear();
-        if let Some(zero) = self.zero() {
-            self.tare.stored(zero.pressure);
-        }
+        // What was stored is the zero that serves. Temperature goes on being compensated as since start-up.
+        self.tare.refer_to(match (calibration, self.zero()) {
+            (Some(_), Some(zero)) => Self::GATES.with_stored(zero.pressure),
+            _ => Self::GATES,
+        });
+        self.calibration = calibration.unwrap_or_default();
+        self.gain = Gain::new(self.calibration.gain);
     }
 
     /// The calibration that serves.

@@ -250,9 +250,9 @@ impl Tare {
         self.gates.reference
     }
 
-    /// A new reference: what serves now was stored.
-    pub fn stored(&mut self, zero: Pressure) {
-        self.gates = self.gates.with_stored(zero);
+    /// A new reference: something was stored, or is void. The zero that serves stays.
+    pub fn refer_to(&mut self, gates: Gates) {
+        self.gates = gates;
     }
 
     /// The rise of a pressure over the zero and its drift since, held at the ends of the word, and whether the zero

@@ -14,7 +14,7 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 const HEADER: usize = 14;
 const READING: usize = HEADER + 28;
 const FAULT: usize = HEADER + 1;
-const HELLO: usize = HEADER + 48;
+const HELLO: usize = HEADER + 47;
 const ANSWER: usize = HEADER + 6;
 
 /// Why the chip was reset last.
@@ -139,8 +139,6 @@ pub struct Hello {
     pub last_fault: LastFault,
     /// Resets in a row that nobody asked for.
     pub resets_in_a_row: u8,
-    /// Times the bus or the converter was freed, the last 256.
-    pub recoveries: u8,
     /// Which task, line or address, as `last_fault` says.
     pub last_fault_detail: u32,
     /// Number of the stored calibration.
@@ -252,7 +250,6 @@ fn write_hello(body: &mut Writer, hello: &Hello) {
         code_of(&Stored::CODES, hello.stored),
         code_of(&LastFault::CODES, hello.last_fault),
         hello.resets_in_a_row,
-        hello.recoveries,
     ]);
     for number in [
         hello.last_fault_detail,
@@ -369,7 +366,7 @@ fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<Hello, Deco
     let design_hash = u64::from_le_bytes(fields.take()?);
     let table_version = u32::from_le_bytes(fields.take()?);
     let report_period = u32::from_le_bytes(fields.take()?);
-    let [stored, last_fault, resets_in_a_row, recoveries] = fields.take()?;
+    let [stored, last_fault, resets_in_a_row] = fields.take()?;
     let mut number = || fields.take().map(u32::from_le_bytes);
     Ok(Hello {
         time,
@@ -381,7 +378,6 @@ fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<Hello, Deco
         stored: named_by(&Stored::CODES, stored).ok_or(DecodeError::Field(34))?,
         last_fault: named_by(&LastFault::CODES, last_fault).ok_or(DecodeError::Field(35))?,
         resets_in_a_row,
-        recoveries,
         last_fault_detail: number()?,
         stored_sequence: number()?,
         samples_lost: number()?,

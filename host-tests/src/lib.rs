@@ -1,4 +1,7 @@
-//! What the tests across the crates share: the README, whose figures they hold to what the code gives.
+//! What the tests across the crates share: documents, whose figures they hold to what the code gives, and the
+//! simulated flash.
+
+pub mod nor_flash;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,11 +29,23 @@ pub fn design(name: &str) -> PathBuf {
 /// # Panics
 /// If it does not, with the line as it should be.
 pub fn assert_readme_says(line: &str) {
-    let readme = fs::read_to_string(workspace().join("README.md")).expect("the README is there");
+    assert_says("README.md", line);
+}
+
+/// Asserts that the table of faults says `line`.
+///
+/// # Panics
+/// If it does not, with the line as it should be.
+pub fn assert_faults_says(line: &str) {
+    assert_says("host-tests/FAULTS.md", line);
+}
+
+fn assert_says(document: &str, line: &str) {
+    let text = fs::read_to_string(workspace().join(document)).expect("the document is there");
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        words(&readme).contains(&words(line)),
-        "README.md is stale; it should say\n{line}"
+        words(&text).contains(&words(line)),
+        "{document} is stale; it should say\n{line}"
     );
 }
 

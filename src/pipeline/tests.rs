@@ -295,7 +295,7 @@ fn what_stands_since_start_up_qualifies_every_reading_until_it_is_seen_to() {
     let report = bench.steps(400, Ok(at(20_000.0)));
     assert_eq!(report.status().to_string(), "warning: calibration refused");
     let calibration = bench.pipeline.calibration_to_store().expect("it is verified");
-    bench.pipeline.calibrated(calibration);
+    bench.pipeline.calibrated(Some(calibration));
     assert_eq!(bench.steps(3, Ok(at(20_000.0))).status(), Status::Ok);
 }
 

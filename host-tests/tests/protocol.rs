@@ -1,0 +1,146 @@
+//! The protocol's page, the reader in Python and the firmware agree, byte for byte.
+
+use fingertip::command::{self, Command, Request};
+use fingertip::telemetry;
+use host_tests::workspace;
+use std::fs;
+use std::io::Write;
+use std::process::{Command as Process, Stdio};
+
+/// The bytes of the page's example.
+fn example(what: &str) -> Vec<u8> {
+    let page = fs::read_to_string(workspace().join("src/PROTOCOL.md")).expect("the page is there");
+    let row = page
+        .lines()
+        .find(|line| line.starts_with(&format!("| {what}")))
+        .unwrap_or_else(|| panic!("PROTOCOL.md has no example \"{what}\""));
+    let bytes = row.split('`').nth(1).expect("the bytes stand in backquotes");
+    bytes
+        .split_whitespace()
+        .map(|byte| u8::from_str_radix(byte, 16).expect("two digits"))
+        .collect()
+}
+
+const REQUESTS: [(&str, Request); 4] = [
+    (
+        "tare, sequence 0x0102",
+        Request {
+            sequence: 0x0102,
+            command: Command::Tare,
+        },
+    ),
+    (
+        "rate, sequence 1",
+        Request {
+            sequence: 1,
+            command: Command::Rate { every: 10 },
+        },
+    ),
+    (
+        "save, sequence 2",
+        Request {
+            sequence: 2,
+            command: Command::Save { gain: Some(-2500) },
+        },
+    ),
+    (
+        "self-test, sequence 3",
+        Request {
+            sequence: 3,
+            command: Command::SelfTest { indentation: 250_000 },
+        },
+    ),
+];
+
+const FRAMES: [&str; 3] = [
+    "fault, sequence 65535",
+    "answer, sequence 8",
+    "reading, sequence 0x0102",
+];
+
+#[test]
+fn the_pages_examples_are_what_the_firmware_sends_and_takes() {
+    for (what, request) in REQUESTS {
+        assert_eq!(command::encode(&request).as_slice(), example(what), "{what}");
+    }
+    for what in FRAMES {
+        let bytes = example(what);
+        let frame = telemetry::decode(&bytes[..bytes.len() - 1]).expect("it is a frame");
+        assert_eq!(telemetry::encode(&frame).as_slice(), bytes, "{what}");
+    }
+}
+
+#[test]
+fn the_page_names_every_code() {
+    let page = fs::read_to_string(workspace().join("src/PROTOCOL.md")).expect("the page is there");
+    for (fault, code) in fingertip::report::Fault::CODES {
+        assert!(page.contains(&format!("| {code} | {fault}")), "{code} {fault}");
+    }
+    for (kind, code) in command::CommandKind::CODES {
+        let words = format!("{kind:?}")
+            .replace("SelfTest", "self-test")
+            .to_lowercase();
+        assert!(page.contains(&format!("| {code:#04x} | {words} |")), "{words}");
+    }
+    for bit in 0..9_u16 {
+        let warning = fingertip::report::Warnings::from_bits(1 << bit).expect("it is known");
+        assert!(page.contains(&format!("| {bit} | {warning} |")), "{warning}");
+    }
+}
+
+/// Runs the reader, or nothing where there is no Python.
+fn reader(arguments: &[&str], input: &[u8]) -> Option<Vec<u8>> {
+    let script = workspace().join("host-tests/scripts/read_frames.py");
+    let mut child = Process::new("python3")
+        .arg(script)
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .ok()?;
+    let mut stdin = child.stdin.take().expect("it is piped");
+    stdin.write_all(input).expect("the reader reads");
+    drop(stdin);
+    let output = child.wait_with_output().expect("the reader ends");
+    assert!(output.status.success());
+    Some(output.stdout)
+}
+
+#[test]
+fn the_reader_in_python_reads_what_the_firmware_sends() {
+    let mut stream = vec![0x55; 100];
+    stream.push(0);
+    for what in FRAMES {
+        stream.extend(example(what));
+    }
+    let Some(said) = reader(&[], &stream) else {
+        eprintln!("no python3: not tested");
+        return;
+    };
+    let said = String::from_utf8(said).expect("it is text");
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(
+        lines,
+        [
+            "no frame: stuffing",
+            "65535 0 us, 0 dropped: fault: sensor open",
+            "8 2000000 us, 0 dropped: self-test 772: done, findings 0x12",
+            "258 3000500 us, 3 dropped: warning: saturated, touched, 642.000 Pa, 1500000 uN, 2500000 nm, 1-sigma 2.898 \
+             Pa, 6000 uN, 9000 nm",
+        ]
+    );
+}
+
+#[test]
+fn the_commands_of_the_reader_in_python_are_the_firmwares() {
+    let encoded = [
+        (&["--encode", "tare", "258"][..], "tare, sequence 0x0102"),
+        (&["--encode", "rate", "1", "0a00"], "rate, sequence 1"),
+        (&["--encode", "save", "2", "3cf6ffff"], "save, sequence 2"),
+    ];
+    for (arguments, what) in encoded {
+        if let Some(bytes) = reader(arguments, &[]) {
+            assert_eq!(bytes, example(what), "{what}");
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! The calibration in flash: two slots of erasable memory, each a log of records; the highest sequence number serves.
+//!
+//! A new record goes behind the last one in its slot. When that is full the *other* slot is erased and written, never
+//! the one that holds the record that serves: power may fail at any write or erasure, and what is read afterwards is
+//! the old calibration or the new one. Every record is read back before it counts. One erasure serves a slot full of
+//! saves, what is stored already is not stored again, and [`ENDURANCE`] ends it before the memory does.
+//!
+//! Own code and no key-value crate: one value and no keys, so that there is nothing to collect; what is proven is the
+//! whole of it, by a sweep over every cut (`host-tests/tests/calibration_store.rs`).
+
+use crate::calibration::Calibration;
+use crate::record::{self, Found, LENGTH, Record};
+use crate::telemetry::Stored;
+use embedded_storage_async::nor_flash::NorFlash;
+
+/// Erasures of a slot: what flash is specified for at the least (DS9405 table 49: 10 000 cycles).
+pub const ENDURANCE: u32 = 10_000;
+
+/// Places tried in one slot before it is given up for the other; and times that a place is read.
+const TRIES: u32 = 3;
+
+/// What records are for.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Identity {
+    /// The design whose tables are in the image.
+    pub design_hash: u64,
+    /// Their version.
+    pub table_version: u32,
+    /// The firmware: major, minor, patch.
+    pub firmware: [u8; 3],
+    /// The transducer's range, pascals: bounds what can be a zero.
+    pub range: [i32; 2],
+}
+
+/// Why a calibration was not stored. What was stored before is stored still.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum StoreError {
+    /// The memory does not take it, or not what was given.
+    Failed,
+    /// The memory was erased as often as it stands.
+    WornOut,
+}
+
+/// The two slots.
+#[derive(Debug)]
+pub struct Store<F> {
+    flash: F,
+    identity: Identity,
+    /// Bytes of a slot.
+    slot: u32,
+    latest: Option<Record>,
+    /// The slot that holds it.
+    home: u32,
+    /// The slot that is written to.
+    current: u32,
+    /// The next place in it.
+    next: u32,
+    erasures: u32,
+    /// Some place could not be read: the record that serves may not be the last one, and none can be put behind it.
+    unreadable: bool,
+}
+
+impl<F: NorFlash> Store<F> {
+    const PLACE: u32 = LENGTH as u32;
+
+    /// Reads both slots, the first two of `slot` bytes in `flash`.
+    ///
+    /// # Panics
+    /// At compile time, for a memory whose write unit a record is not a multiple of.
+    pub async fn open(flash: F, slot: u32, identity: Identity) -> (Self, Stored) {
+        const { assert!(LENGTH.is_multiple_of(F::WRITE_SIZE)) };
+        let mut store = Self {
+            flash,
+            identity,
+            slot,
+            latest: None,
+            home: 0,
+            current: 0,
+            next: 0,
+            erasures: 0,
+            unreadable: false,
+        };
+        let mut torn = false;
+        let mut used = [0; 2];
+        for which in 0..2_u32 {
+            for place in 0..store.places() {
+                match store.read(which, place).await {
+                    Ok(Found::Blank) => continue,
+                    Ok(Found::Record(record)) => {
+                        store.erasures = store.erasures.max(record.erasures);
+                        if store
+                            .latest
+                            .is_none_or(|latest| record.sequence > latest.sequence)
+                        {
+                            store.latest = Some(record);
+                            store.home = which;
+                        }
+                    }
+                    Ok(Found::Torn) => torn = true,
+                    Err(()) => store.unreadable = true,
+                }
+                used[which as usize] = place + 1;
+            }
+        }
+        store.current = store.home;
+        store.next = used[store.current as usize];
+        let state = match store.latest {
+            _ if store.unreadable => Stored::Unreadable,
+            None if torn => Stored::Damaged,
+            None => Stored::None,
+            Some(latest) => store.state_of(&latest),
+        };
+        (store, state)
+    }
+
+    fn state_of(&self, record: &Record) -> Stored {
+        let identity = &self.identity;
+        match record.calibration {
+            None => Stored::None,
+            Some(_)
+                if record.design_hash != identity.design_hash
+                    || record.table_version != identity.table_version =>
+            {
+                Stored::OtherDesign
+            }
+            Some(calibration) if !calibration.is_plausible(identity.range) => Stored::Damaged,
+            Some(_) => Stored::Serves,
+        }
+    }
+
+    /// The calibration that serves, if the record is this design's and its values can be.
+    pub fn calibration(&self) -> Option<Calibration> {
+        let record = self
+            .latest
+            .filter(|record| self.state_of(record) == Stored::Serves)?;
+        record.calibration
+    }
+
+    /// The number of the last record; 0 before the first.
+    pub fn sequence(&self) -> u32 {
+        self.latest.map_or(0, |record| record.sequence)
+    }
+
+    /// The memory.
+    pub fn into_flash(self) -> F {
+        self.flash
+    }
+
+    /// Stores a calibration, or that there is none.
+    ///
+    /// # Errors
+    /// [`StoreError`]; the record from before serves still.
+    pub async fn save(&mut self, calibration: Option<Calibration>) -> Result<(), StoreError> {
+        let Identity {
+            design_hash,
+            table_version,
+            firmware,
+            ..
+        } = self.identity;
+        let record = Record {
+            sequence: self.sequence().checked_add(1).ok_or(StoreError::WornOut)?,
+            design_hash,
+            table_version,
+            firmware,
+            calibration,
+            erasures: 0,
+        };
+        let same = |latest: &Record| {
+            Record {
+                sequence: record.sequence,
+                erasures: 0,
+                ..*latest
+            } == record
+        };
+        if self.latest.as_ref().is_some_and(same) {
+            return Ok(());
+        }
+        if self.unreadable {
+            return Err(StoreError::Failed);
+        }
+        if self.append(record).await {
+            return Ok(());
+        }
+        self.turn_over().await?;
+        if self.append(record).await {
+            return Ok(());
+        }
+        Err(StoreError::Failed)
+    }
+
+    /// Writes into the next places of the current slot; whether one took it.
+    async fn append(&mut self, mut record: Record) -> bool {
+        record.erasures = self.erasures;
+        for _ in 0..TRIES {
+            if self.next >= self.places() {
+                return false;
+            }
+            let place = self.next;
+            self.next += 1;
+            // A place that is not blank, or cannot be read, is passed over.
+            if self.read(self.current, place).await != Ok(Found::Blank) {
+                continue;
+            }
+            let bytes = record::encode(&record);
+            // What is read back is what the next start will read, whatever the memory says of the write.
+            let _ = self.flash.write(self.offset(self.current, place), &bytes).await;
+            if self.read(self.current, place).await == Ok(Found::Record(record)) {
+                self.latest = Some(record);
+                self.home = self.current;
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Erases the slot that does not hold the record that serves, and goes on there.
+    async fn turn_over(&mut self) -> Result<(), StoreError> {
+        if self.erasures >= 2 * ENDURANCE {
+            return Err(StoreError::WornOut);
+        }
+        let other = 1 - self.home;
+        let from = other * self.slot;
+        // The slots take turns, so each has half of these.
+        self.erasures += 1;
+        self.flash
+            .erase(from, from + self.slot)
+            .await
+            .map_err(|_| StoreError::Failed)?;
+        self.current = other;
+        self.next = 0;
+        Ok(())
+    }
+
+    async fn read(&mut self, which: u32, place: u32) -> Result<Found, ()> {
+        let mut bytes = [0; LENGTH];
+        let offset = self.offset(which, place);
+        for _ in 0..TRIES {
+            if self.flash.read(offset, &mut bytes).await.is_ok() {
+                return Ok(record::decode(&bytes));
+            }
+        }
+        Err(())
+    }
+
+    const fn places(&self) -> u32 {
+        self.slot / Self::PLACE
+    }
+
+    const fn offset(&self, which: u32, place: u32) -> u32 {
+        which * self.slot + place * Self::PLACE
+    }
+}
