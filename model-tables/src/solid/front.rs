@@ -4,8 +4,8 @@
 //! front passes along the meridian: what is complete (left and own) is eliminated with partial pivoting, what is left on the
 //! right station is carried into the next column. The last right station is the rim, which does not move.
 
-/// Right-hand sides carried along: the residual, the border of the fluid's pressure, and that of the plate.
-pub const SIDES: usize = 3;
+/// Right-hand sides carried along: the residual, and the border of the fluid's pressure.
+pub const SIDES: usize = 2;
 
 /// Columns in elimination.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub struct Fronts {
     columns: usize,
     /// A matrix a column, rows one after the other, each with its right-hand sides behind it.
     values: Vec<f64>,
+    /// Unknowns of one column.
+    unknowns: Vec<[f64; SIDES]>,
 }
 
 impl Fronts {
@@ -28,6 +30,7 @@ impl Fronts {
             own,
             columns,
             values: vec![0.0; columns * size * (size + SIDES)],
+            unknowns: vec![[0.0; SIDES]; size],
         }
     }
 
@@ -94,11 +97,12 @@ impl Fronts {
 
     /// The solutions of all right-hand sides, after elimination: `take` gets column, unknown within it (left station and
     /// own), and values.
-    pub fn solutions(&self, mut take: impl FnMut(usize, usize, [f64; SIDES])) {
+    pub fn solutions(&mut self, mut take: impl FnMut(usize, usize, [f64; SIDES])) {
         let (size, width) = (self.size(), self.width());
         let complete = self.station + self.own;
-        // Unknowns of the present column, the rim's being zero.
-        let mut x = vec![[0.0; SIDES]; size];
+        let x = &mut self.unknowns;
+        // The rim.
+        x.fill([0.0; SIDES]);
         for column in (0..self.columns).rev() {
             let values = &self.values[column * size * width..(column + 1) * size * width];
             for i in (0..complete).rev() {
