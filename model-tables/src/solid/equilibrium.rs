@@ -17,7 +17,7 @@ const CONTACT_STIFFNESS: f64 = 200.0;
 /// method halve its way down a parabola; without any, points may come and go in a circle.
 const CONTACT_WIDTH: f64 = 2e-5;
 /// Largest unbalanced force of a node, and with it the largest excess of an element's volume, over the plate's force.
-const RELATIVE_TOLERANCE: f64 = 1e-7;
+const RELATIVE_TOLERANCE: f64 = 1e-8;
 /// The same in moduli times radius times thickness (volume: square radii times thickness), where there is hardly a force.
 const TOLERANCE: f64 = 1e-10;
 /// Iterations after which a state counts as lost.
