@@ -5,7 +5,7 @@
 //! frequency, so a time stamp can take it back exactly.
 //!
 //! The block that is reported has one neighbour on each side, which tells a wild sample (flipped bits) from a press
-//! without any further delay: a fingertip does not leap and return within two blocks from a standstill. Such a sample
+//! without any further delay: a fingertip does not leap off its line and back onto it within two blocks. Such a sample
 //! is replaced by what its neighbours say, and counted. Where a leap may be a press or not, or is faster than any
 //! press, there is [`Fault::Jump`] and no number.
 
@@ -14,11 +14,12 @@ use crate::report::{Fault, Warnings};
 use model_tables::constants::DesignConstants;
 use model_tables::units::PressureRise;
 
-/// By how many blocks the output lags the newest input.
+/// By how many blocks the output lags the newest input; one, because it is about the one before.
 pub const GROUP_DELAY: u32 = 1;
 
-/// A leap of one block that noise does not explain, in grains of the transducer: its second difference has 2.4 times
-/// the noise of a block, so white noise gets there less than once in 10^10 blocks.
+/// A bend of three blocks that noise does not explain, in grains of the transducer: a second difference has 2.4 times the
+/// noise of a block, so white noise of a whole grain gets there once in a thousand blocks, which then are not averaged;
+/// a converter's, a tenth of that, never.
 const LEAP_GRAINS: i64 = 8;
 
 /// The fastest press there is takes this long over the whole table, microseconds: 2.5 mm at 0.6 m/s.
@@ -27,7 +28,7 @@ const FASTEST_PRESS: u64 = 4_000;
 /// Blocks without a number after a leap that no press makes. One that comes back within them leaves no trace.
 const JUMP_HOLD: u8 = 8;
 
-/// How far a rise may leap from one block to the next, counts.
+/// How far a rise may leap or bend from one block to the next, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Leaps {
     /// Above: not noise.
@@ -69,6 +70,8 @@ pub struct Filter {
     filled: u8,
     /// Blocks left of a [`JUMP_HOLD`].
     hold: u8,
+    /// Whether the last sample came as evenly as the one before it.
+    even: bool,
     rejected: u32,
 }
 
@@ -84,6 +87,7 @@ impl Filter {
             history: [none; 3],
             filled: 0,
             hold: 0,
+            even: false,
             rejected: 0,
         }
     }
@@ -93,7 +97,9 @@ impl Filter {
         self.rejected
     }
 
-    /// The filtered rise of the block before this one. What qualifies any of the three qualifies the result.
+    /// The filtered rise of the block before this one. What qualifies any of the three qualifies the result. `even`: the
+    /// last three are equally far apart in time; if not the one in the middle stands for itself, for an average would
+    /// be of another time.
     ///
     /// # Errors
     /// [`Fault::Settling`] for the first two blocks after the start or a gap, [`Fault::Jump`] where the rise leaps as
@@ -103,54 +109,65 @@ impl Filter {
         &mut self,
         rise: PressureRise,
         warnings: Warnings,
+        even: bool,
     ) -> Result<(PressureRise, Warnings), Fault> {
         let newest = Block { rise, warnings };
         let [before, oldest, middle] = self.history;
         self.history = [oldest, middle, newest];
+        let in_line = core::mem::replace(&mut self.even, even) && even;
         if self.filled < 2 {
             self.filled += 1;
             return Err(Fault::Settling);
         }
-        let run_up = if self.filled == 2 { 0 } else { leap(before, oldest) };
+        // At the start and after a gap the line before is taken to be level.
+        let before = if self.filled == 2 { oldest } else { before };
         self.filled = 3;
-        let (rising, leaving) = (leap(oldest, middle), leap(middle, newest));
-        let noise = self.leaps.noise;
-        if self.hold == 0 && rising.abs() <= noise && leaving.abs() <= noise {
-            return Ok(smooth(oldest, middle, newest));
+        let bend = leap(middle, newest) - leap(oldest, middle);
+        let leapt = bend.abs() > self.leaps.noise || leap(oldest, middle).abs() > self.leaps.press;
+        if leapt || self.hold > 0 {
+            return self.leapt(before, even, in_line);
         }
-        self.leapt(run_up, rising, leaving)
+        Ok(smooth(oldest, middle, newest, even))
     }
 
-    /// The same where a neighbour leaps.
+    /// The same where the line of samples bends by more than noise, or leaps.
     #[cold]
-    fn leapt(&mut self, run_up: i64, rising: i64, leaving: i64) -> Result<(PressureRise, Warnings), Fault> {
+    fn leapt(&mut self, before: Block, even: bool, in_line: bool) -> Result<(PressureRise, Warnings), Fault> {
         let [oldest, middle, newest] = self.history;
         let Leaps { noise, press } = self.leaps;
-        let alone = rising.abs() > noise && leaving.abs() > noise && (rising > 0) != (leaving > 0);
-        // Within a run-up of its own size a peak may be the turn of a fast press.
-        let from_standstill = 4 * run_up.abs() <= rising.abs();
-        if alone && from_standstill {
+        let (run_up, rising, leaving) = (leap(before, oldest), leap(oldest, middle), leap(middle, newest));
+        let (bent, bends) = (rising - run_up, leaving - rising);
+        // The newest lies on the line of the two before the middle, and the middle does not: that one is wild. (Of
+        // samples that come unevenly the line cannot be told.)
+        let on_line = (rising + leaving - 2 * run_up).abs() <= noise;
+        let wild =
+            in_line && bends.abs() > noise && 2 * bent.abs() > noise && (bent > 0) != (bends > 0) && on_line;
+        if wild {
             let mean = (i64::from(oldest.rise.0) + i64::from(newest.rise.0)) >> 1;
             self.history[1] = Block {
                 rise: PressureRise(mean as i32),
                 warnings: oldest.warnings.and(newest.warnings),
             };
             self.rejected = self.rejected.saturating_add(1);
-        } else if !alone && rising.abs() > press {
+        } else if rising.abs() > press {
             self.hold = JUMP_HOLD;
         }
         if self.hold > 0 {
             self.hold -= 1;
             return Err(Fault::Jump);
         }
-        if alone && !from_standstill {
+        if wild || bends.abs() <= noise {
+            return Ok(smooth(oldest, self.history[1], newest, even));
+        }
+        // A press that began between the samples slows down or goes on; what turns, or gets faster still, is neither on
+        // the line before nor on a new one.
+        let goes_on =
+            leaving.abs() <= noise || leaving.abs() <= rising.abs() && (rising > 0) == (leaving > 0);
+        if 2 * bent.abs() > noise && !goes_on {
             return Err(Fault::Jump);
         }
-        if leaving.abs() > noise && (leaving - rising).abs() > noise && !alone {
-            // The newest may be wild, which only the next block will tell.
-            return Ok((middle.rise, oldest.warnings.and(middle.warnings)));
-        }
-        Ok(smooth(oldest, self.history[1], newest))
+        // A corner, or a wild newest, which only the next block will tell: the middle stands for itself.
+        Ok((middle.rise, oldest.warnings.and(middle.warnings)))
     }
 
     /// A gap: what was before it is not next to what comes after.
@@ -165,13 +182,14 @@ fn leap(from: Block, to: Block) -> i64 {
     i64::from(to.rise.0) - i64::from(from.rise.0)
 }
 
-fn smooth(oldest: Block, middle: Block, newest: Block) -> (PressureRise, Warnings) {
+fn smooth(oldest: Block, middle: Block, newest: Block, even: bool) -> (PressureRise, Warnings) {
+    let warnings = oldest.warnings.and(middle.warnings).and(newest.warnings);
+    if !even {
+        return (middle.rise, warnings);
+    }
     // Four words of 31 bits and the sign: 34 bits; a quarter of it fits the word again.
     let sum = i64::from(oldest.rise.0) + 2 * i64::from(middle.rise.0) + i64::from(newest.rise.0);
-    (
-        PressureRise(((sum + 2) >> 2) as i32),
-        oldest.warnings.and(middle.warnings).and(newest.warnings),
-    )
+    (PressureRise(((sum + 2) >> 2) as i32), warnings)
 }
 
 #[cfg(test)]

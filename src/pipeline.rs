@@ -34,12 +34,18 @@ pub struct Pipeline<D> {
     touch: Touch,
     drift: Drift,
     fluid: Fluid,
+    /// When the last sample was measured, and how long after the one before it.
+    measured: Microseconds,
+    spacing: u64,
     design: PhantomData<D>,
 }
 
 impl<D: Design> Pipeline<D> {
     /// From one sample to the next, microseconds.
     pub const PERIOD: u32 = transducer::period(&D::CONSTANTS.transducer.kind);
+
+    /// Two samples further apart than this are not next to each other, microseconds.
+    const GAP: u64 = 20 * Self::PERIOD as u64;
 
     const SCALE: Scale = Scale::of(D::PRESSURE_FRACTION_BITS);
     const GATES: Gates = Gates::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
@@ -74,6 +80,8 @@ impl<D: Design> Pipeline<D> {
             touch: Touch::Unknown,
             drift: Drift::new(Self::PACE),
             fluid: Fluid::new(Self::FALL),
+            measured: Microseconds(0),
+            spacing: 0,
             design: PhantomData,
         }
     }
@@ -84,8 +92,18 @@ impl<D: Design> Pipeline<D> {
         let age = sample.map_or(Self::PERIOD / 2, |sample| sample.age);
         let measured = Microseconds(now.0.saturating_sub(u64::from(age)));
         let sample = sample.and_then(|sample| self.stuck.step(measured, sample.raw).map(|()| sample));
+        // A reading is of the sample before this one, however long ago that was.
+        let before = core::mem::replace(&mut self.measured, measured);
+        let spacing = measured.0.saturating_sub(before.0);
+        let uneven = spacing.abs_diff(core::mem::replace(&mut self.spacing, spacing));
         let outcome = match sample {
-            Ok(sample) => self.measure(measured, sample),
+            Ok(sample) => {
+                if spacing == 0 || spacing > Self::GAP {
+                    self.tare.interrupt(measured);
+                    self.filter.interrupt();
+                }
+                self.measure(measured, sample, uneven <= u64::from(Self::PERIOD) / 4)
+            }
             Err(fault) => {
                 self.tare.interrupt(measured);
                 self.filter.interrupt();
@@ -94,13 +112,16 @@ impl<D: Design> Pipeline<D> {
         };
         let delay = u64::from(GROUP_DELAY * Self::PERIOD);
         Report {
-            time: Microseconds(measured.0.saturating_sub(delay)),
+            time: match outcome {
+                Ok(_) => before,
+                Err(_) => Microseconds(measured.0.saturating_sub(delay)),
+            },
             outcome,
         }
     }
 
     #[inline]
-    fn measure(&mut self, time: Microseconds, sample: Sample) -> Result<Measurement, Fault> {
+    fn measure(&mut self, time: Microseconds, sample: Sample, even: bool) -> Result<Measurement, Fault> {
         if sample.temperature.is_some() {
             self.celsius = sample.temperature;
             self.temperature.step(sample.temperature, self.touch);
@@ -112,7 +133,7 @@ impl<D: Design> Pipeline<D> {
             self.zero_moved(time);
         }
         let rise = self.gain.apply_to(rise);
-        let (rise, warnings) = self.filter.step(rise, zero.and(sample.warnings()))?;
+        let (rise, warnings) = self.filter.step(rise, zero.and(sample.warnings()), even)?;
         let verified = !warnings.contains(Warnings::ZERO_UNVERIFIED);
         let touch = self.detector.step(rise, verified);
         self.touch = touch;

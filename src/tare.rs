@@ -153,6 +153,9 @@ pub enum TareRefusal {
 pub struct Tare {
     gates: Gates,
     zero: Option<Zero>,
+    /// The lowest of the verified zeros since start-up, its drift included: commands do not creep up a light press by
+    /// taking one untouched-looking zero after the other.
+    anchor: Pressure,
     /// What the last command replaced.
     previous: Option<Zero>,
     measuring: Option<Measuring>,
@@ -223,6 +226,10 @@ impl Tare {
         Self {
             gates,
             zero,
+            anchor: match zero {
+                Some(zero) => zero.pressure,
+                None => gates.reference,
+            },
             previous: None,
             measuring: match zero {
                 None => Some(Measuring::NEW),
@@ -315,6 +322,7 @@ impl Tare {
         }
         let previous = self.previous.take().ok_or(TareRefusal::NothingToUndo)?;
         self.zero = Some(previous);
+        self.anchor = self.anchor.min(previous.pressure);
         self.moved = true;
         Ok(())
     }
@@ -374,8 +382,8 @@ impl Tare {
             None => Err(TareRefusal::Touched),
             // On command, over a zero that tells a touch.
             Some(zero) if zero.verified => {
-                let zeroed = i64::from(zero.pressure.0) + i64::from(drift);
-                if i64::from(mean.0) - zeroed > i64::from(gates.touch.0) {
+                let anchor = i64::from(self.anchor.0) + i64::from(drift);
+                if i64::from(mean.0) - anchor > i64::from(gates.touch.0) {
                     Err(TareRefusal::Touched)
                 } else {
                     Ok(verified(true))
@@ -397,7 +405,14 @@ impl Tare {
     }
 
     fn accept(&mut self, zero: Zero, drift: i32) {
-        if let Some(before) = self.zero.replace(zero) {
+        let before = self.zero.replace(zero);
+        self.anchor = match before {
+            Some(before) if before.verified => {
+                zero.pressure.min(Pressure(self.anchor.0.saturating_add(drift)))
+            }
+            _ => zero.pressure,
+        };
+        if let Some(before) = before {
             self.previous = Some(Zero {
                 pressure: Pressure(before.pressure.0.saturating_add(drift)),
                 ..before

@@ -2,6 +2,7 @@
 //! simulated flash.
 
 pub mod nor_flash;
+pub mod world;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -216,6 +216,16 @@ fn a_command_is_refused_with_its_reason() {
 }
 
 #[test]
+fn one_command_after_the_other_does_not_creep_up_a_press() {
+    let mut bench = Bench::zeroed();
+    assert_eq!(bench.command(|_| 10_150), Ok(()));
+    assert_eq!(bench.command(|_| 10_161), Err(TareRefusal::Touched));
+    // Lower is always nothing pressing, and the new bound.
+    assert_eq!(bench.command(|_| 10_050), Ok(()));
+    assert_eq!(bench.command(|_| 10_111), Err(TareRefusal::Touched));
+}
+
+#[test]
 fn over_an_unverified_zero_only_a_stored_one_can_object() {
     // No record yet: a part with an offset of 2 kPa is commissioned like this.
     let mut first = Bench::new(GATES, StartUp::Stored);

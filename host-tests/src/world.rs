@@ -1,0 +1,172 @@
+//! A fingertip of the image's design in virtual time: true pressures in, what the firmware says out.
+
+use fingertip::calibration::Calibration;
+use fingertip::command::{Command, Request};
+use fingertip::design::Design;
+use fingertip::image::ImageDesign;
+use fingertip::report::{Fault, Microseconds, Report};
+use fingertip::station::{Beginning, Station, ToStore};
+use fingertip::supervisor::Breadcrumb;
+use fingertip::telemetry::{Message, ResetCause, Stored};
+use fingertip::transducer::{Millipascals, Sample};
+use model_tables::constants::{DesignConstants, TransducerKind};
+use model_tables::table::Reading;
+use model_tables::units::PressureRise;
+
+/// The design of the image, with an absolute transducer in place of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct WithAbsolutePart;
+
+impl Design for WithAbsolutePart {
+    const CONSTANTS: DesignConstants = {
+        let mut constants = ImageDesign::CONSTANTS;
+        constants.transducer.kind = TransducerKind::Ms5837 { address: 0x76 };
+        constants
+    };
+    const PRESSURE_FRACTION_BITS: u32 = ImageDesign::PRESSURE_FRACTION_BITS;
+
+    fn lookup(rise: PressureRise) -> Reading {
+        ImageDesign::lookup(rise)
+    }
+}
+
+/// Numbers that look random and are the same on every host (xorshift64*).
+#[derive(Clone, Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// The sequence of `seed`.
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(2).wrapping_add(1))
+    }
+
+    /// 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
+    }
+
+    /// Below `end`, which is above 0.
+    pub fn below(&mut self, end: u64) -> u64 {
+        (self.bits() >> 11) % end
+    }
+
+    /// Uniform in [0, 1).
+    pub fn share(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Close to a normal deviate: the sum of twelve uniform ones.
+    pub fn deviate(&mut self) -> f64 {
+        (0..12).map(|_| self.share()).sum::<f64>() - 6.0
+    }
+}
+
+/// One fingertip and the firmware that reads it.
+#[derive(Debug)]
+pub struct World<D> {
+    station: Station<D>,
+    /// Microseconds since reset.
+    pub now: u64,
+    /// What went on the line besides reports.
+    pub said: Vec<Message>,
+}
+
+/// A beginning after a reset by `cause`, with a stored calibration or none, and what the run before left.
+pub fn beginning<D: Design>(
+    cause: ResetCause,
+    calibration: Option<Calibration>,
+    left: Option<Breadcrumb>,
+) -> Beginning {
+    Beginning {
+        reset_cause: cause,
+        start: Breadcrumb::start(left, cause, D::CONSTANTS.hash),
+        stored: if calibration.is_some() {
+            Stored::Serves
+        } else {
+            Stored::None
+        },
+        stored_sequence: u32::from(calibration.is_some()),
+        calibration,
+        clock_failed: false,
+        firmware: [0, 1, 0],
+    }
+}
+
+/// Pascals at rest.
+pub fn rest<D: Design>() -> f64 {
+    f64::from(D::CONSTANTS.rest_pressure)
+}
+
+/// Pascals from rest to the end of the tables.
+pub fn full_scale<D: Design>() -> f64 {
+    f64::from(D::CONSTANTS.maximum_pressure) - rest::<D>()
+}
+
+/// A sample of a pressure in pascals, measured half a period before it is given.
+pub fn sample<D: Design>(pascals: f64) -> Sample {
+    let millipascals = (pascals * 1000.0).round() as i32;
+    Sample {
+        pressure: Millipascals(millipascals),
+        headroom: Millipascals(
+            D::CONSTANTS.transducer.range[1]
+                .saturating_mul(1000)
+                .saturating_sub(millipascals),
+        ),
+        age: 500,
+        ..Sample::default()
+    }
+}
+
+impl<D: Design> World<D> {
+    /// A world that begins.
+    pub fn new(beginning: &Beginning) -> Self {
+        Self {
+            station: Station::new(beginning),
+            now: 0,
+            said: vec![],
+        }
+    }
+
+    /// Switched on, nothing stored, 400 ms untouched at `rest` pascals.
+    pub fn zeroed(rest: f64) -> Self {
+        let mut world = Self::new(&beginning::<D>(ResetCause::PowerOn, None, None));
+        for _ in 0..400 {
+            world.step(1000, Ok(sample::<D>(rest)));
+        }
+        world
+    }
+
+    /// The report of what came `later` microseconds later.
+    pub fn step(&mut self, later: u64, sample: Result<Sample, Fault>) -> Report {
+        self.now += later;
+        let said = &mut self.said;
+        self.station.step(Microseconds(self.now), sample, |message| {
+            if !matches!(message, Message::Report { .. }) {
+                said.push(message);
+            }
+        })
+    }
+
+    /// Asks for something.
+    pub fn ask(&mut self, command: Command) -> Option<ToStore> {
+        let said = &mut self.said;
+        let request = Request { sequence: 0, command };
+        self.station
+            .request(Microseconds(self.now), request, |message| said.push(message))
+    }
+
+    /// The zero that serves, pascals.
+    pub fn zero(&self) -> Option<f64> {
+        let counts = self.station.zero()?.pressure.0;
+        Some(f64::from(counts) / f64::from(1_u32 << D::PRESSURE_FRACTION_BITS))
+    }
+}
+
+/// The reported rise, pascals.
+pub fn rise<D: Design>(report: &Report) -> Option<f64> {
+    let rise = report.outcome.ok()?.pressure_rise;
+    Some(rise.pascals(D::PRESSURE_FRACTION_BITS))
+}

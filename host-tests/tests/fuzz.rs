@@ -1,0 +1,125 @@
+//! Everything that reads bytes from outside, on bytes from outside: random ones, and whole ones changed a little.
+
+use fingertip::command::{self, Command, Request};
+use fingertip::record::{self, Record};
+use fingertip::report::{Fault, Microseconds, Report};
+use fingertip::supervisor::{Breadcrumb, WORDS};
+use fingertip::telemetry::{self, Frame, Message};
+use fingertip::wire::Deframer;
+use host_tests::assert_faults_says;
+use host_tests::world::Random;
+
+/// Executions of each reader.
+const EXECUTIONS: u64 = 250_000;
+
+/// A whole frame of either direction, changed in up to three places, cut or lengthened; now and then random bytes.
+fn nearly_a_frame(random: &mut Random) -> Vec<u8> {
+    let number = random.bits();
+    let mut bytes = match number % 4 {
+        0 => (0..random.below(100)).map(|_| random.bits() as u8).collect(),
+        1 => command::encode(&Request {
+            sequence: number as u16,
+            command: Command::Rate { every: 7 },
+        })
+        .to_vec(),
+        2 => telemetry::encode(&Frame {
+            sequence: number as u16,
+            dropped: 0,
+            message: Message::Report {
+                report: Report {
+                    time: Microseconds(number),
+                    outcome: Err(Fault::SensorOpen),
+                },
+                pressure_fraction_bits: 0,
+            },
+        })
+        .to_vec(),
+        _ => command::encode(&Request {
+            sequence: number as u16,
+            command: Command::SelfTest { indentation: 250_000 },
+        })
+        .to_vec(),
+    };
+    for _ in 0..random.below(4) {
+        if bytes.is_empty() {
+            break;
+        }
+        let at = random.below(bytes.len() as u64) as usize;
+        match random.below(4) {
+            0 => bytes[at] ^= 1 << random.below(8),
+            1 => bytes[at] = random.bits() as u8,
+            2 => drop(bytes.remove(at)),
+            _ => bytes.insert(at, random.bits() as u8),
+        }
+    }
+    bytes
+}
+
+#[test]
+fn readers_of_the_line_take_anything() {
+    let mut random = Random::new(1);
+    let mut deframer = Deframer::default();
+    let (mut commands, mut frames) = (0_u64, 0_u64);
+    for _ in 0..EXECUTIONS {
+        let bytes = nearly_a_frame(&mut random);
+        if let Ok(request) = command::decode(&bytes) {
+            let again = command::encode(&request);
+            assert_eq!(command::decode(&again[..again.len() - 1]), Ok(request));
+        }
+        if let Ok(frame) = telemetry::decode(&bytes) {
+            let again = telemetry::encode(&frame);
+            assert_eq!(telemetry::decode(&again[..again.len() - 1]), Ok(frame));
+        }
+        for byte in bytes {
+            if let Some(Ok(body)) = deframer.push(byte) {
+                commands += u64::from(command::read_body(&body).is_ok());
+                frames += 1;
+            }
+        }
+    }
+    // Whole frames are met too, and most are not.
+    assert!(
+        commands > EXECUTIONS / 20 && frames < EXECUTIONS,
+        "{commands}, {frames}"
+    );
+    assert_faults_says(&format!("{} readings of frames", 3 * EXECUTIONS));
+}
+
+#[test]
+fn readers_of_the_memory_take_anything() {
+    let mut random = Random::new(2);
+    let (mut records, mut crumbs) = (0_u64, 0_u64);
+    for _ in 0..EXECUTIONS {
+        let mut bytes = record::encode(&Record {
+            sequence: random.bits() as u32,
+            design_hash: random.bits(),
+            table_version: 1,
+            firmware: [0, 1, 0],
+            calibration: None,
+            erasures: 0,
+        });
+        let mut words = Breadcrumb {
+            detail: random.bits() as u32,
+            ..Breadcrumb::default()
+        }
+        .to_words();
+        let changes = random.below(5);
+        for _ in 0..changes {
+            let (at, bit) = (
+                random.below(bytes.len() as u64 * 8),
+                random.below(WORDS as u64 * 32),
+            );
+            bytes[at as usize / 8] ^= 1 << (at % 8);
+            words[bit as usize / 32] ^= 1 << (bit % 32);
+        }
+        let record = matches!(record::decode(&bytes), record::Found::Record(_));
+        let crumb = Breadcrumb::from_words(&words).is_some();
+        records += u64::from(record);
+        crumbs += u64::from(crumb);
+        // One change is always seen; several may cancel out.
+        assert!(changes != 1 || !record && !crumb);
+        assert!(changes != 0 || record && crumb);
+    }
+    assert!(records > EXECUTIONS / 6 && records < EXECUTIONS / 4 && crumbs < EXECUTIONS / 4);
+    assert_faults_says(&format!("{} readings of records and breadcrumbs", 2 * EXECUTIONS));
+}
