@@ -12,7 +12,6 @@ mod sections;
 
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
-use crate::solid::mesh::Elements;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -69,6 +68,8 @@ pub enum ModelSection {
         /// `along`.
         along: u32,
     },
+    /// `kind = "auto"`: the cheapest that meets `[accuracy]`.
+    Auto,
 }
 
 /// `[rest]`: exactly one of its keys; left out for a solid that is not inflated.
@@ -178,17 +179,6 @@ impl DesignFile {
     /// SHA-256 of [`DesignFile::canonical`].
     pub fn hash(&self) -> [u8; 32] {
         Sha256::digest(self.canonical()).into()
-    }
-
-    /// The elements of a solid; `None` of a membrane.
-    pub fn elements(&self) -> Option<Elements> {
-        match self.model {
-            ModelSection::Membrane => None,
-            ModelSection::Solid { through, along } => Some(Elements {
-                through: through as usize,
-                along: along as usize,
-            }),
-        }
     }
 
     /// What the model needs of the design as it is calibrated, in SI units.

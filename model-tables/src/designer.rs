@@ -9,7 +9,9 @@ mod bench;
 mod chart;
 mod drawing;
 mod estimate;
+mod ladder;
 mod materials;
+mod model;
 mod profile;
 mod published;
 mod rest;
@@ -57,6 +59,8 @@ enum Command {
     Chart(chart::Arguments),
     /// Where each method answers, refuses or is silently wrong, over designs; and what a state costs
     Atlas(atlas::Arguments),
+    /// The models over random walls: error against time, and what `model.kind = "auto"` takes: SVG and CSV
+    Ladder(ladder::Arguments),
     /// What the chip would say at pressure rises, bit for bit
     Estimate(estimate::Arguments),
     /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
@@ -152,6 +156,7 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::Table(arguments) => table::run(arguments),
         Command::Chart(arguments) => chart::run(arguments),
         Command::Atlas(arguments) => atlas::run(arguments),
+        Command::Ladder(arguments) => ladder::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),
         Command::Materials => Ok(materials::run()),

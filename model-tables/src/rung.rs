@@ -1,12 +1,45 @@
-//! Either model behind one interface: what tables are made from.
+//! Either model behind one interface, and which of them a design needs.
+//!
+//! [`choice`] is what `kind = "auto"` does.
 
 use crate::curve::{Contact, Curve};
-use crate::design_file::DesignFile;
+use crate::design::{Design, RestBy};
+use crate::design_file::{DesignFile, ModelSection};
 use crate::membrane::TensionField;
 use crate::press::{self, CurveFailure, Limit, ModelError};
 use crate::solid;
+use crate::solid::inflation::mid_surface;
+use crate::solid::mesh::Elements;
+use std::fmt;
 
-/// A fingertip at rest, ready to be pressed, of the model that its design names.
+pub mod choice;
+
+/// A model of a fingertip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The membrane, relaxed.
+    Membrane,
+    /// The solid, of so many elements.
+    Solid(Elements),
+}
+
+impl Kind {
+    /// Whether it can answer for a design. A membrane has no unstretched state, and it slides on the base as it is inflated.
+    pub fn applies(self, design: &Design) -> bool {
+        self != Self::Membrane || matches!(design.rest, RestBy::PoleStretch(_))
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Membrane => write!(f, "membrane"),
+            Self::Solid(Elements { through, along }) => write!(f, "solid {through} x {along}"),
+        }
+    }
+}
+
+/// A fingertip at rest, ready to be pressed.
 #[derive(Clone, Debug)]
 pub enum Rung {
     /// The membrane, relaxed.
@@ -16,15 +49,40 @@ pub enum Rung {
 }
 
 impl Rung {
-    /// Inflates a design to its rest state.
+    /// Inflates a design to its rest state, of the model that it names.
     ///
     /// # Errors
     /// [`ModelError`] where there is none.
     pub fn new(file: &DesignFile) -> Result<Self, ModelError> {
         let design = file.design();
-        Ok(match file.elements() {
-            None => Self::Membrane(Box::new(press::Press::new(&design, TensionField::Relaxed)?)),
-            Some(elements) => Self::Solid(Box::new(solid::press::Press::new(&design, elements)?)),
+        match file.model {
+            ModelSection::Membrane => Ok(Self::Membrane(Box::new(press::Press::new(
+                &design,
+                TensionField::Relaxed,
+            )?))),
+            ModelSection::Solid { through, along } => {
+                let elements = Elements {
+                    through: through as usize,
+                    along: along as usize,
+                };
+                Self::of(Kind::Solid(elements), &design)
+            }
+            ModelSection::Auto => Ok(choice::choose(&design, &choice::Wanted::of(file))?.rung),
+        }
+    }
+
+    /// Inflates a design whose semi-axes are the outer surface's.
+    ///
+    /// # Errors
+    /// [`ModelError`] where there is no rest state.
+    pub fn of(kind: Kind, design: &Design) -> Result<Self, ModelError> {
+        Ok(match kind {
+            Kind::Membrane => {
+                let membrane = mid_surface(&design.membrane);
+                let design = Design { membrane, ..*design };
+                Self::Membrane(Box::new(press::Press::new(&design, TensionField::Relaxed)?))
+            }
+            Kind::Solid(elements) => Self::Solid(Box::new(solid::press::Press::new(design, elements)?)),
         })
     }
 

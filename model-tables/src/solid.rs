@@ -6,7 +6,7 @@
 //! times the contact area: at light touch the wall's bending carries most of it.
 //!
 //! [`mesh`] (the undeformed wall) -> [`element`] (one element's forces and stiffness), [`fluid`] (the volume inside) and
-//! [`plate`] (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`] (Newton's method) ->
+//! [`plate`] (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`] (Newton's method) -> [`inflation`] ->
 //! [`press`] (states at asked indentations, each from its neighbours on the [`trail`], and the end of the press) -> [`section`] (what is read off along the
 //! meridian).
 
@@ -18,6 +18,8 @@ pub mod equilibrium;
 pub mod fluid;
 #[cfg(feature = "std")]
 pub mod front;
+#[cfg(feature = "std")]
+pub mod inflation;
 #[cfg(feature = "std")]
 pub mod mesh;
 #[cfg(feature = "std")]

@@ -120,3 +120,30 @@ fn refuses_in_one_line() {
         "{hard}"
     );
 }
+
+/// A thin, stretched wall is a membrane; an unstretched one never.
+#[test]
+fn auto_says_what_it_took() {
+    let auto = |name: &str, wall: &str, more: &str| {
+        let file = design(name, more);
+        let text = fs::read_to_string(&file).expect("the design");
+        let text = text
+            .replace("kind = \"solid\"", "kind = \"auto\"")
+            .replace("thickness_mm = 1\n", wall);
+        fs::write(&file, text).expect("the test folder");
+        let output = designer(&["solve", &file, "--indentation-mm", "1"]);
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).expect("text")
+    };
+    let thin = auto("thin", "thickness_mm = 0.1\n", "[rest]\npole_stretch = 1.5\n");
+    assert!(thin.contains("note: auto takes the membrane: "), "{thin}");
+    let printed = auto("unstretched", "thickness_mm = 1\n", "");
+    assert!(
+        printed.contains("note: auto takes the solid 1 x 24: "),
+        "{printed}"
+    );
+    assert!(
+        printed.contains("% from the solid 2 x 60, 1.00 % allowed in all"),
+        "{printed}"
+    );
+}

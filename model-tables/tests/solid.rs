@@ -3,11 +3,14 @@
 mod common;
 
 use common::AGILUS30;
+use model_tables::campaign::walls;
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::press::{self, ModelError};
+use model_tables::rung::choice::LADDER;
 use model_tables::solid::equilibrium::{Fluid, State, Wall};
+use model_tables::solid::inflation::mid_surface;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::{COARSE, FULL, Press};
 use serde::Deserialize;
@@ -389,7 +392,7 @@ fn a_rest_pressure_out_of_reach_is_refused() {
     assert!((within.rest().pressure / (0.95 * greatest) - 1.0).abs() < 1e-9);
     assert!(Press::new(&design(1.01 * greatest), COARSE).is_err());
     let stretched = Design {
-        rest: RestBy::PoleStretch(1.2),
+        rest: RestBy::Height(8e-3),
         ..printed_fingertip()
     };
     assert!(matches!(
@@ -412,5 +415,44 @@ fn the_order_of_asking_does_not_matter() {
             (found.force / alone.force - 1.0).abs() < 1e-6,
             "{depth}: {found:?} {alone:?}"
         );
+    }
+}
+
+/// Inflated free and then bonded, as a membrane is: at the membrane's pressure, the nearer the thinner, with its pole stretch.
+#[test]
+fn a_wall_bonded_after_inflation_rests_like_its_membrane() {
+    for (thickness, within) in [(0.8, 0.02), (0.2, 0.004)] {
+        let design = Design {
+            rest: RestBy::PoleStretch(1.25),
+            ..dome(9.0, 7.0, thickness, AGILUS30)
+        };
+        let solid = *Press::new(&design, FULL).expect("a rest state").rest();
+        let middle = Design {
+            membrane: mid_surface(&design.membrane),
+            ..design
+        };
+        let membrane = *press::Press::new(&middle, TensionField::Relaxed)
+            .expect("a rest state")
+            .rest();
+        assert!((solid.pole_stretch - 1.25).abs() < 1e-8);
+        assert!(
+            (solid.pressure / membrane.pressure - 1.0).abs() < within,
+            "{solid:?} {membrane:?}"
+        );
+    }
+}
+
+/// What the rule lets through on walls it was not made on: never more than was allowed. `designer ladder` does the same at
+/// length.
+#[test]
+fn auto_lets_no_more_error_through_than_allowed() {
+    for index in 900..906 {
+        let wall = walls::draw(index).measure();
+        assert!(wall.has_truth(), "{:?}", wall.case);
+        for asked in walls::ASKED {
+            let taken = wall.take(asked);
+            assert!(taken.error <= asked, "{:?}: {asked} {taken:?}", wall.case);
+        }
+        assert_eq!(wall.take(1e-9).rung, LADDER.len() - 1);
     }
 }

@@ -26,7 +26,7 @@ pub struct Case {
 
 /// Pseudo-random numbers (`SplitMix64`; Steele, Lea, Flood 2014).
 #[derive(Clone, Debug)]
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
     fn next(&mut self) -> u64 {
@@ -38,15 +38,15 @@ impl Random {
     }
 
     /// Uniform in 0 .. 1.
-    fn unit(&mut self) -> f64 {
+    pub(super) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn uniform(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
         low * libm::pow(high / low, self.unit())
     }
 }

@@ -43,13 +43,6 @@ pub enum Problem {
         /// What it has to be.
         allowed: String,
     },
-    /// Something legal that this version cannot do.
-    Unsupported {
-        /// Full name of the key or section.
-        key: String,
-        /// What to do instead.
-        remedy: String,
-    },
 }
 
 impl fmt::Display for DesignFileError {
@@ -71,9 +64,6 @@ impl fmt::Display for Problem {
             Self::Unknown { key, allowed } => write!(f, "`{key}` is not a known key: allowed are {allowed}"),
             Self::Value { key, found, allowed } => {
                 write!(f, "`{key}` is {}: must be {allowed}", one_line(found))
-            }
-            Self::Unsupported { key, remedy } => {
-                write!(f, "`{key}` is not supported by this version: {remedy}")
             }
         }
     }

@@ -46,6 +46,7 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
     match file.model {
         // What designs are unless they say otherwise.
         ModelSection::Membrane => {}
+        ModelSection::Auto => writeln!(out, "\n[model]\nkind = \"auto\"")?,
         ModelSection::Solid { through, along } => {
             writeln!(
                 out,

@@ -232,15 +232,6 @@ impl<'a> Section<'a> {
         (line, problem)
     }
 
-    /// `key` asks for something that this version cannot do.
-    pub(super) fn unsupported(&self, key: &str, remedy: &str) -> Fault {
-        let problem = Problem::Unsupported {
-            key: self.full(key),
-            remedy: remedy.to_owned(),
-        };
-        (self.line_of(key), problem)
-    }
-
     /// The end of reading: a key that was never asked for is an error. The first in the file is named.
     pub(super) fn finish(self) -> Result<(), Fault> {
         let unknown = self

@@ -16,6 +16,8 @@ use toml::de::DeTable;
 const LENGTH: Bounds = Bounds::above(0.0, 1000.0, "mm");
 /// Elastic constants, up to that of steel.
 const STIFFNESS: Bounds = Bounds::above(0.0, 1e12, "Pa");
+/// Pole stretches of a rest state.
+const STRETCH: Bounds = Bounds::above(1.0, 10.0, "(no stretch is 1)");
 /// Pressures, up to 100 bar.
 const PRESSURE: Bounds = Bounds::above(0.0, 10_000.0, "kPa");
 
@@ -39,9 +41,9 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         .unwrap_or(ModelSection::Membrane);
     let rest = match model {
         ModelSection::Membrane => rest(root.needed_sub("rest", REST_KEYS)?)?,
-        ModelSection::Solid { .. } => root
+        ModelSection::Solid { .. } | ModelSection::Auto => root
             .sub("rest")?
-            .map(rest_of_solid)
+            .map(|section| rest_of_wall(section, model))
             .transpose()?
             .unwrap_or(RestSection::Unstretched),
     };
@@ -147,12 +149,11 @@ fn material(mut section: Section<'_>) -> Result<Law, Fault> {
 const REST_KEYS: &str = "exactly one of pole_stretch, pressure_kpa, equator_radius_mm, height_mm";
 
 fn rest(mut section: Section<'_>) -> Result<RestSection, Fault> {
-    let stretch = Bounds::above(1.0, 10.0, "(no stretch is 1)");
     let given: Vec<(&str, RestSection)> = [
         (
             "pole_stretch",
             section
-                .number("pole_stretch", stretch)?
+                .number("pole_stretch", STRETCH)?
                 .map(RestSection::PoleStretch),
         ),
         (
@@ -192,25 +193,51 @@ fn rest(mut section: Section<'_>) -> Result<RestSection, Fault> {
     }
 }
 
-fn rest_of_solid(mut section: Section<'_>) -> Result<RestSection, Fault> {
-    const ONLY: &str = "left out: a solid rests unstretched (no [rest]) or at a pressure_kpa";
+/// The rest of a wall: unstretched, inflated with its rim held, or (`auto`) inflated as a membrane and then bonded.
+fn rest_of_wall(mut section: Section<'_>, model: ModelSection) -> Result<RestSection, Fault> {
+    let auto = model == ModelSection::Auto;
+    let (keys, refused): (_, &[&'static str]) = if auto {
+        (
+            "pressure_kpa (rim held) or pole_stretch (inflated, then bonded), or no [rest] at all for an unstretched wall",
+            &["equator_radius_mm", "height_mm"],
+        )
+    } else {
+        (
+            "pressure_kpa, or no [rest] at all for an unstretched solid",
+            &["pole_stretch", "equator_radius_mm", "height_mm"],
+        )
+    };
     let pressure = section.number("pressure_kpa", PRESSURE)?;
-    for key in ["pole_stretch", "equator_radius_mm", "height_mm"] {
+    let stretch = if auto {
+        section.number("pole_stretch", STRETCH)?
+    } else {
+        None
+    };
+    for key in refused {
         if section.has(key) {
-            return Err(section.refuse(key, ONLY));
+            return Err(section.refuse(
+                key,
+                &format!("left out: with this model.kind [rest] takes {keys}"),
+            ));
         }
     }
-    if let Some(pressure) = pressure {
-        section.finish()?;
-        return Ok(RestSection::PressureKpa(pressure));
+    match (pressure, stretch) {
+        (Some(_), Some(_)) => Err(section.refuse("pole_stretch", "left out, as pressure_kpa is given")),
+        (Some(pressure), None) => {
+            section.finish()?;
+            Ok(RestSection::PressureKpa(pressure))
+        }
+        (None, Some(stretch)) => {
+            section.finish()?;
+            Ok(RestSection::PoleStretch(stretch))
+        }
+        (None, None) => {
+            // A misspelt key is the likelier reason, and the better message.
+            let missing = section.missing("pressure_kpa", keys);
+            section.finish()?;
+            Err(missing)
+        }
     }
-    // A misspelt key is the likelier reason, and the better message.
-    let missing = section.missing(
-        "pressure_kpa",
-        "a pressure, or no [rest] at all for an unstretched solid",
-    );
-    section.finish()?;
-    Err(missing)
 }
 
 fn fluid(mut section: Section<'_>) -> Result<f64, Fault> {
@@ -221,14 +248,14 @@ fn fluid(mut section: Section<'_>) -> Result<f64, Fault> {
 }
 
 fn model(mut section: Section<'_>) -> Result<ModelSection, Fault> {
-    const KINDS: &str = "\"membrane\" or \"solid\"";
+    const KINDS: &str = "\"membrane\", \"solid\" or \"auto\"";
     let model = match section.text("kind", KINDS)? {
         None | Some("membrane") => ModelSection::Membrane,
         Some("solid") => ModelSection::Solid {
             through: elements(&mut section, "through", 1.0, 8.0)?.unwrap_or(FULL.through as u32),
             along: elements(&mut section, "along", 4.0, 400.0)?.unwrap_or(FULL.along as u32),
         },
-        Some("auto") => return Err(section.unsupported("kind", "choose \"membrane\" or \"solid\"")),
+        Some("auto") => ModelSection::Auto,
         Some(_) => return Err(section.refuse("kind", KINDS)),
     };
     section.finish()?;

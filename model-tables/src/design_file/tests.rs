@@ -474,12 +474,12 @@ fn a_solid_rests_unstretched_or_at_a_pressure() {
         (
             "[rest]\npole_stretch = 2.3\n",
             "",
-            "`rest.pole_stretch` is 2.3: must be left out: a solid",
+            "`rest.pole_stretch` is 2.3: must be left out: with this model.kind [rest] takes pressure_kpa, or no",
         ),
         (
             "[rest]\n",
             "",
-            "`rest.pressure_kpa` is missing: needs a pressure, or no [rest]",
+            "`rest.pressure_kpa` is missing: needs pressure_kpa, or no [rest]",
         ),
         (
             "",
@@ -500,6 +500,27 @@ fn a_solid_rests_unstretched_or_at_a_pressure() {
         let text = solid(rest, keys).expect_err(says).to_string();
         assert!(text.contains(says), "{text}");
     }
+}
+
+#[test]
+fn auto_takes_a_wall_in_any_rest_that_a_solid_can_have() {
+    let auto = |rest: &str| {
+        let text = GOOD.replacen("[rest]\npole_stretch = 2.3\n", rest, 1);
+        DesignFile::parse(&format!("{text}[model]\nkind = \"auto\"\n"), "auto.toml")
+    };
+    for (rest, expected) in [
+        ("", RestSection::Unstretched),
+        ("[rest]\npressure_kpa = 20\n", RestSection::PressureKpa(20.0)),
+        ("[rest]\npole_stretch = 1.3\n", RestSection::PoleStretch(1.3)),
+    ] {
+        let file = auto(rest).expect("a design");
+        assert_eq!((file.rest, file.model), (expected, ModelSection::Auto));
+        assert_eq!(DesignFile::parse(&file.canonical(), "canonical.toml"), Ok(file));
+    }
+    let text = auto("[rest]\nheight_mm = 4\n")
+        .expect_err("no such rest")
+        .to_string();
+    assert!(text.contains("`rest.height_mm` is 4: must be left out"), "{text}");
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! `designer profile`: the meridian of one state.
 
+use super::model::{self, Model};
 use super::rows::{Cell, Rows};
 use super::{Answer, Field, Refusal, bench, finite, read, refuse_plain};
 use crate::design_file::DesignFile;
 use crate::membrane::Zone;
 use crate::press::{ModelError, Press};
+use crate::rung::Kind;
 use crate::solid;
 use crate::solid::mesh::Elements;
 use std::path::PathBuf;
@@ -62,11 +64,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let design_file = read(file)?;
     let calibration = &design_file.calibration;
     let points = arguments.points as usize;
-    if let Some(elements) = design_file.elements() {
+    let model = model::of(file, &design_file)?;
+    if let Kind::Solid(elements) = model.kind {
         refuse_plain(file, arguments.tension_field)?;
-        return solid(arguments, &design_file, elements);
+        return solid(arguments, &design_file, &model, elements);
     }
-    let mut press = Press::new(&design_file.design(), arguments.tension_field.into())
+    let mut press = Press::new(&model.design, arguments.tension_field.into())
         .map_err(|error| Refusal::about(file, &error))?;
     let meridian = press
         .profile(bench::depth(calibration, arguments.indentation_mm), points)
@@ -98,15 +101,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     }
     Ok(Answer {
         rows,
-        notes: Vec::new(),
+        notes: model.note.into_iter().collect(),
     })
 }
 
 /// The meridian of a solid: the middle of its wall.
-fn solid(arguments: &Arguments, design_file: &DesignFile, elements: Elements) -> Result<Answer, Refusal> {
+fn solid(
+    arguments: &Arguments,
+    design_file: &DesignFile,
+    model: &Model,
+    elements: Elements,
+) -> Result<Answer, Refusal> {
     let calibration = &design_file.calibration;
     let refuse = |error: ModelError| Refusal::about(&arguments.design, &bench::as_read(calibration, error));
-    let mut press = solid::press::Press::new(&design_file.design(), elements).map_err(refuse)?;
+    let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
     let stations = press
         .profile(
             bench::depth(calibration, arguments.indentation_mm),
@@ -135,6 +143,6 @@ fn solid(arguments: &Arguments, design_file: &DesignFile, elements: Elements) ->
     }
     Ok(Answer {
         rows,
-        notes: Vec::new(),
+        notes: model.note.iter().cloned().collect(),
     })
 }

@@ -1,11 +1,13 @@
 //! `designer rest`: the rest state and the limits.
 
+use super::model::{self, Model};
 use super::rows::{Cell, Rows};
 use super::{Answer, Refusal, bench, read, warn_of_instability};
 use crate::design_file::DesignFile;
 use crate::membrane::TensionField;
 use crate::press::{ModelError, Press};
 use crate::rest::Branch;
+use crate::rung::Kind;
 use crate::solid;
 use crate::solid::mesh::Elements;
 use std::path::Path;
@@ -23,11 +25,12 @@ const COLUMNS: &[&str] = &[
 pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
     let design_file = read(file)?;
     let calibration = &design_file.calibration;
-    if let Some(elements) = design_file.elements() {
-        return solid(file, &design_file, elements);
+    let model = model::of(file, &design_file)?;
+    if let Kind::Solid(elements) = model.kind {
+        return solid(file, &design_file, &model, elements);
     }
-    let mut press = Press::new(&design_file.design(), TensionField::Relaxed)
-        .map_err(|error| Refusal::about(file, &error))?;
+    let mut press =
+        Press::new(&model.design, TensionField::Relaxed).map_err(|error| Refusal::about(file, &error))?;
     let rest = *press.rest();
     let limit = press.limit().map_err(|error| Refusal::about(file, &error))?;
     warn_of_instability(file, "at rest", press.rest_stability());
@@ -54,15 +57,21 @@ pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
             "two rest states: this is the more stretched, the other has a pole stretch of {other:.6}"
         )],
     };
+    notes.extend(model.note);
     notes.extend(bench::caution(&design_file));
     Ok(Answer { rows, notes })
 }
 
 /// The rest state of a solid.
-fn solid(file: &Path, design_file: &DesignFile, elements: Elements) -> Result<Answer, Refusal> {
+fn solid(
+    file: &Path,
+    design_file: &DesignFile,
+    model: &Model,
+    elements: Elements,
+) -> Result<Answer, Refusal> {
     let calibration = &design_file.calibration;
     let refuse = |error: ModelError| Refusal::about(file, &error);
-    let mut press = solid::press::Press::new(&design_file.design(), elements).map_err(refuse)?;
+    let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
     let rest = *press.rest();
     let limit = press.limit().map_err(refuse)?;
     let mut rows = Rows::new(COLUMNS);
@@ -77,6 +86,11 @@ fn solid(file: &Path, design_file: &DesignFile, elements: Elements) -> Result<An
     ]);
     Ok(Answer {
         rows,
-        notes: bench::caution(design_file).into_iter().collect(),
+        notes: model
+            .note
+            .iter()
+            .cloned()
+            .chain(bench::caution(design_file))
+            .collect(),
     })
 }

@@ -1,9 +1,11 @@
 //! `designer solve`: pressed states.
 
+use super::model::{self, Model};
 use super::rows::{Cell, Rows};
 use super::{Answer, Field, Refusal, bench, finite, read, refuse_plain, warn, warn_of_instability};
 use crate::design_file::DesignFile;
 use crate::press::{ModelError, Press};
+use crate::rung::Kind;
 use crate::solid;
 use crate::solid::mesh::Elements;
 use crate::stability::Margin;
@@ -46,11 +48,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             &"its tables come from the data in [calibration]; these states are the model's",
         );
     }
-    if let Some(elements) = design_file.elements() {
+    let model = model::of(file, &design_file)?;
+    if let Kind::Solid(elements) = model.kind {
         refuse_plain(file, arguments.tension_field)?;
-        return solid(arguments, &design_file, elements);
+        return solid(arguments, &design_file, &model, elements);
     }
-    let mut press = Press::new(&design_file.design(), arguments.tension_field.into())
+    let mut press = Press::new(&model.design, arguments.tension_field.into())
         .map_err(|error| Refusal::about(file, &error))?;
     // Solved from shallow to deep, given in the order asked.
     let mut order: Vec<usize> = (0..arguments.indentation_mm.len()).collect();
@@ -90,15 +93,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     }
     Ok(Answer {
         rows,
-        notes: Vec::new(),
+        notes: model.note.into_iter().collect(),
     })
 }
 
 /// The states of a solid.
-fn solid(arguments: &Arguments, design_file: &DesignFile, elements: Elements) -> Result<Answer, Refusal> {
+fn solid(
+    arguments: &Arguments,
+    design_file: &DesignFile,
+    model: &Model,
+    elements: Elements,
+) -> Result<Answer, Refusal> {
     let calibration = &design_file.calibration;
     let refuse = |error: ModelError| Refusal::about(&arguments.design, &bench::as_read(calibration, error));
-    let mut press = solid::press::Press::new(&design_file.design(), elements).map_err(refuse)?;
+    let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
     let mut rows = Rows::new(COLUMNS);
     // States on the way serve all that follow, in whatever order.
     for &asked in &arguments.indentation_mm {
@@ -121,6 +129,6 @@ fn solid(arguments: &Arguments, design_file: &DesignFile, elements: Elements) ->
     }
     Ok(Answer {
         rows,
-        notes: Vec::new(),
+        notes: model.note.iter().cloned().collect(),
     })
 }

@@ -1,6 +1,7 @@
 //! Pressing a solid fingertip: its rest state, states at asked indentations, the end of the press.
 
 use super::equilibrium::{Balance, Fluid, State, Wall};
+use super::inflation;
 use super::mesh::Elements;
 use super::section::{self, Station};
 use super::trail::Trail;
@@ -27,10 +28,6 @@ pub const FULL: Elements = Elements {
 const LARGEST_STEP: f64 = 0.035;
 /// Step under which the way gives up, over the height.
 const SMALLEST_STEP: f64 = 1e-5;
-/// Growth of the fluid's volume from state to state of an inflation.
-const INFLATION_STEP: f64 = 0.03;
-/// Growth of the fluid's volume in all, after which an inflation gives up.
-const LARGEST_INFLATION: f64 = 100.0;
 /// Accuracy of the end of the press, over the height.
 const LIMIT_TOLERANCE: f64 = 1e-7;
 
@@ -125,8 +122,9 @@ impl Press {
         let mut state = wall.undeformed();
         match design.rest {
             RestBy::Unstretched => {}
-            RestBy::Pressure(pascals) => inflate(&mut wall, &mut state, pascals / modulus, modulus)?,
-            _ => return Err(ModelError::RestNotForSolid),
+            RestBy::Pressure(pascals) => inflation::held(&mut wall, &mut state, pascals, modulus)?,
+            RestBy::PoleStretch(stretch) => inflation::bonded(&mut wall, &mut state, design, stretch)?,
+            RestBy::EquatorRadius(_) | RestBy::Height(_) => return Err(ModelError::RestNotForSolid),
         }
         let volume = wall.volume(&state);
         let unit = length * length * length;
@@ -134,7 +132,7 @@ impl Press {
         let rest = Rest {
             pressure: state.fluid * modulus,
             pole_stretch: section::pole_stretch(&wall, &state),
-            edge_radius: length,
+            edge_radius: state.nodes[state.nodes.len() - 1][0] * length,
             height: height * length,
             volume: volume * unit,
             energy: wall.energy(&state) * modulus * unit,
@@ -354,70 +352,5 @@ fn scaled(law: &Law, factor: f64) -> Law {
             c2: factor * c2,
             c3: factor * c3,
         },
-    }
-}
-
-/// Inflates the undeformed wall to a pressure, by volume: the pressure may have a maximum on the way.
-fn inflate(wall: &mut Wall, state: &mut State, pressure: f64, unit: f64) -> Result<(), ModelError> {
-    // Far above anything.
-    let plate = 1e6;
-    let first = wall.volume(state);
-    let mut volume = first;
-    let mut step = INFLATION_STEP;
-    let mut greatest = 0.0;
-    let none = |greatest: f64| ModelError::PressureOutOfReach {
-        asked: pressure * unit,
-        greatest: greatest * unit,
-    };
-    let unsolved = |failure| ModelError::RestUnsolved {
-        failure: AnyFailure::Solid(failure),
-    };
-    let mut before = state.clone();
-    loop {
-        let next = volume * (1.0 + step);
-        let mut trial = state.clone();
-        // What the last step did, once more.
-        trial.add(1.0, state);
-        trial.add(-1.0, &before);
-        let by_volume = Fluid {
-            by_volume: 1.0,
-            volume: next,
-            by_pressure: 0.0,
-            pressure: 0.0,
-        };
-        if let Err(failure) = wall.settle(&mut trial, plate, &by_volume) {
-            before = state.clone();
-            step *= 0.5;
-            if step < 1e-6 {
-                return Err(unsolved(failure));
-            }
-            continue;
-        }
-        if trial.fluid >= pressure {
-            let by_pressure = Fluid {
-                by_volume: 0.0,
-                volume: 0.0,
-                by_pressure: 1.0,
-                pressure,
-            };
-            let share = (pressure - state.fluid) / (trial.fluid - state.fluid);
-            let mut found = state.clone();
-            found.add(share, &trial);
-            found.add(-share, state);
-            found.fluid = pressure;
-            return match wall.settle(&mut found, plate, &by_pressure) {
-                Ok(_) => {
-                    *state = found;
-                    Ok(())
-                }
-                Err(failure) => Err(unsolved(failure)),
-            };
-        }
-        if trial.fluid < greatest || next > LARGEST_INFLATION * first {
-            return Err(none(greatest));
-        }
-        greatest = trial.fluid;
-        before = core::mem::replace(state, trial);
-        volume = next;
     }
 }

@@ -1,0 +1,196 @@
+//! Rest states of a solid: inflated with the rim held, or inflated free and then bonded as a membrane is.
+
+use super::equilibrium::{Fluid, State, Wall};
+use super::section;
+use crate::adapt::Failure as AnyFailure;
+use crate::design::{Design, Membrane, RestBy};
+use crate::membrane::TensionField;
+use crate::press::{ModelError, Press};
+use crate::solid::Failure;
+use core::f64::consts::PI;
+
+/// A plate far above anything.
+const NO_PLATE: f64 = 1e6;
+/// Growth of the fluid's volume from state to state of an inflation.
+const INFLATION_STEP: f64 = 0.03;
+/// Growth of the fluid's volume in all, after which an inflation gives up.
+const LARGEST_INFLATION: f64 = 100.0;
+/// Growth of the pole stretch from state to state.
+const STRETCH_STEP: f64 = 0.04;
+/// Accuracy of the pole stretch.
+const STRETCH_TOLERANCE: f64 = 1e-9;
+
+fn unsolved(failure: Failure) -> ModelError {
+    ModelError::RestUnsolved {
+        failure: AnyFailure::Solid(failure),
+    }
+}
+
+/// The equation of a given volume.
+fn filled(volume: f64) -> Fluid {
+    Fluid {
+        by_volume: 1.0,
+        volume,
+        by_pressure: 0.0,
+        pressure: 0.0,
+    }
+}
+
+/// The membrane in the middle of a wall, whose semi-axes are the outer surface's.
+pub fn mid_surface(wall: &Membrane) -> Membrane {
+    Membrane {
+        radial_semi_axis: wall.radial_semi_axis - 0.5 * wall.thickness,
+        axial_semi_axis: wall.axial_semi_axis - 0.5 * wall.thickness,
+        thickness: wall.thickness,
+    }
+}
+
+/// Inflates the wall as a membrane is, its rim free to slide on the base, until the pole is stretched by so much, and bonds it
+/// there: the rim goes where the membrane in the middle of the wall has its equator, as thin as that is there.
+///
+/// # Errors
+/// [`ModelError`] of the membrane, and [`ModelError::RestUnsolved`].
+pub fn bonded(wall: &mut Wall, state: &mut State, design: &Design, stretch: f64) -> Result<(), ModelError> {
+    let outer = &design.membrane;
+    let length = outer.radial_semi_axis;
+    let half_of_wall = {
+        let (a, b, h) = (1.0, wall.mesh.height, wall.mesh.thickness);
+        PI / 3.0 * (a * a * b - (a - h) * (a - h) * (b - h))
+    };
+    let layers = wall.mesh.layers();
+    let rim = wall.mesh.node(wall.mesh.stations() - 1, 0);
+    let (mut reached, mut step) = (1.0, STRETCH_STEP);
+    while reached < stretch {
+        let next = (reached + step).min(stretch);
+        let membrane = Design {
+            membrane: mid_surface(outer),
+            rest: RestBy::PoleStretch(next),
+            ..*design
+        };
+        let mut press = Press::new(&membrane, TensionField::Relaxed)?;
+        let rest = *press.rest();
+        let thinning = press
+            .profile(0.0, 3)?
+            .last()
+            .map_or(1.0, |edge| 1.0 / (edge.meridional_stretch * edge.hoop_stretch));
+        let mut trial = state.clone();
+        grow(
+            &mut trial,
+            layers,
+            [rest.edge_radius / length, rest.height / length],
+        );
+        for layer in 0..layers {
+            let through = layer as f64 / (layers - 1) as f64 - 0.5;
+            trial.nodes[rim + layer] = [
+                rest.edge_radius / length + through * thinning * wall.mesh.thickness,
+                0.0,
+            ];
+        }
+        let volume = rest.volume / (length * length * length) - half_of_wall;
+        match wall.settle(&mut trial, NO_PLATE, &filled(volume)) {
+            Ok(_) => {
+                *state = trial;
+                reached = next;
+            }
+            Err(failure) => {
+                step *= 0.5;
+                if step < 1e-3 * STRETCH_STEP {
+                    return Err(unsolved(failure));
+                }
+            }
+        }
+    }
+    // From the membrane's volume to the pole stretch, by secants.
+    let mut volume = wall.volume(state);
+    let mut excess = section::pole_stretch(wall, state) - stretch;
+    let mut change = 1e-3 * volume;
+    for _ in 0..20 {
+        if excess.abs() < STRETCH_TOLERANCE {
+            return Ok(());
+        }
+        volume += change;
+        wall.settle(state, NO_PLATE, &filled(volume)).map_err(unsolved)?;
+        let next = section::pole_stretch(wall, state) - stretch;
+        change *= -next / (next - excess);
+        excess = next;
+    }
+    Err(unsolved(Failure::Stalled { residual: excess }))
+}
+
+/// A guess for a wall whose middle has grown to a radius and a height: as much thinner as it grew.
+fn grow(state: &mut State, layers: usize, [radius, height]: [f64; 2]) {
+    let middle = layers / 2;
+    let last = state.nodes.len() - layers;
+    let factors = [
+        radius / state.nodes[last + middle][0],
+        height / state.nodes[middle][1],
+    ];
+    let thinning = 1.0 / (factors[0] * factors[1]);
+    for station in state.nodes.chunks_exact_mut(layers) {
+        let at = station[middle];
+        for node in station {
+            for c in 0..2 {
+                node[c] = factors[c] * at[c] + thinning * (node[c] - at[c]);
+            }
+        }
+    }
+}
+
+/// Inflates the undeformed wall, its rim held, to a pressure in pascals of a law whose shear modulus is `unit`. It goes by
+/// volume, as the pressure may have a maximum on the way.
+///
+/// # Errors
+/// [`ModelError::PressureOutOfReach`], [`ModelError::RestUnsolved`].
+pub fn held(wall: &mut Wall, state: &mut State, pascals: f64, unit: f64) -> Result<(), ModelError> {
+    let pressure = pascals / unit;
+    let first = wall.volume(state);
+    let mut volume = first;
+    let mut step = INFLATION_STEP;
+    let mut greatest = 0.0;
+    let none = |greatest: f64| ModelError::PressureOutOfReach {
+        asked: pressure * unit,
+        greatest: greatest * unit,
+    };
+    let mut before = state.clone();
+    loop {
+        let next = volume * (1.0 + step);
+        let mut trial = state.clone();
+        // What the last step did, once more.
+        trial.add(1.0, state);
+        trial.add(-1.0, &before);
+        if let Err(failure) = wall.settle(&mut trial, NO_PLATE, &filled(next)) {
+            before = state.clone();
+            step *= 0.5;
+            if step < 1e-6 {
+                return Err(unsolved(failure));
+            }
+            continue;
+        }
+        if trial.fluid >= pressure {
+            let by_pressure = Fluid {
+                by_volume: 0.0,
+                volume: 0.0,
+                by_pressure: 1.0,
+                pressure,
+            };
+            let share = (pressure - state.fluid) / (trial.fluid - state.fluid);
+            let mut found = state.clone();
+            found.add(share, &trial);
+            found.add(-share, state);
+            found.fluid = pressure;
+            return match wall.settle(&mut found, NO_PLATE, &by_pressure) {
+                Ok(_) => {
+                    *state = found;
+                    Ok(())
+                }
+                Err(failure) => Err(unsolved(failure)),
+            };
+        }
+        if trial.fluid < greatest || next > LARGEST_INFLATION * first {
+            return Err(none(greatest));
+        }
+        greatest = trial.fluid;
+        before = core::mem::replace(state, trial);
+        volume = next;
+    }
+}
