@@ -12,6 +12,9 @@ const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip.toml";
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
     println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
+    println!(
+        "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
+    );
     let design = env::var("FINGERTIP_DESIGN").unwrap_or_else(|_| DEFAULT_DESIGN.into());
     // The build script runs in the folder of its package, which is the workspace root.
     println!("cargo::rerun-if-changed={design}");
@@ -36,17 +39,26 @@ fn tables(design: &Path) -> Result<String, String> {
         GenerateError::File(error) => error.to_string(),
         error => named(error.to_string()),
     })?;
-    match generated.transducer().kind {
-        TransducerKind::Ratiometric { .. } => Ok(generated.rust_source()),
-        other => Err(named(format!(
-            "the firmware has no driver for transducer.kind {other:?}, only for \"ratiometric\""
-        ))),
-    }
+    // Only the driver of this kind gets into the image.
+    let kind = match generated.transducer().kind {
+        TransducerKind::Ratiometric { .. } => "ratiometric",
+        TransducerKind::Abp2 { .. } => "abp2",
+        TransducerKind::Ms5837 { .. } => "ms5837",
+        TransducerKind::Dps310 { .. } => "dps310",
+    };
+    println!("cargo::rustc-cfg=transducer=\"{kind}\"");
+    Ok(generated.rust_source())
 }
 
 fn link_for_the_chip(out: &Path) {
-    println!("cargo::rerun-if-changed=memory.x");
-    fs::copy("memory.x", out.join("memory.x")).expect("memory.x lies beside the build script");
+    // Its memory lies beside each board's file; without a board the sources say what is missing.
+    let memory = if env::var_os("CARGO_FEATURE_BOARD_NUCLEO_L432KC").is_some() {
+        "src/board/nucleo_l432kc.x"
+    } else {
+        "src/board/nucleo_f429zi.x"
+    };
+    println!("cargo::rerun-if-changed={memory}");
+    fs::copy(memory, out.join("memory.x")).expect("every board says what memory it has");
     println!("cargo::rustc-link-search={}", out.display());
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");

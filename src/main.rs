@@ -5,6 +5,8 @@
 #[cfg(target_os = "none")]
 mod board;
 #[cfg(target_os = "none")]
+mod chosen;
+#[cfg(target_os = "none")]
 mod tasks;
 
 #[cfg(not(target_os = "none"))]

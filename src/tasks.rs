@@ -1,20 +1,21 @@
 //! The two tasks of the firmware: [`signal`] makes reports, [`send`] puts them on the line.
 
-use crate::board::{Board, Clock, Converter, Line, Watchdog};
+use crate::board::{Board, Clock, Line, Watchdog};
+use crate::chosen::{self, Pace};
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_sync::blocking_mutex::raw::ThreadModeRawMutex;
 use embassy_sync::channel::{Channel, TrySendError};
-use embassy_time::{Duration, with_timeout};
+use embassy_time::Delay;
 use fingertip::calibration::Calibration;
-use fingertip::counts::{self, BLOCK_LENGTH, CountSum, PERIOD, Window};
 use fingertip::design::Design;
 use fingertip::image::ImageDesign;
 use fingertip::pipeline::Pipeline;
-use fingertip::report::{Fault, Microseconds, Report, Status, Warnings};
+use fingertip::report::{Microseconds, Report, Status, Warnings};
 use fingertip::tare::StartUp;
 use fingertip::telemetry::{self, Frame, Hello, Message, ResetCause};
-use fingertip::transducer::ratiometric::Conversion;
+use fingertip::transducer::Transducer;
+use fingertip::transducer::keeper::Keeper;
 use panic_probe as _;
 
 /// From one hello to the next, microseconds.
@@ -23,8 +24,8 @@ const HELLO_PERIOD: u64 = 1_000_000;
 /// Every how many reports one goes to the log.
 const LOGGED: u32 = 250;
 
-/// A converter that gives nothing for this long has stalled.
-const STALLED: Duration = Duration::from_micros(2 * PERIOD as u64);
+/// From one report to the next, microseconds.
+const PERIOD: u32 = Pipeline::<ImageDesign>::PERIOD;
 
 /// Frames waiting for the line: 8 ms of reports. When full the oldest goes, and is counted.
 static QUEUE: Channel<ThreadModeRawMutex, Frame, 8> = Channel::new();
@@ -32,58 +33,57 @@ static QUEUE: Channel<ThreadModeRawMutex, Frame, 8> = Channel::new();
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
     let board = Board::take();
+    if !board.crystal {
+        defmt::warn!("the crystal does not run: times are 1 % off");
+    }
     spawner.spawn(send(board.line).expect("spawned once"));
-    signal(board.clock, board.converter, board.watchdog, board.reset_cause).await
+    let standing = Warnings::CLOCK.when(!board.crystal);
+    let transducer = chosen::transducer(board.port);
+    signal(
+        board.clock,
+        transducer,
+        board.watchdog,
+        board.reset_cause,
+        standing,
+    )
+    .await
 }
 
-/// Turns blocks into reports. Period: one block, 1 ms. Deadline: the next block; when late, samples are lost, which is
-/// reported and counted. Feeds the watchdog with every block that became a report, so that neither a hang here
-/// nor a dead converter goes on for ever.
+/// Turns samples into reports. Period: one sample, 1 ms of a converter. Deadline: the next one; when late, samples are
+/// lost, which is reported and counted. Feeds the watchdog with every sample or the reason why there is none, so that
+/// a hang here does not go on for ever.
 async fn signal(
     clock: Clock,
-    mut converter: Converter,
+    transducer: impl Transducer,
     mut watchdog: Watchdog,
     reset_cause: ResetCause,
+    standing: Warnings,
 ) -> ! {
     let start_up = StartUp::after(reset_cause, None);
-    let mut pipeline = Pipeline::<ImageDesign>::new(start_up, Calibration::default(), Warnings::NONE);
+    let mut pipeline = Pipeline::<ImageDesign>::new(start_up, Calibration::default(), standing);
     let mut publisher = Publisher::new(reset_cause);
     let mut log = Log::default();
-    let mut codes = [0; BLOCK_LENGTH];
+    let mut keeper = Keeper::new(transducer, Delay);
+    let mut pace = Pace::new();
     loop {
-        let (block_end, block) = match with_timeout(STALLED, converter.block(&mut codes)).await {
-            Ok(Ok(block_end)) => {
-                watchdog.pet();
-                publisher.count_lost(block_end);
-                let window = const { Window::of(&ImageDesign::CONSTANTS.transducer.kind) };
-                (block_end, counts::sum(&codes, window))
-            }
-            Ok(Err(_overrun)) => (clock.now(), Err(Fault::SamplesLost)),
-            Err(_timeout) => (clock.now(), Err(Fault::ConverterStalled)),
-        };
-        let report = report_of(&mut pipeline, block_end, block);
+        pace.wait().await;
+        let sample = keeper.next().await;
+        let now = clock.now();
+        watchdog.pet();
+        if let Ok(sample) = sample {
+            publisher.count_lost(Microseconds(now.0.saturating_sub(u64::from(sample.age))));
+        }
+        let report = pipeline.step(now, sample);
         log.report(&report);
-        publisher.report(block_end, report);
+        publisher.report(now, report);
     }
-}
-
-/// From averaged counts to both results.
-// A boundary that stays in the image, so that its instructions can be counted.
-#[inline(never)]
-fn report_of(
-    pipeline: &mut Pipeline<ImageDesign>,
-    now: Microseconds,
-    block: Result<CountSum, Fault>,
-) -> Report {
-    let conversion = const { Conversion::of(&ImageDesign::CONSTANTS.transducer) };
-    pipeline.step(now, block.map(|sum| conversion.sample(sum, 0)))
 }
 
 /// Numbers the frames and queues them.
 struct Publisher {
     sequence: u16,
     next_hello: u64,
-    last_block: Option<Microseconds>,
+    last_sample: Option<Microseconds>,
     hello: Hello,
 }
 
@@ -112,16 +112,16 @@ impl Publisher {
         Self {
             sequence: 0,
             next_hello: 0,
-            last_block: None,
+            last_sample: None,
             hello,
         }
     }
 
-    /// Counts the blocks missing between the last one and this.
-    fn count_lost(&mut self, block_end: Microseconds) {
-        if let Some(last) = self.last_block.replace(block_end) {
-            let passed = u32::try_from(block_end.0.saturating_sub(last.0)).unwrap_or(u32::MAX);
-            // Rounded, because the end of a block is known to a conversion or two.
+    /// Counts the samples missing between the last one and the one measured at this time.
+    fn count_lost(&mut self, measured: Microseconds) {
+        if let Some(last) = self.last_sample.replace(measured) {
+            let passed = u32::try_from(measured.0.saturating_sub(last.0)).unwrap_or(u32::MAX);
+            // Rounded, because the time of a block is known to a conversion or two.
             let missing = (passed.saturating_add(PERIOD / 2) / PERIOD).saturating_sub(1);
             self.hello.samples_lost = self.hello.samples_lost.saturating_add(missing);
         }

@@ -64,21 +64,31 @@ impl core::error::Error for DecodeError {}
 /// Bytes of one frame, the closing zero included.
 pub type Encoded = Vec<u8, MAXIMUM_FRAME>;
 
-/// A body on its way: fields put one after the other.
-pub(crate) struct Writer(Encoded);
+/// A body on its way: fields put one after the other, behind the first code byte of COBS, which is not known yet.
+pub(crate) struct Writer {
+    bytes: [u8; MAXIMUM_FRAME],
+    length: usize,
+}
 
 impl Writer {
     pub(crate) fn new() -> Self {
-        let mut bytes = Encoded::new();
-        // The first code byte of COBS, not known yet.
-        let _ = bytes.push(0);
-        Self(bytes)
+        Self {
+            bytes: [0; MAXIMUM_FRAME],
+            length: 1,
+        }
     }
 
     #[inline]
     pub(crate) fn put<const N: usize>(&mut self, field: [u8; N]) {
-        // MAXIMUM_BODY holds the longest body: nothing is ever left out.
-        let _ = self.0.extend_from_slice(&field);
+        // MAXIMUM_BODY holds the longest body: nothing is ever left out. A field of known length is a store or two.
+        if let Some(place) = self
+            .bytes
+            .get_mut(self.length..)
+            .and_then(|rest| rest.first_chunk_mut())
+        {
+            *place = field;
+            self.length += N;
+        }
     }
 
     /// The frame of the body.
@@ -86,10 +96,11 @@ impl Writer {
     /// Below 254 bytes COBS is a chain through the zeros, each replaced by the distance to the next: done in place,
     /// in a quarter of the instructions of the general encoder, against which it is tested.
     pub(crate) fn finish(mut self) -> Encoded {
-        let check = CHECK.checksum(self.0.get(1..).unwrap_or(&[]));
+        let check = CHECK.checksum(self.bytes.get(1..self.length).unwrap_or(&[]));
         self.put(check.to_le_bytes());
         let mut distance = 1_u8;
-        for byte in self.0.iter_mut().rev() {
+        let frame = self.bytes.get_mut(..self.length).unwrap_or(&mut []);
+        for byte in frame.iter_mut().rev() {
             if *byte == 0 {
                 *byte = distance;
                 distance = 1;
@@ -97,8 +108,10 @@ impl Writer {
                 distance += 1;
             }
         }
-        let _ = self.0.push(0);
-        self.0
+        // Behind the frame lies nothing but zeros, of which the first closes it.
+        let mut encoded = Encoded::from_array(self.bytes);
+        encoded.truncate(self.length + 1);
+        encoded
     }
 }
 

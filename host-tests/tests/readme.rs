@@ -6,7 +6,12 @@ use model_tables::generate;
 
 #[test]
 fn tables_of_the_shipped_designs() {
-    for name in ["index-fingertip", "paper-prestretched", "skin-analogue"] {
+    for name in [
+        "index-fingertip",
+        "paper-prestretched",
+        "skin-analogue",
+        "skin-light-touch",
+    ] {
         let generated = generate::from_design_file(&design(name)).expect("a shipped design");
         let (tables, certificate) = (&generated.certified.tables, &generated.certified.certificate);
         assert_readme_says(&format!(

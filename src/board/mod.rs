@@ -1,9 +1,17 @@
 //! One file per board: pins, clocks and interrupts, each with its reason. Every board gives the same things.
 
+#[cfg(not(transducer = "ratiometric"))]
+mod i2c;
+
 #[cfg(feature = "board-nucleo-f429zi")]
 mod nucleo_f429zi;
 #[cfg(feature = "board-nucleo-f429zi")]
-pub(crate) use nucleo_f429zi::{Board, Clock, Converter, Line, Watchdog};
+pub(crate) use nucleo_f429zi::{Board, Clock, Line, Port, Watchdog};
 
-#[cfg(not(feature = "board-nucleo-f429zi"))]
-compile_error!("choose a board: --features board-nucleo-f429zi");
+#[cfg(feature = "board-nucleo-l432kc")]
+mod nucleo_l432kc;
+#[cfg(feature = "board-nucleo-l432kc")]
+pub(crate) use nucleo_l432kc::{Board, Clock, Line, Port, Watchdog};
+
+#[cfg(not(any(feature = "board-nucleo-f429zi", feature = "board-nucleo-l432kc")))]
+compile_error!("choose a board: --no-default-features --features board-nucleo-l432kc");

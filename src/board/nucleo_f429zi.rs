@@ -1,64 +1,70 @@
-//! NUCLEO-F429ZI (ST user manual UM1974): STM32F429ZI at 160 MHz, ST-LINK/V2-1 with a serial port.
+//! NUCLEO-F429ZI (ST user manual UM1974): STM32F429ZI at 128 MHz, ST-LINK/V2-1 with a serial port.
 //!
 //! | what | where | why |
 //! |---|---|---|
 //! | clock | HSE, 8 MHz, bypass | the ST-LINK's MCO drives it by default (UM1974 6.8.1); a crystal is not fitted |
-//! | transducer | PA3, `ADC123_IN3` | A0 of the Zio and Arduino header (UM1974 table 19) |
+//! | transducer, analogue | PA3, `ADC123_IN3` | A0 of the Zio and Arduino header (UM1974 table 19) |
+//! | transducer, bus | PB8, PB9, I2C1 | D15 and D14 of that header, with pull-ups at the transducer |
 //! | serial port | PD8, `USART3_TX` | the ST-LINK's virtual COM port by default (UM1974 6.9) |
 //!
 //! The transducer's output must reach A0 in the ratio of its supply to the board's 3.3 V, which is the
 //! converter's reference (for a 5 V part: through a divider from the same 5 V), at no more than 10 kilo-ohm. A
 //! pull-up of about 1 megohm to 3.3 V makes a broken wire read as open.
 
-use embassy_stm32::adc::{self, Adc, AdcChannel as _, RingBufferedAdc, SampleTime};
+#[cfg(not(transducer = "ratiometric"))]
+use super::i2c::{I2cBus, Wires};
+#[cfg(transducer = "ratiometric")]
+use core::sync::atomic::{AtomicU32, Ordering, fence};
+#[cfg(transducer = "ratiometric")]
+use embassy_stm32::adc::{Adc, SampleTime};
+#[cfg(not(transducer = "ratiometric"))]
+use embassy_stm32::gpio::{Level, OutputOpenDrain, Speed};
+#[cfg(not(transducer = "ratiometric"))]
+use embassy_stm32::i2c::{self, I2c, Master};
 use embassy_stm32::mode::Async;
-use embassy_stm32::pac;
-use embassy_stm32::peripherals::{ADC1, DMA1_CH3, DMA2_CH0, IWDG};
+use embassy_stm32::peripherals::{DMA1_CH3, IWDG};
 use embassy_stm32::rcc::{
     AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllSource, Sysclk,
 };
 use embassy_stm32::time::Hertz;
 use embassy_stm32::usart::{self, UartTx};
 use embassy_stm32::wdg::IndependentWatchdog;
-use embassy_stm32::{Config, bind_interrupts, dma};
+use embassy_stm32::{Config, bind_interrupts, dma, pac, peripherals};
 use embassy_time::Instant;
-use fingertip::counts::{BLOCK_LENGTH, PERIOD};
+#[cfg(transducer = "ratiometric")]
+use embassy_time::{Duration, Ticker};
 use fingertip::report::Microseconds;
 use fingertip::telemetry::ResetCause;
-use static_cell::ConstStaticCell;
+#[cfg(transducer = "ratiometric")]
+use fingertip::{
+    counts::{BLOCK_LENGTH, Block, PERIOD, Ring},
+    transducer::ratiometric,
+};
 
 bind_interrupts!(struct Interrupts {
-    DMA2_STREAM0 => dma::InterruptHandler<DMA2_CH0>;
     DMA1_STREAM3 => dma::InterruptHandler<DMA1_CH3>;
+});
+
+#[cfg(not(transducer = "ratiometric"))]
+bind_interrupts!(struct BusInterrupts {
+    I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>;
+    I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
+    DMA1_STREAM0 => dma::InterruptHandler<peripherals::DMA1_CH0>;
+    DMA1_STREAM6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
 });
 
 /// The crystal oscillator of the ST-LINK.
 const HSE: Hertz = Hertz(8_000_000);
 
-/// Clock of the converter: 8 MHz / 4 * 160 / 2 = 160 MHz to the core, / 16 to APB2, / 2 in the converter.
-const CONVERTER_CLOCK: u32 = 5_000_000;
-
-/// Cycles of one conversion: 28 of sampling (5.6 us, enough for 10 kilo-ohm) and 12 of conversion, 8 us.
-const CONVERSION_CYCLES: u32 = 28 + 12;
-
-/// One conversion, microseconds.
-const CONVERSION: u32 = CONVERSION_CYCLES / (CONVERTER_CLOCK / 1_000_000);
-
-// 125 conversions of 40 cycles at 5 MHz are 1 ms to the cycle: the converter itself is the clock of the reports.
-// 160 MHz and not the part's 168 or 180 because 5 MHz divides from it and 1 ms then is a whole number of
-// conversions; a slow converter also samples long and leaves the core 1.28 million cycles a thousand blocks.
-const _: () = assert!(BLOCK_LENGTH as u32 * CONVERSION == PERIOD);
-
-/// 36 % used by reports of 31 bytes each millisecond. From 40 MHz the divider gives 930 233, 0.9 % fast: a tenth of
-/// a bit at the end of a frame of ten, with half a bit allowed.
+/// 36 % used by reports of 31 bytes each millisecond. From 32 MHz the divider gives 920 863, 0.1 % slow.
 const BAUD: u32 = 921_600;
 
-/// A report comes each millisecond; the oscillator of the watchdog runs at 17 to 47 kHz for a nominal 32 (DS9405
-/// table 43), so this is 68 to 188 ms.
-const WATCHDOG: u32 = 100_000;
+/// The slowest report comes after a transducer's start, 60 ms; the oscillator of the watchdog runs at 17 to 47 kHz for a
+/// nominal 32 (DS9405 table 43), so this is 136 to 376 ms.
+const WATCHDOG: u32 = 200_000;
 
-/// Two blocks: the converter fills one half while the other is read.
-static RING: ConstStaticCell<[u16; 2 * BLOCK_LENGTH]> = ConstStaticCell::new([0; 2 * BLOCK_LENGTH]);
+/// The crystal is given this many looks to be ready, some 3 ms at the 16 MHz the core starts with (DS9405 table 38: 2 ms).
+const LOOKS: u32 = 8_000;
 
 /// The serial port's sender.
 pub(crate) type Line = UartTx<'static, Async>;
@@ -86,39 +92,59 @@ impl Clock {
 pub(crate) struct Board {
     /// The time, from here on.
     pub(crate) clock: Clock,
-    /// The transducer's samples.
-    pub(crate) converter: Converter,
+    /// What the transducer is on.
+    pub(crate) port: Port,
     /// The way out for frames.
     pub(crate) line: Line,
     /// Running from here on.
     pub(crate) watchdog: Watchdog,
     /// Why the chip was reset.
     pub(crate) reset_cause: ResetCause,
+    /// Whether the crystal runs; the chip's own oscillator, 1 % off, has taken its place if not.
+    pub(crate) crystal: bool,
 }
+
+/// What the transducer is on: the converter, ...
+#[cfg(transducer = "ratiometric")]
+pub(crate) type Port = Converter;
+
+/// ... or the bus.
+#[cfg(not(transducer = "ratiometric"))]
+pub(crate) type Port = I2cBus<I2c1>;
 
 impl Board {
     /// Sets up clocks, pins and peripherals. Called once; all failures in here are faults of this file, found by
     /// running the image once.
     pub(crate) fn take() -> Self {
+        // Before anything that can hang. Until it is set below, it is fed for half a second (RM0090 21.3.3).
+        pac::IWDG.kr().write(|w| w.set_key(pac::iwdg::vals::Key::START));
+        let crystal = crystal_runs();
         let mut config = Config::default();
-        config.rcc.hse = Some(Hse {
+        config.rcc.hse = crystal.then_some(Hse {
             freq: HSE,
             mode: HseMode::Bypass,
         });
-        config.rcc.pll_src = PllSource::HSE;
+        // 2 MHz into the PLL has the least jitter (RM0090 6.3.2): of 8 MHz, or of the internal 16.
+        let (source, division) = if crystal {
+            (PllSource::HSE, PllPreDiv::DIV4)
+        } else {
+            (PllSource::HSI, PllPreDiv::DIV8)
+        };
+        config.rcc.pll_src = source;
+        // 128 MHz, and not the part's 168 or 180, because the converter's 4 MHz divide from it: a block is then a
+        // millisecond to the cycle.
         config.rcc.pll = Some(Pll {
-            // 2 MHz into the PLL has the least jitter (RM0090 6.3.2).
-            prediv: PllPreDiv::DIV4,
-            mul: PllMul::MUL160,
+            prediv: division,
+            mul: PllMul::MUL128,
             divp: Some(PllPDiv::DIV2),
             divq: None,
             divr: None,
         });
         config.rcc.sys = Sysclk::PLL1_P;
         config.rcc.ahb_pre = AHBPrescaler::DIV1;
-        // 40 MHz, of at most 45.
+        // 32 MHz, of at most 45.
         config.rcc.apb1_pre = APBPrescaler::DIV4;
-        // 10 MHz: nothing but the converter lives there.
+        // 8 MHz: nothing but the converter lives there.
         config.rcc.apb2_pre = APBPrescaler::DIV16;
         let peripherals = embassy_stm32::init(config);
         let clock = Clock {
@@ -128,15 +154,16 @@ impl Board {
         let mut watchdog = IndependentWatchdog::new(peripherals.IWDG, WATCHDOG);
         watchdog.unleash();
 
-        let ring = Adc::new(peripherals.ADC1).into_ring_buffered(
-            peripherals.DMA2_CH0,
-            RING.take(),
-            Interrupts,
-            // One channel: a ring of several can come out of step (embassy issue 5025).
-            [(peripherals.PA3.degrade_adc(), SampleTime::CYCLES28)].into_iter(),
-            adc::CONTINUOUS,
-            adc::Exten::DISABLED,
-        );
+        #[cfg(transducer = "ratiometric")]
+        let port = Converter::new(Adc::new(peripherals.ADC1));
+        #[cfg(not(transducer = "ratiometric"))]
+        let port = I2cBus(I2c1 {
+            i2c: peripherals.I2C1,
+            clock: peripherals.PB8,
+            data: peripherals.PB9,
+            sender: peripherals.DMA1_CH6,
+            receiver: peripherals.DMA1_CH0,
+        });
 
         let mut serial = usart::Config::default();
         serial.baudrate = BAUD;
@@ -151,10 +178,11 @@ impl Board {
 
         Self {
             clock,
-            converter: Converter::new(ring, clock),
+            port,
             line,
             watchdog,
             reset_cause: take_reset_cause(),
+            crystal,
         }
     }
 }
@@ -181,29 +209,142 @@ fn take_reset_cause() -> ResetCause {
     }
 }
 
-/// The free-running converter, read a block at a time.
-pub(crate) struct Converter {
-    ring: RingBufferedAdc<'static, ADC1>,
-    clock: Clock,
+/// Whether the crystal is ready in time. The clocks' set-up, later, would wait for it for ever.
+fn crystal_runs() -> bool {
+    pac::RCC.cr().modify(|w| w.set_hsebyp(true));
+    pac::RCC.cr().modify(|w| w.set_hseon(true));
+    (0..LOOKS).any(|_| pac::RCC.cr().read().hserdy())
 }
 
-/// The reader was more than a block late, and samples were overwritten.
-pub(crate) struct Overrun;
+/// The ring that the converter's DMA fills: see [`Converter`].
+#[cfg(transducer = "ratiometric")]
+static RING: [Block; 2] = [const { [const { AtomicU32::new(0) }; BLOCK_LENGTH / 2] }; 2];
 
+/// ADC1 on PA3, free-running at 4 MHz, its DMA (stream 0 of DMA2, channel 0) filling [`RING`] without an interrupt: the
+/// clock, of the same oscillator, says when a block is there.
+///
+/// 28 cycles of sampling (7 us, enough for 10 kilo-ohm) and 12 of conversion are 10 us; 100 of them 1 ms to the cycle.
+#[cfg(transducer = "ratiometric")]
+pub(crate) struct Converter {
+    ticker: Ticker,
+}
+
+#[cfg(transducer = "ratiometric")]
 impl Converter {
-    fn new(mut ring: RingBufferedAdc<'static, ADC1>, clock: Clock) -> Self {
-        // Blocks stay the two halves of the ring, also after an overrun.
-        ring.set_alignment(BLOCK_LENGTH);
-        Self { ring, clock }
+    const CHANNEL: u8 = 3;
+
+    /// The ticks come this long after the end of a block, microseconds.
+    const MARGIN: u64 = 20;
+
+    fn new(adc: Adc<'static, peripherals::ADC1>) -> Self {
+        // Powered and clocked; dropping it would undo that.
+        core::mem::forget(adc);
+        pac::GPIOA
+            .moder()
+            .modify(|w| w.set_moder(usize::from(Self::CHANNEL), pac::gpio::vals::Moder::ANALOG));
+        let adc = pac::ADC1;
+        adc.smpr2()
+            .modify(|w| w.set_smp(usize::from(Self::CHANNEL), SampleTime::CYCLES28));
+        adc.sqr1().modify(|w| w.set_l(0));
+        adc.sqr3().modify(|w| w.set_sq(0, Self::CHANNEL));
+        Self {
+            ticker: Ticker::every(Duration::from_micros(u64::from(PERIOD))),
+        }
+    }
+}
+
+#[cfg(transducer = "ratiometric")]
+impl ratiometric::Converter for Converter {
+    const CONVERSION: u32 = 10;
+
+    fn restart(&mut self) {
+        use pac::dma::vals::{Dir, Pl, Size};
+        let (adc, dma, stream) = (pac::ADC1, pac::DMA2, pac::DMA2.st(0));
+        adc.cr2().write(|_| {});
+        stream.cr().write(|_| {});
+        // It ends the transfer under way, a few cycles.
+        while stream.cr().read().en() {}
+        dma.ifcr(0).write(|w| {
+            w.set_tcif(0, true);
+            w.set_htif(0, true);
+            w.set_teif(0, true);
+            w.set_dmeif(0, true);
+            w.set_feif(0, true);
+        });
+        stream.par().write_value(adc.dr().as_ptr() as u32);
+        stream.m0ar().write_value(RING.as_ptr() as u32);
+        stream.ndtr().write(|w| w.set_ndt(Ring::LENGTH as u16));
+        stream.cr().write(|w| {
+            w.set_chsel(0);
+            w.set_dir(Dir::PERIPHERAL_TO_MEMORY);
+            w.set_pl(Pl::VERY_HIGH);
+            w.set_msize(Size::BITS16);
+            w.set_psize(Size::BITS16);
+            w.set_minc(true);
+            w.set_circ(true);
+            w.set_en(true);
+        });
+        adc.sr().write(|_| {});
+        adc.cr2().write(|w| {
+            w.set_dma(true);
+            w.set_dds(pac::adc::vals::Dds::CONTINUOUS);
+            w.set_cont(true);
+            w.set_adon(true);
+        });
+        // It needs 3 us to wake (DS9405 table 74).
+        embassy_time::block_for(Duration::from_micros(3));
+        adc.cr2().modify(|w| w.set_swstart(true));
+        self.ticker.reset_after(Duration::from_micros(Self::MARGIN));
     }
 
-    /// Waits for the next block; when its last sample was taken.
-    ///
-    /// Deadline: one block after its end, or the next call says [`Overrun`] and goes on with fresh samples.
-    pub(crate) async fn block(&mut self, codes: &mut [u16; BLOCK_LENGTH]) -> Result<Microseconds, Overrun> {
-        let newer = self.ring.read(codes).await.map_err(|_| Overrun)?;
-        // What has come since then tells how late this is.
-        let late = newer as u64 * u64::from(CONVERSION);
-        Ok(Microseconds(self.clock.now().0.saturating_sub(late)))
+    async fn tick(&mut self) {
+        self.ticker.next().await;
+    }
+
+    fn position(&self) -> Option<usize> {
+        let running = !pac::ADC1.sr().read().ovr();
+        let position = Ring::LENGTH - usize::from(pac::DMA2.st(0).ndtr().read().ndt());
+        // What the DMA wrote before it counted is there to be read.
+        fence(Ordering::SeqCst);
+        running.then_some(position)
+    }
+
+    fn ring(&self) -> &[Block; 2] {
+        &RING
+    }
+}
+
+/// I2C1 on D15 (PB8, clock) and D14 (PB9, data) at 400 kHz, with pull-ups of 2.2 to 4.7 kilo-ohm on the transducer's
+/// side.
+#[cfg(not(transducer = "ratiometric"))]
+pub(crate) struct I2c1 {
+    i2c: embassy_stm32::Peri<'static, peripherals::I2C1>,
+    clock: embassy_stm32::Peri<'static, peripherals::PB8>,
+    data: embassy_stm32::Peri<'static, peripherals::PB9>,
+    sender: embassy_stm32::Peri<'static, peripherals::DMA1_CH6>,
+    receiver: embassy_stm32::Peri<'static, peripherals::DMA1_CH0>,
+}
+
+#[cfg(not(transducer = "ratiometric"))]
+impl Wires for I2c1 {
+    fn i2c(&mut self) -> I2c<'_, Async, Master> {
+        let mut config = i2c::Config::default();
+        config.frequency = Hertz(400_000);
+        I2c::new(
+            self.i2c.reborrow(),
+            self.clock.reborrow(),
+            self.data.reborrow(),
+            self.sender.reborrow(),
+            self.receiver.reborrow(),
+            BusInterrupts,
+            config,
+        )
+    }
+
+    fn lines(&mut self) -> [OutputOpenDrain<'_>; 2] {
+        [
+            OutputOpenDrain::new(self.clock.reborrow(), Level::High, Speed::Low),
+            OutputOpenDrain::new(self.data.reborrow(), Level::High, Speed::Low),
+        ]
     }
 }

@@ -39,6 +39,12 @@ impl<T: Transducer, D: DelayNs> Keeper<T, D> {
         }
     }
 
+    /// The transducer.
+    #[cfg(test)]
+    pub(super) const fn transducer(&self) -> &T {
+        &self.transducer
+    }
+
     /// The next sample, or the next reason why there is none.
     ///
     /// # Errors

@@ -1,10 +1,83 @@
 //! A transducer whose voltage is a share of its supply, read by the chip's own converter: the sum of a block of codes
 //! -> gauge pressure. Where the supply is also the converter's reference, it cancels.
 
-use super::{Millipascals, Sample};
-use crate::counts::{CountSum, PERIOD};
+use super::{Millipascals, Sample, Transducer};
+use crate::counts::{self, Block, CountSum, PERIOD, Ring, Window};
 use crate::pressure::saturate;
-use model_tables::constants::{Transducer, TransducerKind};
+use crate::report::Fault;
+use model_tables::constants;
+use model_tables::constants::TransducerKind;
+
+/// A converter that runs for ever and whose DMA fills a ring of two blocks.
+#[allow(async_fn_in_trait)] // one task awaits it, on one thread: no bound is missing
+pub trait Converter {
+    /// One conversion, microseconds: [`counts::BLOCK_LENGTH`] of them are a [`PERIOD`].
+    const CONVERSION: u32;
+
+    /// Starts it at the front of the ring, also from any state it is stuck in.
+    fn restart(&mut self);
+
+    /// Waits until a block has just been filled: once a [`PERIOD`], at once when that is past.
+    async fn tick(&mut self);
+
+    /// Codes of the ring that are written, less than its length; nothing if it stopped because a code was not fetched
+    /// in time.
+    fn position(&self) -> Option<usize>;
+
+    /// The ring.
+    fn ring(&self) -> &[Block; 2];
+}
+
+/// The transducer on a converter.
+#[derive(Debug)]
+pub struct Ratiometric<C> {
+    converter: C,
+    ring: Ring,
+    window: Window,
+    conversion: Conversion,
+}
+
+impl<C: Converter> Ratiometric<C> {
+    /// The transducer of a design on a converter.
+    ///
+    /// # Panics
+    /// If the design has another kind of transducer.
+    pub fn new(transducer: &constants::Transducer, converter: C) -> Self {
+        Self {
+            converter,
+            ring: Ring::default(),
+            window: Window::of(&transducer.kind),
+            conversion: Conversion::of(transducer),
+        }
+    }
+}
+
+impl<C: Converter> Transducer for Ratiometric<C> {
+    async fn start(&mut self) -> Result<(), Fault> {
+        self.converter.restart();
+        self.ring = Ring::default();
+        Ok(())
+    }
+
+    async fn sample(&mut self) -> Result<Sample, Fault> {
+        self.converter.tick().await;
+        let Some(position) = self.converter.position() else {
+            self.start().await?;
+            return Err(Fault::SamplesLost);
+        };
+        let complete = self.ring.look(position)?;
+        let sum = counts::sum(&self.converter.ring()[complete.half], self.window);
+        let now = self.converter.position();
+        if now.is_some_and(|now| self.ring.still_holds(now)) {
+            Ok(self.conversion.sample(sum?, complete.since * C::CONVERSION))
+        } else {
+            Err(Fault::SamplesLost)
+        }
+    }
+
+    /// The converter is freed by a start.
+    async fn free(&mut self) {}
+}
 
 /// `pressure = (gain * sum + offset) / 2^shift`.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -25,7 +98,7 @@ impl Conversion {
     ///
     /// # Panics
     /// At compile time, for a transducer that the converter cannot read, or figures out of all reason.
-    pub const fn of(transducer: &Transducer) -> Self {
+    pub const fn of(transducer: &constants::Transducer) -> Self {
         let TransducerKind::Ratiometric { output: [low, high] } = transducer.kind else {
             panic!("the converter reads ratiometric transducers only")
         };
@@ -60,7 +133,8 @@ impl Conversion {
     }
 
     /// The pressure of a block, held at the ends of the word. `late` is how long ago the block ended, microseconds.
-    #[inline]
+    // A boundary that stays in the image, so that instructions from averaged counts to both results can be counted.
+    #[inline(never)]
     pub fn sample(&self, sum: CountSum, late: u32) -> Sample {
         // gain < 2^31 and sum < 2^19: the product is below 2^50, and the offset leaves it a 63-bit word.
         let sum = i64::from(sum.0.min(CountSum::FULL_SCALE));
@@ -84,10 +158,16 @@ const fn rounded(a: i128, b: i128) -> i128 {
 mod tests {
     use super::*;
     use crate::report::Warnings;
+    use crate::transducer::keeper::Keeper;
+    use crate::transducer::script::Stopwatch;
+    use core::sync::atomic::{AtomicU32, Ordering};
+    use embassy_futures::block_on;
     use proptest::prelude::*;
+    use std::cell::RefCell;
+    use std::rc::Rc;
 
-    fn mpx5100(range: [i32; 2]) -> Transducer {
-        Transducer {
+    fn mpx5100(range: [i32; 2]) -> constants::Transducer {
+        constants::Transducer {
             range,
             resolution: 10_000,
             noise: 10_000,
@@ -103,7 +183,7 @@ mod tests {
     }
 
     /// The line through both ends in real numbers, millipascals.
-    fn line(sum: u32, transducer: &Transducer) -> f64 {
+    fn line(sum: u32, transducer: &constants::Transducer) -> f64 {
         let TransducerKind::Ratiometric { output } = transducer.kind else {
             unreachable!()
         };
@@ -152,5 +232,137 @@ mod tests {
             let high = conversion.sample(CountSum(sum.saturating_add(step)), 0);
             prop_assert!(low.pressure <= high.pressure && low.headroom >= high.headroom);
         }
+    }
+
+    /// A converter by hand: it has gone a number of conversions further at each tick, and then once more while a block
+    /// is read.
+    #[derive(Clone, Default)]
+    struct Hand(Rc<RefCell<State>>);
+
+    #[derive(Default)]
+    struct State {
+        position: usize,
+        further: usize,
+        while_reading: usize,
+        overrun: bool,
+        stands: bool,
+        restarts: usize,
+    }
+
+    struct HandRing {
+        hand: Hand,
+        ring: [Block; 2],
+    }
+
+    impl Converter for HandRing {
+        const CONVERSION: u32 = 10;
+
+        fn restart(&mut self) {
+            let mut state = self.hand.0.borrow_mut();
+            state.position = 0;
+            state.further = 102;
+            state.overrun = false;
+            state.stands = false;
+            state.restarts += 1;
+        }
+
+        async fn tick(&mut self) {
+            let mut state = self.hand.0.borrow_mut();
+            state.position += if state.stands { 0 } else { state.further };
+            state.further = 100;
+        }
+
+        fn position(&self) -> Option<usize> {
+            let mut state = self.hand.0.borrow_mut();
+            let position = state.position;
+            state.position += state.while_reading;
+            state.while_reading = 0;
+            (!state.overrun).then_some(position % Ring::LENGTH)
+        }
+
+        fn ring(&self) -> &[Block; 2] {
+            &self.ring
+        }
+    }
+
+    /// Both blocks at half the supply.
+    fn kept() -> (Keeper<Ratiometric<HandRing>, Stopwatch>, Hand) {
+        let hand = Hand::default();
+        let block = || core::array::from_fn(|_| AtomicU32::new(2048 << 16 | 2047));
+        let converter = HandRing {
+            hand: hand.clone(),
+            ring: [block(), block()],
+        };
+        let transducer = Ratiometric::new(&mpx5100([0, 100_000]), converter);
+        (Keeper::new(transducer, Stopwatch::default()), hand)
+    }
+
+    #[test]
+    fn a_running_converter_gives_a_sample_a_period() {
+        let (mut keeper, hand) = kept();
+        for _ in 0..100 {
+            let sample = block_on(keeper.next()).expect("nothing is wrong");
+            assert!(sample.pressure.0.abs_diff(51_111_000) < 2000, "{sample:?}");
+            // The middle of its block, and two conversions since its end.
+            assert_eq!(sample.age, 500 + 20);
+        }
+        assert_eq!(hand.0.borrow().restarts, 1);
+    }
+
+    #[test]
+    fn an_overrun_is_a_fault_and_over_with_the_next_sample() {
+        let (mut keeper, hand) = kept();
+        assert!(block_on(keeper.next()).is_ok());
+        hand.0.borrow_mut().overrun = true;
+        assert_eq!(block_on(keeper.next()), Err(Fault::SamplesLost));
+        assert!(block_on(keeper.next()).is_ok());
+    }
+
+    #[test]
+    fn a_converter_that_stands_is_started_again_within_three_periods() {
+        let (mut keeper, hand) = kept();
+        assert!(block_on(keeper.next()).is_ok());
+        hand.0.borrow_mut().stands = true;
+        assert_eq!(block_on(keeper.next()), Err(Fault::ConverterStalled));
+        assert_eq!(block_on(keeper.next()), Err(Fault::ConverterStalled));
+        assert!(block_on(keeper.next()).is_ok());
+    }
+
+    #[test]
+    fn a_block_overwritten_while_it_is_read_is_no_sample() {
+        let (mut keeper, hand) = kept();
+        assert!(block_on(keeper.next()).is_ok());
+        hand.0.borrow_mut().while_reading = 99;
+        assert_eq!(block_on(keeper.next()), Err(Fault::SamplesLost));
+    }
+
+    #[test]
+    fn a_late_look_loses_samples_and_says_so() {
+        let (mut keeper, hand) = kept();
+        assert!(block_on(keeper.next()).is_ok());
+        for late in [180, 290] {
+            hand.0.borrow_mut().further = late;
+            assert_eq!(block_on(keeper.next()), Err(Fault::SamplesLost), "{late}");
+            // Back in step with the blocks.
+            let position = hand.0.borrow().position;
+            hand.0.borrow_mut().further = 102 - position % 100;
+            assert!(block_on(keeper.next()).is_ok(), "{late}");
+        }
+        assert_eq!(hand.0.borrow().restarts, 1);
+    }
+
+    #[test]
+    fn a_rail_is_a_fault_that_starts_nothing_anew() {
+        let (mut keeper, hand) = kept();
+        assert!(block_on(keeper.next()).is_ok());
+        for (code, fault) in [(0x0FFF, Fault::SensorOpen), (0, Fault::SensorShort)] {
+            for block in &keeper.transducer().converter.ring {
+                block[7].store(2048 << 16 | code, Ordering::Relaxed);
+            }
+            for _ in 0..5 {
+                assert_eq!(block_on(keeper.next()), Err(fault));
+            }
+        }
+        assert_eq!(hand.0.borrow().restarts, 1);
     }
 }

@@ -41,8 +41,8 @@ pub struct Outcome<L> {
     pub time: f64,
     /// Instructions retired.
     pub instructions: u64,
-    /// The instructions of each call of the function asked for, in order, from its first to the one that
-    /// returns, those of interrupts taken meanwhile included.
+    /// The instructions of each report, in order: of one call of each function asked for, from its first to the one
+    /// that returns, those of interrupts taken meanwhile included.
     pub calls: Vec<u64>,
     /// Resets after power-on, in words.
     pub resets: Vec<String>,
@@ -78,7 +78,8 @@ impl From<ImageError> for BenchError {
 }
 
 /// Runs `image` from power-on until `duration` (seconds) has passed or the listener breaks; counts the
-/// instructions of each call of `counted`, a function by its owner and name (see [`Image::function`]).
+/// instructions of the functions in `counted`, by owner and name (see [`Image::function`]), up to each return of the
+/// last.
 ///
 /// # Errors
 /// [`BenchError`] when the image lacks `counted`, or the emulator cannot run it.
@@ -86,22 +87,23 @@ pub fn run<L: Listener>(
     image: &Image,
     plant: Plant,
     duration: f64,
-    counted: Option<(&str, &str)>,
+    counted: &[(&str, &str)],
     listener: L,
 ) -> Result<Outcome<L>, BenchError> {
-    let counter = counted
-        .map(|(owner, name)| -> Result<CallCounter, ImageError> {
+    let counted = counted
+        .iter()
+        .map(|(owner, name)| -> Result<Counted, ImageError> {
             let entry = image.function(owner, name)?;
-            Ok(CallCounter::new(entry, image.returns_of(entry)?))
+            let returns = image.returns_of(entry)?;
+            Ok(Counted { entry, returns })
         })
-        .transpose()?;
+        .collect::<Result<_, _>>()?;
+    let counter = CallCounter::new(counted);
     let elf = rigless::image::Image::new(image.path(), image.bytes().to_vec(), None).map_err(emulator)?;
-    let board = Box::new(Nucleo::new().map_err(emulator)?);
+    let board = Box::new(Nucleo::new(plant.transducer().part).map_err(emulator)?);
     let mut session = Session::new(board, 0, VirtualNanos(LISTEN)).map_err(emulator)?;
-    if let Some(counter) = &counter {
-        for address in counter.addresses() {
-            session.watch(Watch::Instruction(address));
-        }
+    for address in counter.addresses() {
+        session.watch(Watch::Instruction(address));
     }
     let driver = Bench {
         plant,
@@ -120,11 +122,7 @@ pub fn run<L: Listener>(
         listener: finished.driver.listener,
         time,
         instructions,
-        calls: finished
-            .driver
-            .counter
-            .map(|counter| counter.calls)
-            .unwrap_or_default(),
+        calls: finished.driver.counter.calls,
         resets: finished.session.resets().iter().map(describe).collect(),
         gaps: gaps(&finished.session),
     })
@@ -163,7 +161,7 @@ fn gaps(session: &Session<Nucleo>) -> Vec<String> {
 struct Bench<L> {
     plant: Plant,
     listener: L,
-    counter: Option<CallCounter>,
+    counter: CallCounter,
     clock_zero: Option<f64>,
     resets: usize,
     end: VirtualNanos,
@@ -191,15 +189,11 @@ impl<L: Listener> Driver<Nucleo> for Bench<L> {
                     self.resets = session.resets().len();
                     self.clock_zero = None;
                 }
-                let share = self.plant.output(seconds(stop.at));
-                session.board_mut().set_transducer(share);
+                let output = self.plant.output(seconds(stop.at));
+                session.board_mut().set_transducer(output);
             }
             Settled::Access { access, .. } => self.note_clock(access),
-            Settled::Hit(hit) => {
-                if let Some(counter) = &mut self.counter {
-                    counter.hit(hit);
-                }
-            }
+            Settled::Hit(hit) => self.counter.hit(hit),
             _ => {}
         }
     }
@@ -223,35 +217,53 @@ impl<L: Listener> Driver<Nucleo> for Bench<L> {
     }
 }
 
-/// Counts instructions between a function's entry and its return.
-struct CallCounter {
+/// A function: where it begins and where its callers go on.
+struct Counted {
     entry: u64,
     returns: Vec<u64>,
-    entered: Option<u64>,
+}
+
+/// Counts instructions between functions' entries and returns.
+struct CallCounter {
+    counted: Vec<Counted>,
+    /// Which function was entered last, and when.
+    entered: Option<(usize, u64)>,
+    /// Since the last return of the last function.
+    sum: u64,
     calls: Vec<u64>,
 }
 
 impl CallCounter {
-    fn new(entry: u64, returns: Vec<u64>) -> Self {
+    fn new(counted: Vec<Counted>) -> Self {
         Self {
-            entry,
-            returns,
+            counted,
             entered: None,
+            sum: 0,
             calls: vec![],
         }
     }
 
     fn addresses(&self) -> impl Iterator<Item = u64> {
-        std::iter::once(self.entry).chain(self.returns.iter().copied())
+        self.counted
+            .iter()
+            .flat_map(|function| std::iter::once(function.entry).chain(function.returns.iter().copied()))
     }
 
     fn hit(&mut self, hit: Hit) {
-        if hit.address == self.entry {
-            self.entered = Some(hit.instruction_count);
-        } else if self.returns.contains(&hit.address)
-            && let Some(entered) = self.entered.take()
+        if let Some(function) = self
+            .counted
+            .iter()
+            .position(|function| function.entry == hit.address)
         {
-            self.calls.push(hit.instruction_count - entered);
+            self.entered = Some((function, hit.instruction_count));
+        } else if let Some((function, entered)) = self.entered
+            && self.counted[function].returns.contains(&hit.address)
+        {
+            self.entered = None;
+            self.sum += hit.instruction_count - entered;
+            if function + 1 == self.counted.len() {
+                self.calls.push(std::mem::take(&mut self.sum));
+            }
         }
     }
 }

@@ -1,6 +1,8 @@
-//! The NUCLEO-F429ZI as the image sees it: the microcontroller, its clock, its converter's pins, its serial
-//! wire to the host.
+//! The NUCLEO-F429ZI as the image sees it: the microcontroller, its clock, its converter's pins or the part on its
+//! bus, its serial wire to the host.
 
+use crate::sensor::Sensor;
+use crate::transducer::{Output, Part};
 use rigless::chip::Timeline;
 use rigless::chip::uart::Peer;
 use rigless::cpu::armv7m::windows;
@@ -24,7 +26,7 @@ const NO_CRYSTAL: u64 = 0;
 const SUPPLY: u32 = 3300;
 /// Core clock, hertz. The emulated core retires one instruction in each of its cycles: a Cortex-M4 needs
 /// 1.2 to 1.5, so the image has a little less time here than on the part only where it waits for nothing.
-const CORE_CLOCK: u64 = 168_000_000;
+const CORE_CLOCK: u64 = 128_000_000;
 
 /// The converter's reference in the unit of its inputs. The emulated converter takes whole millivolts, 1.24 of
 /// its codes, and answers `input * 4095 / reference`: only the ratio counts, so both are given in microvolts.
@@ -37,6 +39,9 @@ const HALF_CODE_MICROVOLTS: f64 = REFERENCE_MICROVOLTS as f64 / 4095.0 / 2.0;
 /// The transducer's pin: A0 of the Arduino header, PA3, channel 3 of ADC1.
 const TRANSDUCER_CONVERTER: usize = 0;
 const TRANSDUCER_CHANNEL: u8 = 3;
+/// The bus of D14 and D15: I2C1, and the one part on it.
+const BUS: usize = 0;
+const ON_THE_BUS: usize = 0;
 /// The serial port that the ST-LINK carries to the host.
 const HOST_PORT: &str = "USART3";
 
@@ -49,13 +54,16 @@ pub(crate) struct Nucleo {
 }
 
 impl Nucleo {
-    /// The board as it is powered on, with a host on its serial wire.
-    pub(crate) fn new() -> Result<Self, Error> {
+    /// The board as it is powered on, with a transducer, and a host on its serial wire.
+    pub(crate) fn new(part: Part) -> Result<Self, Error> {
         let mut mcu = Stm32f427::new()?;
         mcu.rcc.attach_crystals(CRYSTAL, NO_CRYSTAL);
         mcu.set_supply(SUPPLY);
         for converter in &mut mcu.adc {
             converter.set_reference(REFERENCE_MICROVOLTS);
+        }
+        if let Part::Dps310(address) = part {
+            mcu.i2c[BUS].attach(Sensor::new(address));
         }
         let host_port = SERIAL_PORTS
             .iter()
@@ -69,10 +77,19 @@ impl Nucleo {
         })
     }
 
-    /// Puts a share of the reference, 0 .. 1, on the transducer's pin.
-    pub(crate) fn set_transducer(&mut self, share: f64) {
-        let microvolts = share * f64::from(REFERENCE_MICROVOLTS) + HALF_CODE_MICROVOLTS;
-        self.mcu.adc[TRANSDUCER_CONVERTER].set_input(self.transducer, microvolts as u32);
+    /// What the transducer does from now on.
+    pub(crate) fn set_transducer(&mut self, output: Output) {
+        match output {
+            Output::Share(share) => {
+                let microvolts = share * f64::from(REFERENCE_MICROVOLTS) + HALF_CODE_MICROVOLTS;
+                self.mcu.adc[TRANSDUCER_CONVERTER].set_input(self.transducer, microvolts as u32);
+            }
+            Output::Pressure(pascals, wiring) => {
+                if let Some(sensor) = self.mcu.i2c[BUS].chip_mut::<Sensor>(ON_THE_BUS) {
+                    sensor.set(pascals, wiring);
+                }
+            }
+        }
     }
 
     /// The bytes that have come over the serial wire since the last call, each with the end of its stop bit.

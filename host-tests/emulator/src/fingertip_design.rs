@@ -2,7 +2,7 @@
 
 use crate::plant::Plant;
 use crate::scenario::Scenario;
-use crate::transducer::Transducer;
+use crate::transducer::{Part, Transducer, Wiring};
 use model_tables::design_file::{DesignFile, DesignFileError, TransducerKindSection};
 use model_tables::membrane::TensionField;
 use model_tables::press::{CurveFailure, ModelError, Press};
@@ -26,8 +26,10 @@ pub enum FingertipDesignError {
     File(DesignFileError),
     /// The file lacks a section that a press needs.
     Lacks(PathBuf, &'static str),
-    /// The transducer has a bus, and this bench has a voltage.
-    NotAVoltage(PathBuf),
+    /// There is no model of the transducer.
+    NoModel(PathBuf),
+    /// The scenario has a fault that the transducer cannot have.
+    NoSuchFault(PathBuf, Wiring),
     /// The model has no rest state.
     Rest(ModelError),
     /// The model does not reach the deepest indentation.
@@ -39,9 +41,15 @@ impl fmt::Display for FingertipDesignError {
         match self {
             Self::File(error) => error.fmt(f),
             Self::Lacks(path, section) => write!(f, "{}: [{section}] is missing", path.display()),
-            Self::NotAVoltage(path) => write!(
+            Self::NoModel(path) => write!(
                 f,
-                "{}: transducer.kind must be \"ratiometric\": the emulated board has a voltage on its converter",
+                "{}: transducer.kind must be \"ratiometric\" or \"dps310\": of the others there is no emulated part",
+                path.display()
+            ),
+            Self::NoSuchFault(path, wiring) => write!(
+                f,
+                "{}: the scenario's wire.is = {wiring:?} cannot happen to its transducer: choose another scenario, or \
+                 another transducer.kind",
                 path.display()
             ),
             Self::Rest(error) => error.fmt(f),
@@ -75,16 +83,20 @@ impl FingertipDesign {
         let lacks = |section| FingertipDesignError::Lacks(path.clone(), section);
         let max_indentation = file.max_indentation_mm.ok_or_else(|| lacks("press"))? * 1e-3;
         let section = file.transducer.ok_or_else(|| lacks("transducer"))?;
-        let TransducerKindSection::Ratiometric {
-            output_fraction_at_range,
-        } = section.kind
-        else {
-            return Err(FingertipDesignError::NotAVoltage(path));
+        let (part, output_at_range) = match section.kind {
+            TransducerKindSection::Ratiometric {
+                output_fraction_at_range,
+            } => (Part::Analogue, output_fraction_at_range),
+            TransducerKindSection::Dps310 { address } => (Part::Dps310(address), [0.0; 2]),
+            TransducerKindSection::Abp2 { .. } | TransducerKindSection::Ms5837 => {
+                return Err(FingertipDesignError::NoModel(path));
+            }
         };
         let transducer = Transducer {
             range: section.range_kpa.map(|kilopascals| kilopascals * 1e3),
-            output_at_range: output_fraction_at_range,
+            output_at_range,
             noise: section.noise_pa,
+            part,
         };
         Ok(Self {
             path,
@@ -108,8 +120,12 @@ impl FingertipDesign {
     /// Solves the full model for a press to the deepest indentation and puts it through `scenario`.
     ///
     /// # Errors
-    /// [`FingertipDesignError::Rest`] and [`FingertipDesignError::Press`].
+    /// [`FingertipDesignError::NoSuchFault`], [`FingertipDesignError::Rest`] and [`FingertipDesignError::Press`].
     pub fn plant(&self, scenario: Scenario) -> Result<Plant, FingertipDesignError> {
+        let part = self.transducer.part;
+        if let Some(fault) = scenario.wire.iter().find(|fault| !fault.is.concerns(part)) {
+            return Err(FingertipDesignError::NoSuchFault(self.path.clone(), fault.is));
+        }
         let mut press =
             Press::new(&self.file.design(), TensionField::Relaxed).map_err(FingertipDesignError::Rest)?;
         let rest_pressure = press.rest().pressure;

@@ -6,6 +6,7 @@ use std::fmt;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
 
 /// What the part executes.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
@@ -96,6 +97,17 @@ impl Image {
     /// # Errors
     /// [`ImageError`] when the target is missing or cargo does not build it.
     pub fn build(binary: &str, design: Option<&Path>) -> Result<Self, ImageError> {
+        Self::build_for(binary, design, None)
+    }
+
+    /// The same for the board of a feature of the firmware package; without one, the default board.
+    ///
+    /// # Errors
+    /// [`ImageError`] when the target is missing or cargo does not build it.
+    pub fn build_for(binary: &str, design: Option<&Path>, board: Option<&str>) -> Result<Self, ImageError> {
+        /// From the build to the reading: images for different designs are the same file.
+        static BUILDING: Mutex<()> = Mutex::new(());
+        let _building = BUILDING.lock();
         add_target()?;
         let mut cargo = Command::new(cargo());
         cargo
@@ -106,6 +118,9 @@ impl Image {
             .stdout(Stdio::piped());
         if let Some(design) = design {
             cargo.env("FINGERTIP_DESIGN", design);
+        }
+        if let Some(board) = board {
+            cargo.args(["--no-default-features", "--features", board]);
         }
         let mut child = cargo.spawn().map_err(ImageError::Cargo)?;
         let mut messages = String::new();

@@ -2,7 +2,7 @@
 //!
 //! The way of one press: [`fingertip_design`] and [`scenario`] (the plate's travel) -> [`plant`] (full model:
 //! contact and pressure) ->
-//! [`transducer`] and [`noise`] (voltage) -> `board` (the emulated microcontroller) running [`image`] ->
+//! [`transducer`] and [`noise`] (a voltage, or a `sensor` on a bus) -> `board` (the emulated microcontroller) running [`image`] ->
 //! [`bench`] (the bytes it sends) -> [`record`] (reports beside the truth) -> [`accuracy`], [`chart`] and
 //! [`output`] files.
 #![forbid(unsafe_code)]
@@ -18,4 +18,5 @@ pub mod output;
 pub mod plant;
 pub mod record;
 pub mod scenario;
+mod sensor;
 pub mod transducer;

@@ -2,7 +2,7 @@
 
 use crate::noise::Noise;
 use crate::scenario::Scenario;
-use crate::transducer::{Transducer, Wiring};
+use crate::transducer::{AIR, Output, Part, Transducer, Wiring};
 use model_tables::curve::{Contact, Curve};
 
 /// The world outside the board. Its truth is the full model, solved afresh: it knows no table.
@@ -64,18 +64,17 @@ impl Plant {
         self.transducer
     }
 
-    /// The voltage on the converter's pin at a time in seconds, as a share of the reference, 0 .. 1.
-    /// Each call draws new noise.
-    pub fn output(&mut self, time: f64) -> f64 {
+    /// What the transducer does to the board at a time in seconds. Each call draws new noise.
+    pub fn output(&mut self, time: f64) -> Output {
         // Drawn in every case, so that a fault leaves the noise after it as it would have been.
         let noise = self.transducer.noise * self.noise.deviate();
-        match self.scenario.wiring(time) {
-            Wiring::Sound => {
-                let pressure = self.rest_pressure + self.truth(time).pressure_rise;
-                self.transducer.output(pressure + noise)
-            }
-            Wiring::Open => 1.0,
-            Wiring::Short => 0.0,
+        let pressure = self.rest_pressure + self.truth(time).pressure_rise + noise;
+        let wiring = self.scenario.wiring(time);
+        match (self.transducer.part, wiring) {
+            (Part::Dps310(_), wiring) => Output::Pressure(AIR + pressure, wiring),
+            (Part::Analogue, Wiring::Open) => Output::Share(1.0),
+            (Part::Analogue, Wiring::Short) => Output::Share(0.0),
+            (Part::Analogue, _) => Output::Share(self.transducer.output(pressure)),
         }
     }
 }
@@ -104,6 +103,7 @@ pub(crate) mod tests {
             range: [0.0, 100e3],
             output_at_range: [0.1, 0.9],
             noise: 10.0,
+            part: Part::Analogue,
         };
         Plant::new(curve, 2e3, max_indentation, transducer, scenario)
     }
@@ -138,11 +138,18 @@ pub(crate) mod tests {
         assert!((middle.indentation / expected.indentation - 1.0).abs() < 1e-6);
     }
 
+    fn share(plant: &mut Plant, time: f64) -> f64 {
+        match plant.output(time) {
+            Output::Share(share) => share,
+            Output::Pressure(..) => unreachable!("the transducer is analogue"),
+        }
+    }
+
     #[test]
     fn the_output_is_the_absolute_pressure_with_its_noise() {
         let mut plant = press(8e3, ramp());
         let n = 20_000;
-        let mean = |plant: &mut Plant, time| (0..n).map(|_| plant.output(time)).sum::<f64>() / f64::from(n);
+        let mean = |plant: &mut Plant, time| (0..n).map(|_| share(plant, time)).sum::<f64>() / f64::from(n);
         // 2 kPa at rest and 10 kPa at the end: 0.1 + 0.8 p / 100 kPa. Five standard errors of 10 Pa noise.
         let tolerance = 5.0 * 10.0 / libm::sqrt(f64::from(n)) * 0.8 / 100e3;
         assert!((mean(&mut plant, 0.05) - 0.116).abs() < tolerance);
@@ -160,7 +167,7 @@ pub(crate) mod tests {
         let (mut sound, mut faulty) = (press(8e3, ramp()), press(8e3, faulty));
         for ms in 0..40 {
             let time = f64::from(ms) * 1e-3;
-            let (sound, faulty) = (sound.output(time), faulty.output(time));
+            let (sound, faulty) = (share(&mut sound, time), share(&mut faulty, time));
             if (10..20).contains(&ms) {
                 assert!(faulty.abs() < 1e-15);
             } else {

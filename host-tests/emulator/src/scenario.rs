@@ -38,7 +38,7 @@ pub struct Phase {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WireFault {
-    /// What is wrong: "open" or "short".
+    /// What is wrong: "open" or "short" with a voltage, the other words with a part on the bus.
     pub is: Wiring,
     /// From when, milliseconds.
     pub from_ms: f64,

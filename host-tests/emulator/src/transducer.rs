@@ -1,4 +1,4 @@
-//! A ratiometric pressure transducer: gauge pressure to a share of the converter's reference.
+//! The pressure transducer: gauge pressure to a share of the converter's reference, or to a part on the bus.
 
 /// What the transducer does to a pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +9,29 @@ pub struct Transducer {
     pub output_at_range: [f64; 2],
     /// Noise of one reading, one standard deviation, pascals, >= 0.
     pub noise: f64,
+    /// What the board reads.
+    pub part: Part,
+}
+
+/// What the board reads of a transducer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Its voltage.
+    Analogue,
+    /// A DPS310 on the bus, at this address: absolute pressure, so its output is none.
+    Dps310(u8),
+}
+
+/// The air around the board, pascals.
+pub const AIR: f64 = 101_325.0;
+
+/// What the transducer does to the board at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Output {
+    /// A voltage, as a share of the converter's reference, 0 .. 1.
+    Share(f64),
+    /// A pressure on a part on the bus, pascals absolute, and what is wrong with it.
+    Pressure(f64, Wiring),
 }
 
 /// What is on the transducer's wire.
@@ -22,6 +45,33 @@ pub enum Wiring {
     Open,
     /// Ground.
     Short,
+    /// Of a part on the bus: it does not answer.
+    Off,
+    /// Its readings stay what they were.
+    Stuck,
+    /// It answers with noise.
+    Garbage,
+    /// Nobody drives the data line: all ones.
+    Wrong,
+    /// It is never ready.
+    Slow,
+    /// It is ready half a millisecond late.
+    Delayed,
+    /// One start in seven is not acknowledged.
+    Intermittent,
+    /// It is reset, once, and loses its settings.
+    Reset,
+}
+
+impl Wiring {
+    /// Whether it can happen to a part.
+    pub fn concerns(self, part: Part) -> bool {
+        match self {
+            Self::Sound => true,
+            Self::Open | Self::Short => part == Part::Analogue,
+            _ => part != Part::Analogue,
+        }
+    }
 }
 
 impl Transducer {
@@ -45,6 +95,7 @@ mod tests {
         range: [0.0, 100e3],
         output_at_range: [0.1, 0.9],
         noise: 10.0,
+        part: Part::Analogue,
     };
 
     #[test]

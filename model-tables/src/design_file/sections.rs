@@ -284,8 +284,8 @@ fn press(mut section: Section<'_>) -> Result<f64, Fault> {
 
 fn transducer(mut section: Section<'_>) -> Result<TransducerSection, Fault> {
     const KINDS: &str = "\"ratiometric\", \"abp2\", \"ms5837-02ba\" or \"dps310\"";
-    // No gauge pressure lies below a vacuum.
-    const RANGE: Bounds = Bounds::within(-101.325, 10_000.0, "kPa");
+    // No gauge pressure lies below a vacuum; the firmware counts millipascals in 31 bits.
+    const RANGE: Bounds = Bounds::within(-101.325, 2_000.0, "kPa");
     const FINENESS: Bounds = Bounds::above(0.0, 1e6, "Pa");
     let kind = match section.needed_text("kind", KINDS)? {
         "ratiometric" => TransducerKindSection::Ratiometric {
@@ -311,6 +311,18 @@ fn transducer(mut section: Section<'_>) -> Result<TransducerSection, Fault> {
         _ => return Err(section.refuse("kind", KINDS)),
     };
     let range_kpa = section.needed_pair("range_kpa", RANGE)?;
+    // What a part measures against a vacuum, from which the air is taken at 101.325 kPa.
+    let reach = match kind {
+        TransducerKindSection::Ms5837 => Some(([-100.325, 98.675], "an MS5837-02BA measures 1 to 200")),
+        TransducerKindSection::Dps310 { .. } => Some(([-71.325, 18.675], "a DPS310 measures 30 to 120")),
+        TransducerKindSection::Ratiometric { .. } | TransducerKindSection::Abp2 { .. } => None,
+    };
+    if let Some(([low, high], why)) = reach
+        && (range_kpa[0] < low || range_kpa[1] > high)
+    {
+        let allowed = format!("within [{low}, {high}]: {why} kPa absolute, and the air is 101.325 kPa");
+        return Err(section.refuse("range_kpa", &allowed));
+    }
     let resolution_pa = section.needed_number("resolution_pa", FINENESS)?;
     if resolution_pa >= 1e3 * (range_kpa[1] - range_kpa[0]) {
         return Err(section.refuse("resolution_pa", "less than the width of range_kpa"));

@@ -46,7 +46,7 @@ fn host_and_chip_give_the_same_integers_everywhere_in_and_around_the_tables() {
     let plant = design()
         .plant(scenario)
         .expect("the default design can be pressed");
-    let outcome = bench::run(&image, plant, LIMIT, None, Readings::default()).expect("the image runs");
+    let outcome = bench::run(&image, plant, LIMIT, &[], Readings::default()).expect("the image runs");
     let expected: Vec<Measurement> = lookup_sweep::inputs::<ImageDesign>()
         .map(|rise| contact::<ImageDesign>(rise, Warnings::NONE))
         .collect();

@@ -1,5 +1,6 @@
 //! The firmware image, unmodified, on the emulated board.
 
+mod bus;
 mod cost;
 mod faults;
 mod integers;
@@ -15,13 +16,23 @@ use emulator::record::{Record, Recorder, Row};
 use emulator::scenario::Scenario;
 use std::sync::OnceLock;
 
-/// The signal path from the averaged counts to both results, by owner and name.
-const SIGNAL_PATH: (&str, &str) = ("tasks", "report_of");
+/// The signal path from the averaged counts to both results, by owner and name: the conversion to pressure, and the
+/// stages after it.
+const SIGNAL_PATH: &[(&str, &str)] = &[("ratiometric", "sample"), ("Pipeline", "step")];
 
 /// The firmware for the default design, built once.
 fn firmware() -> &'static Image {
     static IMAGE: OnceLock<Image> = OnceLock::new();
     IMAGE.get_or_init(|| Image::firmware(Some(&design().path)).expect("the firmware builds"))
+}
+
+/// The same for the smaller board: nothing emulates it, but it has a size.
+fn small_board() -> &'static Image {
+    static IMAGE: OnceLock<Image> = OnceLock::new();
+    IMAGE.get_or_init(|| {
+        let design = design().path;
+        Image::build_for("firmware", Some(&design), Some("board-nucleo-l432kc")).expect("the firmware builds")
+    })
 }
 
 fn design() -> FingertipDesign {
@@ -48,7 +59,7 @@ fn run(scenario: &str) -> Run {
         .expect("the default design can be pressed");
     let recorder = Recorder::new(|_: &Row| {});
     let outcome: Outcome<_> =
-        bench::run(firmware(), plant.clone(), duration, Some(SIGNAL_PATH), recorder).expect("the image runs");
+        bench::run(firmware(), plant.clone(), duration, SIGNAL_PATH, recorder).expect("the image runs");
     Run {
         plant,
         record: outcome.listener.into_record(),

@@ -1,7 +1,7 @@
 //! The figures of the README that the emulated chip gives: counts exactly, the rest within a band. Flash depends a
 //! little on where cargo keeps its packages, because panics name their files.
 
-use crate::{firmware, press_hold_release};
+use crate::{firmware, press_hold_release, small_board};
 use emulator::accuracy::Accuracy;
 use host_tests::assert_readme_figure;
 
@@ -29,6 +29,13 @@ fn cost_of_the_image() {
     );
     assert_readme_figure("flash, bytes", size.flash as f64, 0.01);
     assert_readme_figure("RAM without the stack, bytes", size.ram as f64, 0.0);
+    let size = small_board().size().expect("it is an image");
+    assert_readme_figure("flash on the NUCLEO-L432KC, bytes", size.flash as f64, 0.01);
+    assert_readme_figure(
+        "RAM without the stack on the NUCLEO-L432KC, bytes",
+        size.ram as f64,
+        0.0,
+    );
 }
 
 #[test]

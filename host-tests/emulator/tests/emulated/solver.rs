@@ -56,8 +56,7 @@ fn the_full_model_gives_the_same_bits_on_the_chip_and_has_its_price() {
     let plant = design()
         .plant(scenario)
         .expect("the default design can be pressed");
-    let outcome =
-        bench::run(&image, plant, LIMIT, Some(MEASURED), States::default()).expect("the image runs");
+    let outcome = bench::run(&image, plant, LIMIT, &[MEASURED], States::default()).expect("the image runs");
     assert_eq!(outcome.resets, Vec::<String>::new());
     assert_eq!(outcome.gaps, Vec::<String>::new());
 

@@ -67,7 +67,7 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
         &image,
         plant.clone(),
         scenario.duration(),
-        None,
+        &[],
         Recorder::new(table.into_printer()),
     )?;
     let wall = started.elapsed().as_secs_f64();

@@ -1,0 +1,61 @@
+//! The transducer of the design, on the board's port. Only its driver is in the image.
+
+use crate::board::Port;
+#[cfg(not(transducer = "ratiometric"))]
+use embassy_time::Delay;
+use embassy_time::{Duration, Instant, Timer};
+use fingertip::design::Design;
+use fingertip::image::ImageDesign;
+use fingertip::pipeline::Pipeline;
+use fingertip::transducer::Transducer;
+use model_tables::constants;
+
+const DESIGNED: constants::Transducer = ImageDesign::CONSTANTS.transducer;
+
+/// The converter's ticks pace it.
+#[cfg(transducer = "ratiometric")]
+pub(crate) fn transducer(port: Port) -> impl Transducer {
+    fingertip::transducer::ratiometric::Ratiometric::new(&DESIGNED, port)
+}
+
+#[cfg(transducer = "abp2")]
+pub(crate) fn transducer(port: Port) -> impl Transducer {
+    fingertip::transducer::abp2::Abp2::new(&DESIGNED, port, Delay)
+}
+
+#[cfg(transducer = "ms5837")]
+pub(crate) fn transducer(port: Port) -> impl Transducer {
+    let constants::TransducerKind::Ms5837 { address } = DESIGNED.kind else {
+        unreachable!("the build script says so")
+    };
+    fingertip::transducer::ms5837::Ms5837::new(address, port, Delay)
+}
+
+#[cfg(transducer = "dps310")]
+pub(crate) fn transducer(port: Port) -> impl Transducer {
+    let constants::TransducerKind::Dps310 { address } = DESIGNED.kind else {
+        unreachable!("the build script says so")
+    };
+    fingertip::transducer::dps310::Dps310::new(address, port, Delay)
+}
+
+/// Says when the next sample is due: a part on a bus measures when it is told, a converter by itself.
+pub(crate) struct Pace {
+    due: Instant,
+}
+
+impl Pace {
+    pub(crate) fn new() -> Self {
+        Self { due: Instant::now() }
+    }
+
+    /// Waits until the next sample is due; time that was lost is not caught up.
+    pub(crate) async fn wait(&mut self) {
+        if cfg!(transducer = "ratiometric") {
+            return;
+        }
+        let period = Duration::from_micros(u64::from(Pipeline::<ImageDesign>::PERIOD));
+        Timer::at(self.due).await;
+        self.due = (self.due + period).max(Instant::now());
+    }
+}
