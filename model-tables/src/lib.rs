@@ -69,6 +69,8 @@ pub mod design_file;
 #[cfg(feature = "cli")]
 pub mod designer;
 pub mod equilibrium;
+#[cfg(feature = "cli")]
+pub mod fit;
 #[cfg(feature = "std")]
 pub mod generate;
 pub mod history;
