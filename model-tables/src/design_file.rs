@@ -7,7 +7,7 @@
 mod calibration;
 mod error;
 mod print;
-mod section;
+pub(crate) mod section;
 mod sections;
 
 use crate::design::{Design, Membrane, RestBy};

@@ -86,6 +86,8 @@ pub mod press;
 pub mod rest;
 #[cfg(feature = "std")]
 pub mod rung;
+#[cfg(feature = "cli")]
+pub mod size;
 pub mod solid;
 pub mod solution;
 pub mod solver;

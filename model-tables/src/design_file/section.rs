@@ -6,11 +6,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The line (where there is one) and what is wrong there.
-pub(super) type Fault = (Option<usize>, Problem);
+pub(crate) type Fault = (Option<usize>, Problem);
 
 /// Numbers a key may take.
 #[derive(Clone, Copy)]
-pub(super) struct Bounds {
+pub(crate) struct Bounds {
     low: f64,
     high: f64,
     open_low: bool,
@@ -19,7 +19,7 @@ pub(super) struct Bounds {
 
 impl Bounds {
     /// `low < value <= high`.
-    pub(super) const fn above(low: f64, high: f64, unit: &'static str) -> Self {
+    pub(crate) const fn above(low: f64, high: f64, unit: &'static str) -> Self {
         Self {
             low,
             high,
@@ -29,7 +29,7 @@ impl Bounds {
     }
 
     /// `low <= value <= high`.
-    pub(super) const fn within(low: f64, high: f64, unit: &'static str) -> Self {
+    pub(crate) const fn within(low: f64, high: f64, unit: &'static str) -> Self {
         Self {
             low,
             high,
@@ -58,7 +58,7 @@ impl Bounds {
 }
 
 /// One table, and the keys that were asked for.
-pub(super) struct Section<'a> {
+pub(crate) struct Section<'a> {
     text: &'a str,
     path: &'static str,
     header: usize,
@@ -68,7 +68,7 @@ pub(super) struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// The document itself.
-    pub(super) fn root(text: &'a str, table: &'a DeTable<'a>) -> Self {
+    pub(crate) fn root(text: &'a str, table: &'a DeTable<'a>) -> Self {
         Self {
             text,
             path: "",
@@ -79,7 +79,7 @@ impl<'a> Section<'a> {
     }
 
     /// The sub-table of that name, if it is there.
-    pub(super) fn sub(&mut self, name: &'static str) -> Result<Option<Section<'a>>, Fault> {
+    pub(crate) fn sub(&mut self, name: &'static str) -> Result<Option<Section<'a>>, Fault> {
         let Some(value) = self.get(name) else {
             return Ok(None);
         };
@@ -96,7 +96,7 @@ impl<'a> Section<'a> {
     }
 
     /// The sub-table of that name, which must be there.
-    pub(super) fn needed_sub(&mut self, name: &'static str, holds: &str) -> Result<Section<'a>, Fault> {
+    pub(crate) fn needed_sub(&mut self, name: &'static str, holds: &str) -> Result<Section<'a>, Fault> {
         match self.sub(name)? {
             Some(section) => Ok(section),
             None => Err((
@@ -110,12 +110,12 @@ impl<'a> Section<'a> {
     }
 
     /// Whether the key is there.
-    pub(super) fn has(&mut self, key: &'static str) -> bool {
+    pub(crate) fn has(&mut self, key: &'static str) -> bool {
         self.get(key).is_some()
     }
 
     /// A number, if the key is there.
-    pub(super) fn number(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<f64>, Fault> {
+    pub(crate) fn number(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<f64>, Fault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -126,7 +126,7 @@ impl<'a> Section<'a> {
     }
 
     /// A number that must be there.
-    pub(super) fn needed_number(&mut self, key: &'static str, bounds: Bounds) -> Result<f64, Fault> {
+    pub(crate) fn needed_number(&mut self, key: &'static str, bounds: Bounds) -> Result<f64, Fault> {
         match self.number(key, bounds)? {
             Some(number) => Ok(number),
             None => Err(self.missing(key, &bounds.describe())),
@@ -134,7 +134,7 @@ impl<'a> Section<'a> {
     }
 
     /// Two increasing numbers, if the key is there.
-    pub(super) fn pair(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<[f64; 2]>, Fault> {
+    pub(crate) fn pair(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<[f64; 2]>, Fault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -152,15 +152,40 @@ impl<'a> Section<'a> {
     }
 
     /// Two increasing numbers that must be there.
-    pub(super) fn needed_pair(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
+    pub(crate) fn needed_pair(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
         match self.pair(key, bounds)? {
             Some(pair) => Ok(pair),
             None => Err(self.missing(key, &pair_wanted(bounds))),
         }
     }
 
+    /// Two increasing numbers, or one for both, that must be there.
+    #[cfg(feature = "cli")]
+    pub(crate) fn span(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
+        let array = self.get(key).is_some_and(|value| value.get_ref().is_array());
+        if array {
+            return self.needed_pair(key, bounds);
+        }
+        self.needed_number(key, bounds).map(|number| [number; 2])
+    }
+
+    /// Texts in brackets that must be there.
+    #[cfg(feature = "cli")]
+    pub(crate) fn texts(&mut self, key: &'static str, allowed: &str) -> Result<Vec<&'a str>, Fault> {
+        let Some(value) = self.get(key) else {
+            return Err(self.missing(key, allowed));
+        };
+        let texts: Option<Vec<&str>> = value
+            .get_ref()
+            .as_array()
+            .and_then(|array| array.iter().map(|item| item.get_ref().as_str()).collect());
+        texts
+            .filter(|texts| !texts.is_empty())
+            .ok_or_else(|| self.refuse(key, allowed))
+    }
+
     /// Strictly increasing numbers, `count[0]` to `count[1]` of them, that must be there.
-    pub(super) fn increasing(
+    pub(crate) fn increasing(
         &mut self,
         key: &'static str,
         bounds: Bounds,
@@ -189,7 +214,7 @@ impl<'a> Section<'a> {
     }
 
     /// A text, if the key is there.
-    pub(super) fn text(&mut self, key: &'static str, allowed: &str) -> Result<Option<&'a str>, Fault> {
+    pub(crate) fn text(&mut self, key: &'static str, allowed: &str) -> Result<Option<&'a str>, Fault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -200,7 +225,7 @@ impl<'a> Section<'a> {
     }
 
     /// A text that must be there.
-    pub(super) fn needed_text(&mut self, key: &'static str, allowed: &str) -> Result<&'a str, Fault> {
+    pub(crate) fn needed_text(&mut self, key: &'static str, allowed: &str) -> Result<&'a str, Fault> {
         match self.text(key, allowed)? {
             Some(text) => Ok(text),
             None => Err(self.missing(key, allowed)),
@@ -208,7 +233,7 @@ impl<'a> Section<'a> {
     }
 
     /// The value of `key` is not `allowed`.
-    pub(super) fn refuse(&self, key: &str, allowed: &str) -> Fault {
+    pub(crate) fn refuse(&self, key: &str, allowed: &str) -> Fault {
         let found = self
             .table
             .get(key)
@@ -223,7 +248,7 @@ impl<'a> Section<'a> {
     }
 
     /// `key` is missing here.
-    pub(super) fn missing(&self, key: &str, allowed: &str) -> Fault {
+    pub(crate) fn missing(&self, key: &str, allowed: &str) -> Fault {
         let problem = Problem::Missing {
             key: self.full(key),
             allowed: allowed.to_owned(),
@@ -233,7 +258,7 @@ impl<'a> Section<'a> {
     }
 
     /// The end of reading: a key that was never asked for is an error. The first in the file is named.
-    pub(super) fn finish(self) -> Result<(), Fault> {
+    pub(crate) fn finish(self) -> Result<(), Fault> {
         let unknown = self
             .table
             .keys()
@@ -277,7 +302,7 @@ impl<'a> Section<'a> {
 }
 
 /// The line of a byte offset, counted from 1.
-pub(super) fn line_at(text: &str, offset: usize) -> usize {
+pub(crate) fn line_at(text: &str, offset: usize) -> usize {
     1 + text.bytes().take(offset).filter(|&byte| byte == b'\n').count()
 }
 
