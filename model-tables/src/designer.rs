@@ -6,16 +6,21 @@
 mod actuator;
 mod atlas;
 mod bench;
+mod calibration;
 mod chart;
 mod drawing;
 mod estimate;
+mod fit;
 mod ladder;
+mod linear;
 mod materials;
 mod model;
 mod profile;
+mod progress;
 mod published;
 mod rest;
 mod rows;
+mod size;
 mod solve;
 mod table;
 
@@ -65,6 +70,14 @@ enum Command {
     Estimate(estimate::Arguments),
     /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
     Actuator(actuator::Arguments),
+    /// Calibrates a design to bench data
+    #[command(after_help = fit::HELP)]
+    Fit(fit::Arguments),
+    /// What a calibration gains, on stand-ins for a device
+    Calibration(calibration::Arguments),
+    /// Finds membranes for a wanted force over the indentation
+    #[command(after_help = size::HELP)]
+    Size(size::Arguments),
     /// The materials that a design can name, with where their constants come from
     Materials,
     /// Completions for a shell, on standard output
@@ -159,6 +172,9 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::Ladder(arguments) => ladder::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),
+        Command::Fit(arguments) => fit::run(arguments),
+        Command::Calibration(arguments) => calibration::run(arguments),
+        Command::Size(arguments) => size::run(arguments),
         Command::Materials => Ok(materials::run()),
         Command::Published(arguments) => published::run(arguments),
         Command::Completions { shell } => return completions(*shell),

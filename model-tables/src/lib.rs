@@ -29,6 +29,8 @@
 //! (fits and certifies) -> [`table`] (integers for the chip, in the quantities of [`units`], beside the
 //! [`constants`] of the design). Beside it stands the feedback [`actuator`].
 //!
+//! With `cli` come `fit` (bench data -> a calibrated design) and `size` (a wanted force -> designs).
+//!
 //! A law that [`material::Law`] lacks joins by implementing [`material::Hyperelastic`], and is pressed by
 //! [`press::Press::inflate`].
 //!
@@ -38,7 +40,7 @@
 //! |---|---|---|
 //! | none | | the model, the tables' look-up and their quantities: `no_std`, no allocation, no operating system |
 //! | `std` | yes | design files (`design_file`), the curve of a press, the table generator and its certificate (`generate`) |
-//! | `cli` | no | the `designer` command line; implies `std` |
+//! | `cli` | no | calibration (`fit`), sizing (`size`) and the `designer` command line; implies `std` |
 //!
 //! On a chip: `model-tables = { ..., default-features = false }`. The look-up works in integers alone. The model works in
 //! `f64` and keeps everything in one [`press::Press`] of less than 200 kB; a [`press::workspace::Workspace`] keeps that in

@@ -167,10 +167,20 @@ impl DataCurve {
         let [rise, force, indentation] =
             [&self.pressure_rise_kpa, &self.force_n, &self.indentation_mm].map(|knots| from_zero(knots));
         let through = |y: Vec<f64>| Monotone::new(rise.clone(), y).expect("knots increase");
-        let (force, depth) = (through(force), through(indentation.clone()));
-        let end = Monotone::new(indentation, rise.clone())
-            .expect("knots increase")
-            .at(1e3 * deepest);
+        let (force, depth) = (through(force), through(indentation));
+        // Where the curve itself is that deep.
+        let (mut low, mut end) = (0.0, rise[rise.len() - 1]);
+        while end - low > 1e-14 * end {
+            let middle = 0.5 * (low + end);
+            if middle <= low || middle >= end {
+                break;
+            }
+            if depth.at(middle) < 1e3 * deepest {
+                low = middle;
+            } else {
+                end = middle;
+            }
+        }
         (0..=POINTS)
             .map(|k| end * libm::pow(RANGE, k as f64 / POINTS as f64 - 1.0))
             .map(|rise| Contact {

@@ -1,9 +1,9 @@
 //! `designer published`: the source paper's numbers beside what its stated inputs give, and the page about them.
 
 mod page;
-mod paper;
+pub(super) mod paper;
 mod readings;
-mod solid;
+pub(super) mod solid;
 
 use super::rows::{Cell, Rows};
 use super::{Answer, Refusal, table};

@@ -13,9 +13,9 @@ use crate::state::{PressedState, Shape};
 use core::f64::consts::{FRAC_PI_4, PI};
 
 /// Indentations of the published forces, metres.
-pub(super) const INDENTATIONS: [f64; 3] = [0.5e-3, 1.5e-3, 2e-3];
+pub(in crate::designer) const INDENTATIONS: [f64; 3] = [0.5e-3, 1.5e-3, 2e-3];
 /// Published forces there, newtons.
-pub(super) const FORCES: [f64; 3] = [0.38, 1.6, 2.11];
+pub(in crate::designer) const FORCES: [f64; 3] = [0.38, 1.6, 2.11];
 /// Published pressure of the rest state, pascals.
 pub(super) const REST_PRESSURE: f64 = 2.1e3;
 /// Published radius of the inflated equator, metres.

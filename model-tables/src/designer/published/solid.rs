@@ -10,13 +10,13 @@ use crate::press::{ModelError, Press};
 
 /// A pressed dome of solid finite elements.
 #[derive(Clone, Copy)]
-pub(super) struct Pressed {
+pub(in crate::designer) struct Pressed {
     /// Indentation, metres.
-    pub(super) indentation: f64,
+    pub(in crate::designer) indentation: f64,
     /// Gauge pressure, pascals; it starts from 0.
-    pub(super) pressure: f64,
+    pub(in crate::designer) pressure: f64,
     /// Force, newtons.
-    pub(super) force: f64,
+    pub(in crate::designer) force: f64,
 }
 
 const fn pressed(indentation_mm: f64, pressure_kpa: f64, force: f64) -> Pressed {
@@ -30,7 +30,7 @@ const fn pressed(indentation_mm: f64, pressure_kpa: f64, force: f64) -> Pressed 
 /// Axisymmetric solid finite elements (quadratic displacement, discontinuous linear pressure, 80 x 4 elements; mesh
 /// and penalty error about 0.1 %) of a dome of 9 x 7 mm outside with a wall of 1 mm: Agilus30, not stretched at
 /// rest, clamped at the equator, filled with a rigid fluid, pressed by a plate without friction.
-pub(super) const SOLID: [Pressed; 12] = [
+pub(in crate::designer) const SOLID: [Pressed; 12] = [
     pressed(0.25, 0.671, 0.0764),
     pressed(0.5, 1.790, 0.1800),
     pressed(0.75, 3.69, 0.348),

@@ -1,0 +1,127 @@
+//! Panels with linear axes from zero, beside the logarithmic ones of [`super::drawing`].
+
+use super::drawing::{Anchor, BLACK, Drawing, GREY};
+use super::rows::significant;
+
+const GRID: &str = "#e4e4e4";
+/// Ticks of an axis, about.
+const TICKS: f64 = 5.0;
+
+/// A linear axis from zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis {
+    /// Its last value, a whole number of steps.
+    pub(super) end: f64,
+    /// Between ticks.
+    step: f64,
+    /// Where zero and the end lie.
+    pub(super) pixels: [f64; 2],
+}
+
+impl Axis {
+    /// An axis that holds values up to `largest`, with round ticks.
+    pub(super) fn from_zero(largest: f64, pixels: [f64; 2]) -> Self {
+        let largest = if largest > 0.0 { largest } else { 1.0 };
+        let rough = largest / TICKS;
+        let decade = libm::pow(10.0, libm::floor(libm::log10(rough)));
+        let step = [1.0, 2.0, 5.0, 10.0]
+            .into_iter()
+            .map(|round| round * decade)
+            .find(|step| *step >= 0.999 * rough)
+            .unwrap_or(10.0 * decade);
+        Self {
+            end: step * libm::ceil(largest / step - 1e-9),
+            step,
+            pixels,
+        }
+    }
+
+    /// Where a value lies; values beyond the ends lie at the ends.
+    pub(super) fn at(&self, value: f64) -> f64 {
+        let part = (value / self.end).clamp(0.0, 1.0);
+        self.pixels[0] + part * (self.pixels[1] - self.pixels[0])
+    }
+
+    fn ticks(&self) -> impl Iterator<Item = f64> + use<> {
+        let step = self.step;
+        let count = libm::round(self.end / step) as usize;
+        (0..=count).map(move |k| step * k as f64)
+    }
+}
+
+/// A frame with two linear axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Panel {
+    /// To the right.
+    pub(super) x: Axis,
+    /// Upward.
+    pub(super) y: Axis,
+}
+
+impl Panel {
+    /// Where a point lies.
+    pub(super) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.x.at(x), self.y.at(y)]
+    }
+
+    /// Grid, frame and numbers.
+    pub(super) fn draw(&self, drawing: &mut Drawing) {
+        let ([left, right], [bottom, top]) = (self.x.pixels, self.y.pixels);
+        for tick in self.x.ticks() {
+            let x = self.x.at(tick);
+            drawing.line([x, bottom], [x, top], GRID, 1.0);
+            drawing.text([x, bottom + 17.0], Anchor::Middle, 12.0, BLACK, &label(tick));
+        }
+        for tick in self.y.ticks() {
+            let y = self.y.at(tick);
+            drawing.line([left, y], [right, y], GRID, 1.0);
+            drawing.text([left - 7.0, y + 4.0], Anchor::End, 12.0, BLACK, &label(tick));
+        }
+        let corners = [
+            [left, bottom],
+            [right, bottom],
+            [right, top],
+            [left, top],
+            [left, bottom],
+        ];
+        drawing.path(&corners, GREY, 1.0);
+    }
+}
+
+/// A tick's number without needless zeros.
+fn label(tick: f64) -> String {
+    if tick == 0.0 {
+        return "0".to_owned();
+    }
+    let text = significant(tick, 3);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_end_at_a_round_number() {
+        for (largest, end, step) in [
+            (2.11, 2.5, 0.5),
+            (0.38, 0.4, 0.1),
+            (144.3, 150.0, 50.0),
+            (10.0, 10.0, 2.0),
+        ] {
+            let axis = Axis::from_zero(largest, [0.0, 100.0]);
+            assert!(
+                (axis.end - end).abs() < 1e-9 && (axis.step - step).abs() < 1e-9,
+                "{axis:?}"
+            );
+        }
+        assert_eq!(
+            (label(0.4), label(50.0), label(0.0)),
+            ("0.4".into(), "50".into(), "0".into())
+        );
+    }
+}
