@@ -4,7 +4,7 @@
 //! command is counted, and not answered: its sender cannot be known.
 
 use crate::tare::TareRefusal;
-use crate::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, Writer, named_by, unstuff};
+use crate::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, named_by, unstuff};
 
 const HEADER: usize = 4;
 
@@ -155,7 +155,7 @@ pub struct Request {
 
 /// The bytes of a request, ready for the wire.
 pub fn encode(request: &Request) -> Encoded {
-    let mut body = Writer::new();
+    let mut body = Encoded::new();
     body.put([PROTOCOL_VERSION, request.command.kind().code()]);
     body.put(request.sequence.to_le_bytes());
     match request.command {
@@ -164,7 +164,8 @@ pub fn encode(request: &Request) -> Encoded {
         Command::SelfTest { indentation } => body.put(indentation.to_le_bytes()),
         Command::Rate { every } => body.put(every.to_le_bytes()),
     }
-    body.finish()
+    body.finish();
+    body
 }
 
 /// The request in the bytes between two zeros (the zeros themselves left out).

@@ -7,7 +7,7 @@ use crate::command::{CommandKind, Outcome};
 use crate::report::{Fault, Measurement, Microseconds, Report, Sigma, Warnings};
 use crate::touch::Touch;
 pub use crate::wire::{DecodeError, Encoded, MAXIMUM_FRAME, PROTOCOL_VERSION};
-use crate::wire::{Deframer, Reader, Writer, code_of, named_by, unstuff};
+use crate::wire::{Deframer, Reader, code_of, named_by, unstuff};
 use core::fmt;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
@@ -197,7 +197,7 @@ pub struct Frame {
 
 /// The bytes of a frame, ready for the wire.
 pub fn encode(frame: &Frame) -> Encoded {
-    let mut body = Writer::new();
+    let mut body = Encoded::new();
     let mut header = |kind: u8, time: Microseconds| {
         body.put([PROTOCOL_VERSION, kind]);
         body.put(frame.sequence.to_le_bytes());
@@ -237,10 +237,11 @@ pub fn encode(frame: &Frame) -> Encoded {
             body.put(answer.findings.to_le_bytes());
         }
     }
-    body.finish()
+    body.finish();
+    body
 }
 
-fn write_hello(body: &mut Writer, hello: &Hello) {
+fn write_hello(body: &mut Encoded, hello: &Hello) {
     body.put(hello.firmware);
     body.put([code_of(&ResetCause::CODES, hello.reset_cause)]);
     body.put(hello.design_hash.to_le_bytes());

@@ -5,6 +5,7 @@
 //! beside this file is the page to write a client from.
 
 use core::fmt;
+use core::ops::Deref;
 use crc::{CRC_16_IBM_3740, Crc};
 use heapless::Vec;
 
@@ -62,15 +63,30 @@ impl fmt::Display for DecodeError {
 impl core::error::Error for DecodeError {}
 
 /// Bytes of one frame, the closing zero included.
-pub type Encoded = Vec<u8, MAXIMUM_FRAME>;
-
-/// A body on its way: fields put one after the other, behind the first code byte of COBS, which is not known yet.
-pub(crate) struct Writer {
+///
+/// Built where it is sent from: copying a frame costs more than checking it. While it is built, fields are put one after
+/// the other, behind the first code byte of COBS, which is not known yet.
+#[derive(Clone, Debug)]
+pub struct Encoded {
     bytes: [u8; MAXIMUM_FRAME],
     length: usize,
 }
 
-impl Writer {
+impl Deref for Encoded {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        self.as_slice()
+    }
+}
+
+impl Encoded {
+    /// The bytes.
+    pub fn as_slice(&self) -> &[u8] {
+        self.bytes.get(..self.length).unwrap_or(&[])
+    }
+
+    #[inline]
     pub(crate) fn new() -> Self {
         Self {
             bytes: [0; MAXIMUM_FRAME],
@@ -91,11 +107,11 @@ impl Writer {
         }
     }
 
-    /// The frame of the body.
+    /// Makes the body a frame.
     ///
     /// Below 254 bytes COBS is a chain through the zeros, each replaced by the distance to the next: done in place,
     /// in a quarter of the instructions of the general encoder, against which it is tested.
-    pub(crate) fn finish(mut self) -> Encoded {
+    pub(crate) fn finish(&mut self) {
         let check = CHECK.checksum(self.bytes.get(1..self.length).unwrap_or(&[]));
         self.put(check.to_le_bytes());
         let mut distance = 1_u8;
@@ -108,10 +124,8 @@ impl Writer {
                 distance += 1;
             }
         }
-        // Behind the frame lies nothing but zeros, of which the first closes it.
-        let mut encoded = Encoded::from_array(self.bytes);
-        encoded.truncate(self.length + 1);
-        encoded
+        // Behind it lies nothing but zeros, of which the first closes it.
+        self.length += 1;
     }
 }
 
@@ -195,11 +209,12 @@ mod tests {
     use proptest::prelude::*;
 
     fn framed(body: &[u8]) -> Encoded {
-        let mut writer = Writer::new();
+        let mut frame = Encoded::new();
         for &byte in body {
-            writer.put([byte]);
+            frame.put([byte]);
         }
-        writer.finish()
+        frame.finish();
+        frame
     }
 
     #[test]
