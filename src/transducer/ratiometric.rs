@@ -132,16 +132,22 @@ impl Conversion {
         }
     }
 
-    /// The pressure of a block, held at the ends of the word. `late` is how long ago the block ended, microseconds.
+    /// The pressure of a block, held at the ends of the word.
     // A boundary that stays in the image, so that instructions from averaged counts to both results can be counted.
     #[inline(never)]
-    pub fn sample(&self, sum: CountSum, late: u32) -> Sample {
+    pub fn pressure(&self, sum: CountSum) -> Millipascals {
         // gain < 2^31 and sum < 2^19: the product is below 2^50, and the offset leaves it a 63-bit word.
         let sum = i64::from(sum.0.min(CountSum::FULL_SCALE));
-        let pressure = saturate((i64::from(self.gain) * sum + self.offset) >> self.shift);
+        Millipascals(saturate((i64::from(self.gain) * sum + self.offset) >> self.shift))
+    }
+
+    /// The sample of a block that ended `late` microseconds ago.
+    #[inline]
+    pub fn sample(&self, sum: CountSum, late: u32) -> Sample {
+        let pressure = self.pressure(sum);
         Sample {
-            pressure: Millipascals(pressure),
-            headroom: Millipascals(self.range_end.0.saturating_sub(pressure)),
+            pressure,
+            headroom: Millipascals(self.range_end.0.saturating_sub(pressure.0)),
             temperature: None,
             raw: None,
             age: PERIOD / 2 + late,

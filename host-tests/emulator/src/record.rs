@@ -41,6 +41,8 @@ pub struct Row {
 pub struct Record {
     /// The reports in order.
     pub rows: Vec<Row>,
+    /// From the instant of each report to the end of its last byte on the line, seconds, in order.
+    pub latencies: Vec<f64>,
     /// The greetings in order.
     pub hellos: Vec<Hello>,
     /// What came of commands, in order.
@@ -96,6 +98,7 @@ impl<F: FnMut(&Row) + Send + 'static> Recorder<F> {
                         .map_or(Touch::Unknown, |measurement| measurement.touch),
                 };
                 (self.on_row)(&row);
+                self.record.latencies.push(moment.time - time);
                 self.record.rows.push(row);
             }
             Message::Hello(hello) => self.record.hellos.push(*hello),

@@ -18,7 +18,7 @@ use std::sync::OnceLock;
 
 /// The signal path from the averaged counts to both results, by owner and name: the conversion to pressure, and the
 /// stages after it.
-const SIGNAL_PATH: &[(&str, &str)] = &[("ratiometric", "sample"), ("Pipeline", "step")];
+const SIGNAL_PATH: &[(&str, &str)] = &[("ratiometric", "pressure"), ("Pipeline", "step")];
 
 /// The firmware for the default design, built once.
 fn firmware() -> &'static Image {
