@@ -86,9 +86,9 @@ mod tests {
 
     #[test]
     fn noise_is_what_filtering_leaves_and_resolution_what_steps_leave() {
-        // 5 Pa over 125 and 6/16: 0.274 Pa; 10 Pa / sqrt 12: 2.887 Pa; together 2.900 Pa or 742 counts of 1/256.
+        // 5 Pa over 100 and 6/16: 0.306 Pa; 10 Pa / sqrt 12: 2.887 Pa; together 2.903 Pa or 743 counts of 1/256.
         let uncertainty = Uncertainty::of(&Linear::CONSTANTS, 8, 2_500 << 8);
-        assert_eq!(uncertainty.rise(true, 0, 0), PressureRise(742));
+        assert_eq!(uncertainty.rise(true, 0, 0), PressureRise(743));
         // 2500 Pa / sqrt 3 = 1443 Pa.
         let unverified = uncertainty.rise(false, 0, 0).0;
         assert!((unverified - (1443 << 8)).abs() < 600, "{unverified}");
