@@ -5,8 +5,11 @@ use super::survey::{Across, METHODS, ROWS, STRETCH, Survey, VERDICTS, Verdict};
 
 const CELL: f64 = 20.0;
 const LEFT: f64 = 84.0;
-const TOP: f64 = 150.0;
 const GAP: f64 = 44.0;
+/// Above the first row of the legend, a row of it, and from its last to the panels.
+const LEGEND: [f64; 3] = [66.0, 24.0, 60.0];
+/// Width of a letter of the legend, generously: fonts differ.
+const LETTER: f64 = 7.2;
 
 /// Apart in lightness too; the silent failure is black with a cross.
 fn color(verdict: Verdict) -> &'static str {
@@ -37,12 +40,12 @@ pub(super) fn svg(survey: &Survey) -> String {
     let (wide, high) = (CELL * chart.columns as f64, CELL * ROWS as f64);
     let panels = METHODS.len() as f64;
     let width = LEFT + panels * wide + (panels - 1.0) * GAP + 24.0;
-    let mut drawing = Drawing::new(width, TOP + high + 60.0);
+    let entries = legend(width);
+    let top = entries.last().map_or(0.0, |([_, y], _)| y + LEGEND[2]);
+    let mut drawing = Drawing::new(width, top + high + 60.0);
     drawing.text([LEFT, 30.0], Anchor::Start, 20.0, BLACK, "Where methods fail");
     drawing.text([LEFT, 52.0], Anchor::Start, 13.0, GREY, chart.title);
-    for (k, verdict) in VERDICTS.into_iter().enumerate() {
-        let x = LEFT + (k % 3) as f64 * (wide + GAP);
-        let y = 66.0 + (k / 3) as f64 * 24.0;
+    for ([x, y], verdict) in entries {
         drawing.area([x, y], [14.0, 14.0], color(verdict));
         if verdict == Verdict::Silent {
             drawing.marker(Marker::Cross, [x + 7.0, y + 7.0], "#ffffff", false);
@@ -51,26 +54,43 @@ pub(super) fn svg(survey: &Survey) -> String {
     }
     for (i, method) in METHODS.iter().enumerate() {
         let left = LEFT + i as f64 * (wide + GAP);
-        drawing.text([left, TOP - 12.0], Anchor::Start, 14.0, BLACK, method.title());
+        drawing.text([left, top - 12.0], Anchor::Start, 14.0, BLACK, method.title());
         for cell in &survey.cells {
             let (column, row) = (cell.column as f64, cell.row as f64);
             let size = CELL * survey.stride as f64;
-            let corner = [left + CELL * column, TOP + high - CELL * row - size];
+            let corner = [left + CELL * column, top + high - CELL * row - size];
             let verdict = cell.verdicts[i];
             drawing.area(corner, [size - 1.0, size - 1.0], color(verdict));
             if verdict == Verdict::Silent {
                 drawing.marker(Marker::Cross, corner.map(|c| c + 0.5 * size), "#ffffff", false);
             }
         }
-        axes(&mut drawing, survey, left, i == 0);
+        axes(&mut drawing, survey, [left, top], i == 0);
     }
     drawing.finish()
 }
 
-fn axes(drawing: &mut Drawing, survey: &Survey, left: f64, first: bool) {
+/// Where each verdict's square stands: from left to right, in as many rows as the width takes.
+fn legend(width: f64) -> Vec<([f64; 2], Verdict)> {
+    let [mut x, mut y] = [LEFT, LEGEND[0]];
+    VERDICTS
+        .into_iter()
+        .map(|verdict| {
+            let wide = 20.0 + LETTER * words(verdict).chars().count() as f64;
+            if x > LEFT && x + wide > width {
+                [x, y] = [LEFT, y + LEGEND[1]];
+            }
+            let at = [x, y];
+            x += wide + 0.5 * GAP;
+            (at, verdict)
+        })
+        .collect()
+}
+
+fn axes(drawing: &mut Drawing, survey: &Survey, [left, top]: [f64; 2], first: bool) {
     let chart = &survey.chart;
     let (wide, high) = (CELL * chart.columns as f64, CELL * ROWS as f64);
-    let bottom = TOP + high;
+    let bottom = top + high;
     let [low, end] = chart.range;
     let mut tick = |part: f64, label: &str| {
         let x = left + part * wide;
@@ -111,6 +131,6 @@ fn axes(drawing: &mut Drawing, survey: &Survey, left: f64, first: bool) {
         }
     }
     if first {
-        drawing.upward([left - 58.0, TOP + 0.5 * high], 13.0, "pole stretch at rest");
+        drawing.upward([left - 58.0, top + 0.5 * high], 13.0, "pole stretch at rest");
     }
 }
