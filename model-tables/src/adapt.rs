@@ -6,7 +6,7 @@
 
 use crate::equilibrium::{Closure, Equilibrium, Outcome};
 use crate::material::Hyperelastic;
-use crate::membrane::{CONTACT_PARAMETER, Membrane, POLE, PRESSURE, TensionField, Zone};
+use crate::membrane::{CONTACT_PARAMETER, Membrane, POLE, PRESSURE, TensionField};
 use crate::mesh::{Breaks, Depth};
 use crate::solution::{MAX_ELEMENTS, Pole, Solution};
 use core::f64::consts::FRAC_PI_2;
@@ -59,6 +59,9 @@ pub struct Resolution {
     pub contact_elements: usize,
     /// Relative change that one more Newton iteration may still make.
     pub tolerance: f64,
+    /// Last term of an element's polynomial, relative to the solution, above which the element is cut; its square is about
+    /// the error that remains. Infinite for a mesh that is laid by the grading alone.
+    pub last_term: f64,
 }
 
 /// How much finer the mesh of the rest state is than that of a press. It is solved once, and the first indentations
@@ -66,14 +69,16 @@ pub struct Resolution {
 pub(crate) const REST_FINENESS: f64 = 3.0;
 /// Rounds of mesh and pole adjustment.
 const MAX_ROUNDS: usize = 12;
-/// A kink this close to a node is on it: misplaced by `d`, it costs `d^2`.
-const KINK_TOLERANCE: f64 = 1e-8;
+/// Finer meshes for a state whose kinks have their nodes; what they do not resolve, more elements would not.
+const MAX_REFINEMENTS: usize = 5;
 /// A mesh graded for a contact or a bend that differs by more than this factor is laid anew.
 const STALE_GRADING: f64 = 1.4;
 /// Largest spacing under the plate, in the meridian's parameter, at one element a unit of depth.
 const LARGEST_SPACING: f64 = 0.4;
 /// Bend lengths below this are not resolved.
 const SMALLEST_BEND: f64 = 1e-6;
+/// Bend length at which the contact edge has as good as lost its tension.
+const VANISHING_BEND: f64 = 1e-5;
 /// Bend lengths beyond this do not shape the mesh.
 const LARGEST_BEND: f64 = 0.5;
 
@@ -123,6 +128,7 @@ impl<L, const S: usize> Adaptive<L, S> {
                 density: 0.0,
                 contact_elements: 0,
                 tolerance: 0.0,
+                last_term: f64::INFINITY,
             },
             iterations: 0,
         }
@@ -153,6 +159,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// # Errors
     /// [`Failure`] when Newton's method fails, or mesh and pole do not settle; the guess is then of no more use.
     pub fn settle(&mut self, guess: &mut Graded<S>, closure: &Closure) -> Result<(), Failure> {
+        let mut refinements = 0;
         for _ in 0..MAX_ROUNDS {
             if Self::stale(guess) {
                 *guess = self.relay(guess);
@@ -171,7 +178,10 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             let kinks = self.kinks(&guess.solution);
             guess.breaks = kinks;
             if Self::kinks_are_nodes(&guess.solution, &kinks) {
-                return Ok(());
+                if refinements == MAX_REFINEMENTS || !self.is_coarse(&guess.solution) {
+                    return Ok(());
+                }
+                refinements += 1;
             }
             *guess = self.relay(guess);
         }
@@ -201,7 +211,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     pub fn edge_pushes(&self, graded: &Graded<S>) -> Option<Failure> {
         let solution = &graded.solution;
         let plain = self.membrane().tension_field == TensionField::Plain;
-        (plain && solution.contact_elements > 0 && Self::bend(solution) < SMALLEST_BEND).then(|| {
+        (plain && solution.contact_elements > 0 && Self::bend(solution) < VANISHING_BEND).then(|| {
             let position = solution.parameters[CONTACT_PARAMETER];
             Failure::EdgePushes { position }
         })
@@ -319,6 +329,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                 (positions[contact_elements + k] - zone_start) / (FRAC_PI_2 - zone_start);
         }
         old.resample(&self.equilibrium.gauss, &mut solution);
+        self.cut(old, &mut solution);
         Graded {
             solution,
             depth,
@@ -355,85 +366,5 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             }
         }
         self.lay(graded, Pole::Slack, edge.min(0.9 * contact_parameter))
-    }
-
-    /// Where hoop wrinkles begin or end.
-    fn kinks(&self, solution: &Solution<S>) -> Breaks {
-        let mut kinks = Breaks::default();
-        if self.membrane().tension_field == TensionField::Plain {
-            return kinks;
-        }
-        let mut before: Option<(f64, bool)> = None;
-        let [_, pressure, contact_radius, _] = solution.parameters;
-        for e in 0..solution.elements() {
-            let span = solution.span(e);
-            for j in 0..S {
-                let t = span.start + self.equilibrium.gauss.nodes[j] * span.length;
-                let (state, stretch) = (solution.stages[e][j], solution.stretches[e][j]);
-                let wrinkled = state[0] < 1.0
-                    && self.wrinkle_margin(solution.zone(e), t, state, pressure, contact_radius, stretch)
-                        < 0.0;
-                if let Some((left, was)) = before
-                    && was != wrinkled
-                {
-                    kinks.push(self.kink_between(solution, left, t, was));
-                }
-                before = Some((t, wrinkled));
-            }
-        }
-        kinks
-    }
-
-    /// Positive where the membrane is taut both ways, negative where hoop wrinkles stand.
-    fn wrinkle_margin(
-        &self,
-        zone: Zone,
-        t: f64,
-        state: [f64; 2],
-        pressure: f64,
-        contact_radius: f64,
-        stretch: f64,
-    ) -> f64 {
-        let [u, _] = state;
-        let tension = self
-            .membrane()
-            .tension_measure(zone, t, state, pressure, contact_radius);
-        match self.membrane().uniaxial(tension.max(0.0), stretch) {
-            Some((l1, _)) => u * u * l1 - 1.0,
-            None => 1.0,
-        }
-    }
-
-    /// The kink between two points of different kind, the left one wrinkled or not, by bisection.
-    fn kink_between(
-        &self,
-        solution: &Solution<S>,
-        mut left: f64,
-        mut right: f64,
-        left_wrinkled: bool,
-    ) -> f64 {
-        let [_, pressure, contact_radius, contact_parameter] = solution.parameters;
-        while right - left > 1e-3 * KINK_TOLERANCE {
-            let middle = 0.5 * (left + right);
-            let (state, stretch) = solution.at(&self.equilibrium.gauss, middle);
-            let zone = if middle < contact_parameter {
-                Zone::Contact
-            } else {
-                Zone::Free
-            };
-            let wrinkled = self.wrinkle_margin(zone, middle, state, pressure, contact_radius, stretch) < 0.0;
-            if wrinkled == left_wrinkled {
-                left = middle;
-            } else {
-                right = middle;
-            }
-        }
-        0.5 * (left + right)
-    }
-
-    fn kinks_are_nodes(solution: &Solution<S>, kinks: &Breaks) -> bool {
-        kinks.positions().iter().all(|&kink| {
-            (0..solution.elements()).any(|e| (solution.span(e).start - kink).abs() < KINK_TOLERANCE)
-        })
     }
 }

@@ -56,6 +56,18 @@ pub enum Closure {
     },
 }
 
+/// The direction in which an unpressed state goes on inflating while its edge is held: derivatives by the stretch of the
+/// pole, dimensionless.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangent {
+    /// Of the pressure.
+    pub pressure: f64,
+    /// Of the volume.
+    pub volume: f64,
+    /// Of the height.
+    pub height: f64,
+}
+
 /// How Newton's method ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
@@ -218,9 +230,9 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
         Ok(residual)
     }
 
-    /// Assembles chain and border, and solves for the change of the last node and the parameters.
-    fn step(&mut self, solution: &mut Solution<S>, closure: &Closure) -> Option<[f64; UNKNOWNS]> {
-        let [pole, pressure, contact_radius, contact_parameter] = solution.parameters;
+    /// Assembles chain and border, and eliminates all nodes but the last.
+    fn eliminate(&mut self, solution: &mut Solution<S>) -> Option<()> {
+        let [pole, _, contact_radius, contact_parameter] = solution.parameters;
         let (first, first_by_pole) = self.first_node(solution.pole, pole);
         solution.nodes[0] = first;
         let mut by_parameter = [[0.0; PARAMETERS]; STATES];
@@ -245,6 +257,13 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             }
             self.chain.advance(&self.condensed[e].end)?;
         }
+        Some(())
+    }
+
+    /// Solves for the change of the last node and the parameters.
+    fn step(&mut self, solution: &mut Solution<S>, closure: &Closure) -> Option<[f64; UNKNOWNS]> {
+        self.eliminate(solution)?;
+        let [pole, pressure, contact_radius, contact_parameter] = solution.parameters;
         let borders: [Row; BORDERS] = self.chain.borders;
         let [link_0, link_1] = self.chain.link();
         let last = solution.nodes[solution.elements()];
@@ -293,6 +312,28 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             }
         };
         chain::solve(rows)
+    }
+
+    /// How an unpressed state goes on inflating while its edge is held. `None` where it does not go on smoothly.
+    /// Of `solution` only the guesses of the stretches change.
+    pub fn tangent(&mut self, solution: &mut Solution<S>) -> Option<Tangent> {
+        self.linearise(solution).ok()?;
+        self.eliminate(solution)?;
+        let [link_0, link_1] = self.chain.link();
+        let change = chain::solve([
+            link_0,
+            link_1,
+            unit_row(0, 0.0),
+            unit_row(STATES + POLE, -1.0),
+            unit_row(STATES + CONTACT_RADIUS, 0.0),
+            unit_row(STATES + CONTACT_PARAMETER, 0.0),
+        ])?;
+        let of = |row: &Row| row.iter().zip(&change).map(|(a, x)| a * x).sum::<f64>();
+        Some(Tangent {
+            pressure: change[STATES + PRESSURE],
+            volume: of(&self.chain.borders[VOLUME]),
+            height: of(&self.chain.borders[HEIGHT]),
+        })
     }
 
     /// Newton's method from the values in `solution`, which it replaces.

@@ -8,7 +8,7 @@
 use crate::adapt::{Adaptive, Failure, Graded};
 use crate::equilibrium::{Closure, RestControl};
 use crate::material::Hyperelastic;
-use crate::membrane::POLE;
+use crate::membrane::{POLE, PRESSURE};
 use crate::stability::{self, Margin};
 
 /// Where inflation ends short of a pole stretch.
@@ -21,6 +21,8 @@ pub enum End {
     },
     /// The law is about to lose its stability, or has lost it.
     Unstable(Margin),
+    /// At a given volume and with the edge held, the dome bulges by itself: its volume has a maximum along inflation.
+    Bulges,
     /// The solver failed.
     Lost(Failure),
 }
@@ -36,7 +38,7 @@ const SMALLEST_STEP: f64 = 1e-4;
 /// Margin that leaves no room for a smallest step.
 const NO_MARGIN: f64 = 0.02;
 /// Fall of the pole stretch from its maximum that is no rounding.
-const TURN: f64 = 1e-4;
+const TURN: f64 = 1e-5;
 /// Equator stretch at which the search for a turn is given up.
 const LARGEST_EQUATOR: f64 = 12.0;
 
@@ -81,6 +83,25 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             })
     }
 
+    /// Whether the volume still grows along the inflation of a dome whose edge is held: where it turns, no volume of fluid
+    /// holds the dome. `direction` is that of the state before, which tells which way along is on; neither pressure,
+    /// pole nor height do, as each of them may turn on the way of a stable dome.
+    fn holds_its_volume(&mut self, state: &mut Graded<S>, direction: &mut [f64; 3]) -> bool {
+        let Some(tangent) = self.equilibrium.tangent(&mut state.solution) else {
+            return true;
+        };
+        let solution = &state.solution;
+        let now = [
+            tangent.pressure / solution.parameters[PRESSURE],
+            tangent.volume / solution.volume,
+            tangent.height / solution.height,
+        ];
+        let dot = |other: &[f64; 3]| now.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+        let size = libm::sqrt(dot(&now)).copysign(dot(direction));
+        *direction = now.map(|x| x / size);
+        direction[1] > 0.0
+    }
+
     /// Makes `state` the rest state of a pole stretch, by inflation from nearly nothing. Of its content nothing is used.
     ///
     /// # Errors
@@ -102,7 +123,11 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         let mut step = LARGEST_STEP.min(4.0 * FIRST);
         let mut greatest = pole_of(state);
         let mut failure = Failure::Unsettled;
+        let mut direction = [0.0, 1.0, 0.0];
         loop {
+            if !self.holds_its_volume(state, &mut direction) {
+                return Err(End::Bulges);
+            }
             if pole_of(state) >= pole_stretch {
                 return Ok(());
             }
@@ -143,7 +168,12 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                     // Near enough for the pole to take over.
                     let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
                     state.clone_from(&next);
-                    return self.settle(state, &closure).map_err(End::Lost);
+                    self.settle(state, &closure).map_err(End::Lost)?;
+                    return if self.holds_its_volume(state, &mut direction) {
+                        Ok(())
+                    } else {
+                        Err(End::Bulges)
+                    };
                 }
                 if pole_of(&next) < greatest - TURN {
                     return Err(End::Turns { greatest });

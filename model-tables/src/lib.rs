@@ -85,6 +85,7 @@ pub mod methods;
 #[cfg(feature = "std")]
 pub mod monotone;
 pub mod press;
+mod refine;
 pub mod rest;
 #[cfg(feature = "std")]
 pub mod rung;
@@ -97,3 +98,4 @@ pub mod stability;
 pub mod state;
 pub mod table;
 pub mod units;
+mod wrinkle;

@@ -27,6 +27,7 @@ const MESH: Resolution = Resolution {
     density: 1.0,
     contact_elements: 1,
     tolerance: 1e-10,
+    last_term: f64::INFINITY,
 };
 /// Indentations over the height at which a press of the search is solved; a press ends at about half the height.
 const DEPTHS: [f64; 12] = [

@@ -8,7 +8,7 @@ use model_tables::adapt::Failure;
 use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::press::{ModelError, Press};
+use model_tables::press::{EndsBy, ModelError, Press};
 use model_tables::rest::Quantity;
 use model_tables::stability::Mode;
 use model_tables::state::Wrinkling;
@@ -134,4 +134,171 @@ fn wrinkles_soften_a_flat_weakly_stretched_membrane() {
         }
     }
     assert!((-0.42..-0.33).contains(&most), "{most}");
+}
+
+/// Force by virtual work over the force of a state, less 1: `dE/dH` at constant volume, by differences of sixth order.
+fn work_error(press: &mut Press, indentation: f64, step: f64) -> f64 {
+    let force = press.at_indentation(indentation).expect("a state").force;
+    let mut energy = |shift: f64| {
+        let h = indentation * (step * shift).exp();
+        press.at_indentation(h).expect("a state beside it").shape.energy
+    };
+    let rate = [45.0, -9.0, 1.0]
+        .iter()
+        .zip(1..)
+        .map(|(weight, k)| weight / 60.0 * (energy(f64::from(k)) - energy(f64::from(-k))))
+        .sum::<f64>();
+    rate / (step * indentation * force) - 1.0
+}
+
+/// A law that has nearly lost its stability changes its stretches within a few hundredths of the meridian: the rest state
+/// and first contact need a mesh that sees it (margin of stability 0.015).
+#[test]
+fn a_nearly_unstable_law_is_resolved_at_first_contact() {
+    let law = Law::Yeoh {
+        c1: 49_252.0,
+        c2: -4_196.44,
+        c3: 210.974,
+    };
+    let dome = design(3.6, 1.627, 0.582, law, 2.4937);
+    let mut press = Press::new(&dome, TensionField::Plain).expect("rest");
+    assert!(press.rest_stability().value < 0.03);
+    let height = press.rest().height;
+    for (part, bound) in [(2e-4, 1e-4), (1e-3, 1e-5), (1e-2, 1e-6), (0.1, 1e-6)] {
+        let error = work_error(&mut press, part * height, 0.04);
+        assert!(error.abs() < bound, "{part}: {error:e}");
+    }
+}
+
+/// Hoop wrinkles that begin between two samples of the mesh still relax: at their onset, which lies between the two
+/// indentations, the force obeys virtual work as it does elsewhere.
+#[test]
+fn a_wrinkled_zone_thinner_than_an_element_is_found() {
+    let law = Law::Yeoh {
+        c1: 487_085.85,
+        c2: -41_856.92,
+        c3: 543.616,
+    };
+    let flat = design(
+        13.735_708_475_724_271,
+        8.278_878_5,
+        0.893,
+        law,
+        1.003_481_905_109_167_7,
+    );
+    let mut press = relaxed(&flat).expect("rest");
+    for indentation in [2.26e-3, 2.27e-3, 2.28e-3, 2.2848e-3, 2.29e-3] {
+        let error = work_error(&mut press, indentation, 1e-4);
+        assert!(error.abs() < 1e-7, "{indentation}: {error:e}");
+    }
+}
+
+/// With a compliance between those of base touch and of drained fluid the bulge touches the base and lifts off again: the
+/// press ends at the first touch, whichever indentation is asked for first.
+#[test]
+fn a_bulge_that_lifts_off_again_has_ended_the_press() {
+    let dome = Design {
+        compliance: 4.945_788_756_510_176e-11,
+        ..design(
+            5.832_042_998,
+            5.211_643_574,
+            0.100_270_626_6,
+            Law::NeoHookean { c1: 150_370.779 },
+            1.310_032_979,
+        )
+    };
+    let mut press = relaxed(&dome).expect("rest");
+    let height = press.rest().height;
+    match press.at_indentation(0.96 * height) {
+        Err(ModelError::BeyondLimit { limit, .. }) => {
+            assert_eq!(limit.ends_by, EndsBy::BulgeTouchesBase);
+            let part = limit.indentation / height;
+            assert!((0.9..0.92).contains(&part), "{part}");
+            let state = press
+                .at_indentation(0.9999 * limit.indentation)
+                .expect("before the end");
+            assert!(state.contact_radius < state.shape.edge_radius);
+            assert!((state.contact_radius / state.shape.edge_radius - 1.0).abs() < 1e-4);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A plain membrane may lose its tension at the contact edge and have it again when pressed farther, which stretches it:
+/// in between there is no state, beyond there are, and both are told whatever was asked before.
+#[test]
+fn a_plain_membrane_is_pressed_beyond_the_indentations_without_a_state() {
+    let law = Law::MooneyRivlin {
+        c1: 901_870.78,
+        c2: 529_710.466,
+    };
+    let long = design(2.730_212_177, 4.560_046_486, 0.034_823_148, law, 1.016_446_31);
+    let mut press = Press::new(&long, TensionField::Plain).expect("rest");
+    let height = press.rest().height;
+    for _ in 0..2 {
+        for part in [0.1, 0.19, 0.3, 0.45] {
+            let error = work_error(&mut press, part * height, 5e-3);
+            assert!(error.abs() < 1e-6, "{part}: {error:e}");
+        }
+        let between = press.at_indentation(0.22 * height);
+        assert!(
+            matches!(
+                between,
+                Err(ModelError::PressUnsolved {
+                    failure: Failure::EdgePushes { .. },
+                    ..
+                })
+            ),
+            "{between:?}"
+        );
+    }
+    let limit = press.limit().expect("the end lies beyond");
+    assert_eq!(limit.ends_by, EndsBy::BulgeTouchesBase);
+}
+
+/// Where pressure falls with inflation, a compliance of `-dV/dP` no longer holds the dome, and where the volume has its
+/// maximum no fluid does. On the way to either the pressure rise per force at first contact, `dh/(dV + c dP)` along
+/// inflation with the edge held, grows beyond bounds.
+#[test]
+fn a_dome_that_inflates_by_itself_is_refused() {
+    let soft = Law::Yeoh {
+        c1: 175_040.534,
+        c2: -2_486.226_8,
+        c3: -717.316_85,
+    };
+    let dome = |stretch| design(8.804, 8.077, 0.762, soft, stretch);
+    let rise_per_force = |design: &Design| {
+        let mut press = relaxed(design).expect("it holds");
+        let state = press.at_indentation(1e-4 * press.rest().height).expect("contact");
+        state.pressure_rise / state.force
+    };
+    assert!(rise_per_force(&dome(1.79)) > 10.0 * rise_per_force(&dome(1.6)));
+    assert!(matches!(
+        relaxed(&dome(1.8)).map(|press| *press.rest()),
+        Err(ModelError::Unheld { largest: None, .. })
+    ));
+    let softening = Law::Yeoh {
+        c1: 459_938.16,
+        c2: -15_255.483_5,
+        c3: 321.503_16,
+    };
+    let balloon = design(12.239, 12.08, 1.1, softening, 2.2);
+    let with = |compliance| Design {
+        compliance,
+        ..balloon
+    };
+    let largest = match relaxed(&with(1e-6)).map(|press| *press.rest()) {
+        Err(ModelError::Unheld {
+            largest: Some(largest),
+            ..
+        }) => largest,
+        other => panic!("{other:?}"),
+    };
+    assert!(relaxed(&with(1.001 * largest)).is_err());
+    let (half, nearly) = (
+        rise_per_force(&with(0.5 * largest)),
+        rise_per_force(&with(0.9 * largest)),
+    );
+    // As 1 / (1 - c / c_largest).
+    assert!((nearly / half / 5.0 - 1.0).abs() < 0.05, "{half} {nearly}");
 }

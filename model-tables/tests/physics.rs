@@ -141,6 +141,7 @@ fn mesh_refinement_converges_fast() {
             density,
             contact_elements: 6,
             tolerance: 1e-14,
+            last_term: f64::INFINITY,
         };
         let mut press: Press =
             Press::with_resolution(&design, TensionField::Relaxed, resolution).expect("rest");

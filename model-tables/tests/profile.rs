@@ -128,6 +128,7 @@ fn it_does_not_depend_on_the_mesh() {
             density: 5.0,
             contact_elements: 6,
             tolerance: 1e-14,
+            last_term: 1e-7,
         };
         let mut press: Press = Press::with_resolution(&design, field, finer).expect("rest state");
         let fine: Vec<_> = press.profile(indentation, 101).expect("state").collect();

@@ -1,4 +1,4 @@
-//! Judges the states of random designs: `campaign [--designs N] [--seed S] [--csv FILE]`.
+//! Judges the states of random designs: `campaign [--designs N | --design N ...] [--seed S] [--csv FILE]`.
 
 use clap::Parser;
 use model_tables::campaign::draw::Case;
@@ -20,9 +20,9 @@ struct Arguments {
     /// What the draw depends on
     #[arg(long, default_value_t = 2026)]
     seed: u64,
-    /// Only this design of the draw
-    #[arg(long)]
-    only: Option<u64>,
+    /// Only this design of the draw, with a line for each of its states; repeatable
+    #[arg(long, value_name = "N")]
+    design: Vec<u64>,
     /// A row a state
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -119,30 +119,32 @@ fn run(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
         None => None,
     };
     let started = Instant::now();
-    let results = match arguments.only {
-        Some(index) => {
-            let case = campaign::draw::case(arguments.seed, index);
-            eprintln!("{case:#?}");
-            let judged = campaign::judge::judge(&case);
-            for one in &judged {
-                eprintln!(
-                    "{:.6} {:?} work {:.1e} ({:.1e}) second {:.1e} margin {:.3} {}",
-                    one.part,
-                    one.verdict,
-                    one.work_error,
-                    one.work_rounding,
-                    one.second_error,
-                    one.margin,
-                    one.message
-                );
-            }
-            vec![(case, judged)]
+    let chosen = |index: &u64| {
+        let case = campaign::draw::case(arguments.seed, *index);
+        eprintln!("{case:#?}");
+        let judged = campaign::judge::judge(&case);
+        for one in &judged {
+            eprintln!(
+                "{:.6} {:?} work {:.1e} ({:.1e}) second {:.1e} margin {:.3} {}",
+                one.part,
+                one.verdict,
+                one.work_error,
+                one.work_rounding,
+                one.second_error,
+                one.margin,
+                one.message
+            );
         }
-        None => campaign::run(arguments.seed, arguments.designs, |done| {
+        (case, judged)
+    };
+    let results = if arguments.design.is_empty() {
+        campaign::run(arguments.seed, arguments.designs, |done| {
             if done % 200 == 0 || done == arguments.designs {
                 eprint!("\r{done} of {} designs", arguments.designs);
             }
-        }),
+        })
+    } else {
+        arguments.design.iter().map(chosen).collect()
     };
     eprintln!();
     if let Some(writer) = &mut writer {

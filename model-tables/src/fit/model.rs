@@ -26,6 +26,7 @@ const MESH: Resolution = Resolution {
     density: 1.0,
     contact_elements: 1,
     tolerance: 1e-10,
+    last_term: f64::INFINITY,
 };
 /// Shallowest indentation of a curve over the shallowest of the data, and over the deepest at least; the asymptotes
 /// carry on from there.

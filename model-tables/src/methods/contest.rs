@@ -33,12 +33,14 @@ const TRUTH: Resolution = Resolution {
     density: 5.0,
     contact_elements: 8,
     tolerance: 1e-14,
+    last_term: 1e-7,
 };
 /// What the truth is checked against: another order and mesh.
 const CHECK: Resolution = Resolution {
     density: 3.5,
     contact_elements: 6,
     tolerance: 1e-14,
+    last_term: 1e-7,
 };
 
 /// A design of the contest.
@@ -253,6 +255,7 @@ fn collocation<const S: usize>(design: &Design, density: f64) -> core::result::R
         density,
         contact_elements: libm::round(density) as usize,
         tolerance: newton_tolerance(S, density),
+        last_term: f64::INFINITY,
     };
     let rest = Press::<Law, S>::with_resolution(design, TensionField::Plain, resolution)
         .map_err(|error| error.to_string())?;

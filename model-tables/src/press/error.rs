@@ -38,6 +38,13 @@ pub enum ModelError {
         /// The greatest that inflation passes.
         greatest: f64,
     },
+    /// The rest state does not hold: it would go on inflating by itself.
+    Unheld {
+        /// Compliance of the fluid path, cubic metres per pascal.
+        compliance: f64,
+        /// The compliance below which it holds, if any does.
+        largest: Option<f64>,
+    },
     /// The rest state was not found.
     RestUnsolved {
         /// What failed.
@@ -116,6 +123,19 @@ impl fmt::Display for ModelError {
                 asked * 1e-3,
                 greatest * 1e-3
             ),
+            Self::Unheld { compliance, largest } => match largest {
+                Some(largest) => write!(
+                    f,
+                    "the rest state does not hold: its pressure falls as it is inflated, so that with a compliance of \
+                     {:.6} mm3/kPa it goes on inflating by itself; at less than {:.6} mm3/kPa it holds",
+                    compliance * 1e12,
+                    largest * 1e12
+                ),
+                None => f.write_str(
+                    "the rest state does not hold: even at a fixed volume of fluid its pole bulges by itself; ask for a \
+                     smaller pole stretch",
+                ),
+            },
             Self::RestUnsolved { failure } => {
                 write!(
                     f,

@@ -21,9 +21,63 @@ pub(super) enum Stop {
     Failed { reached: f64, failure: Failure },
 }
 
+/// Where a leap begins, over the indentation at which the contact edge loses its tension: the bend there is still wide.
+const RUN_UP: [f64; 2] = [0.97, 0.9];
+/// How far it goes, over the height.
+const LEAPS: [f64; 4] = [0.03, 0.06, 0.1, 0.15];
+
 impl<L: Hyperelastic, const S: usize> Press<L, S> {
-    /// Solves the state at a dimensionless indentation, over as many states in between as it takes.
+    /// Solves the state at a dimensionless indentation, from the latest one, or from rest where no way leads down from
+    /// there.
     pub(super) fn reach(&mut self, indentation: f64) -> Result<(), Stop> {
+        let from = self.history.latest().map(|g| g.solution.height);
+        let result = self.reach_from_here(indentation);
+        match from {
+            Some(left) if result.is_err() && self.rest.solution.height - left > indentation => {
+                self.history.clear();
+                self.reach_from_here(indentation)
+            }
+            _ => result,
+        }
+    }
+
+    /// The same from the latest state. Of a plain membrane whose contact edge loses its tension, there may be states again
+    /// farther down, where the deeper press has stretched it.
+    fn reach_from_here(&mut self, indentation: f64) -> Result<(), Stop> {
+        let mut stop = match self.walk(indentation) {
+            Ok(()) => return Ok(()),
+            Err(stop) => stop,
+        };
+        while let Stop::Failed {
+            reached,
+            failure: Failure::EdgePushes { .. },
+        } = stop
+            && reached < indentation
+            && self.leap(reached, indentation)
+        {
+            stop = match self.walk(indentation) {
+                Ok(()) => return Ok(()),
+                Err(stop) => stop,
+            };
+        }
+        Err(stop)
+    }
+
+    /// Whether a state was found beyond a stretch of indentations, from `reached` on, that have none.
+    fn leap(&mut self, reached: f64, indentation: f64) -> bool {
+        let height = self.rest.solution.height;
+        RUN_UP.iter().any(|part| {
+            self.walk(part * reached).is_ok()
+                && LEAPS.iter().any(|leap| {
+                    let to = (reached + leap * height).min(indentation);
+                    self.history.repeat();
+                    self.attempt(to).is_ok()
+                })
+        })
+    }
+
+    /// Walks to a dimensionless indentation, over as many states in between as it takes.
+    fn walk(&mut self, indentation: f64) -> Result<(), Stop> {
         let height = self.rest.solution.height;
         if indentation >= height {
             return Err(Stop::BeyondLimit);
@@ -35,7 +89,11 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 let Err(stop) = self.attempt(first) else { break };
                 first *= 0.1;
                 if first < 1e-10 * height {
-                    return Err(stop);
+                    // A dome that hardly holds its volume bends sharply at first, and lets itself be pressed farther on.
+                    first = FIRST_INDENTATION * height;
+                    *self.history.working() = self.first_contact(first);
+                    self.attempt(first).map_err(|_| stop)?;
+                    break;
                 }
             }
         }

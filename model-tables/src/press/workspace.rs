@@ -47,7 +47,8 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
     /// Inflates a membrane to its rest state, in place of whatever was here; `compliance` in cubic metres per pascal.
     ///
     /// # Errors
-    /// [`ModelError::NoRestState`], [`ModelError::LawUnstable`] and [`ModelError::RestUnsolved`].
+    /// [`ModelError::NoRestState`], [`ModelError::LawUnstable`], [`ModelError::Unheld`] and
+    /// [`ModelError::RestUnsolved`].
     pub fn inflate(
         &mut self,
         dimensions: &Dimensions,
@@ -83,6 +84,10 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
                         asked: stretch,
                         margin,
                     },
+                    End::Bulges => ModelError::Unheld {
+                        compliance,
+                        largest: None,
+                    },
                     End::Lost(failure) => ModelError::RestUnsolved { failure },
                 })?;
                 press.branch = Branch::Only;
@@ -90,6 +95,22 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
             RestBy::Pressure(pascals) => press.rest_by(Quantity::Pressure, pascals, scale.pressure)?,
             RestBy::EquatorRadius(metres) => press.rest_by(Quantity::EquatorRadius, metres, scale.length)?,
             RestBy::Height(metres) => press.rest_by(Quantity::Height, metres, scale.length)?,
+        }
+        // `1 + c dP/dV > 0`, or the fluid inflates the dome by itself.
+        let held_below = press
+            .solver
+            .equilibrium
+            .tangent(&mut press.rest.solution)
+            .map(|tangent| -tangent.volume / tangent.pressure)
+            .filter(|&largest| largest > 0.0)
+            .map(|largest| largest * scale.volume() / scale.pressure);
+        if let Some(largest) = held_below
+            && compliance >= largest
+        {
+            return Err(ModelError::Unheld {
+                compliance,
+                largest: Some(largest),
+            });
         }
         press.rest_shape = state::shape(&press.solver.equilibrium, &scale, &press.rest.solution);
         Ok(press)

@@ -100,6 +100,20 @@ impl<const S: usize> Gauss<S> {
         }
     }
 
+    /// The last term of the collocation polynomial: the coefficient of Chebyshev's polynomial of degree `S` on the element.
+    #[inline]
+    pub fn last_term(&self, left: [f64; STATES], stages: &[[f64; STATES]; S]) -> [f64; STATES] {
+        // The barycentric weights are those of the divided difference; Chebyshev's polynomial on [0, 1] begins with
+        // 2^(2 S - 1) t^S.
+        let scale = 2.0 / f64::from(1_u32 << (2 * S));
+        let mut term = left.map(|y| self.barycentric[0] * y);
+        for (stage, weight) in stages.iter().zip(&self.barycentric[1..]) {
+            term[0] += weight * stage[0];
+            term[1] += weight * stage[1];
+        }
+        term.map(|t| scale * t)
+    }
+
     /// The collocation polynomial at `theta` (0 = left end, 1 = right end) of values `left` and `stages`.
     pub fn evaluate(&self, left: [f64; STATES], stages: &[[f64; STATES]; S], theta: f64) -> [f64; STATES] {
         if theta == 0.0 {
@@ -390,6 +404,19 @@ mod tests {
             let found = gauss.evaluate(of(0.0), &stages, theta);
             assert!((found[0] - of(theta)[0]).abs() < 1e-14 && (found[1] - of(theta)[1]).abs() < 1e-14);
         }
+    }
+
+    /// Chebyshev's polynomial of degree four on 0 ..= 1 is `128 t^4 - 256 t^3 + 160 t^2 - 32 t + 1`.
+    #[test]
+    fn the_last_term_is_the_coefficient_of_chebyshevs_polynomial() {
+        let gauss = Gauss::<4>::new();
+        let chebyshev = |t: f64| 1.0 + t * (-32.0 + t * (160.0 + t * (-256.0 + 128.0 * t)));
+        let of = |t: f64| [3.0 - t * t * t, 1.0 + t - 0.7 * chebyshev(t)];
+        let [smooth, rough] = gauss.last_term(of(0.0), &gauss.nodes.map(of));
+        assert!(
+            smooth.abs() < 1e-14 && (rough + 0.7).abs() < 1e-14,
+            "{smooth} {rough}"
+        );
     }
 
     /// `y' = (y_1, -y_0 + p_0)`, one Newton step from zero: the condensed map must be the matrix exponential.

@@ -256,6 +256,7 @@ const TRUTH: Resolution = Resolution {
     density: 2.0 * FULL.density,
     contact_elements: 2 * FULL.contact_elements,
     tolerance: FULL.tolerance,
+    last_term: FULL.last_term,
 };
 /// Indentation over the axial semi-axis at which methods are tried where the design has no state.
 const TRIAL: f64 = 0.3;
