@@ -9,7 +9,7 @@ use model_tables::membrane::TensionField;
 use model_tables::methods::bisection::{Bisection, Fineness, PAPER};
 use model_tables::methods::contest::{self, DESIGNS, Sweep};
 use model_tables::methods::few_states::FewStates;
-use model_tables::methods::ladder::{self, MEMBRANE_ERROR, NoChoice, Rung};
+use model_tables::methods::ladder::{self, NoChoice, Rung};
 use model_tables::methods::light_contact::LightContact;
 use model_tables::methods::shooting::Shooting;
 use model_tables::methods::{Failure, Found};
@@ -306,22 +306,33 @@ fn the_cheapest_model_is_taken_with_its_evidence() {
     assert_eq!(touch.rung, Rung::LightContact);
     let deep = model.states[8].H;
     let press = choose([1e-5, deep], 1e-6).expect("a choice");
-    assert_eq!(press.rung, Rung::Membrane);
+    assert!(
+        matches!(press.rung, Rung::Sweep | Rung::Membrane),
+        "{:?}",
+        press.rung
+    );
     assert_eq!(press.evidence.len(), ladder::RUNGS.len());
     assert!(
         press.evidence[0].worst().is_infinite(),
         "the closed form does not reach that deep"
     );
     let rough = choose([0.1 * deep, deep], 0.05).expect("a choice");
-    assert!(matches!(rough.rung, Rung::FewStates(_)), "{:?}", rough.rung);
+    assert_ne!(rough.rung, Rung::Membrane);
+    let cost = |rung: Rung| {
+        rough
+            .evidence
+            .iter()
+            .find(|evidence| evidence.rung == rung)
+            .map(|evidence| evidence.seconds)
+    };
     for evidence in &rough.evidence {
-        assert_eq!(evidence.worst() <= 0.05, evidence.rung == rough.rung);
+        assert!(evidence.worst() > 0.05 || cost(rough.rung) <= Some(evidence.seconds));
     }
-    let asked = 0.1 * MEMBRANE_ERROR;
-    assert!(matches!(
-        choose([1e-5, deep], asked),
-        Err(NoChoice::TooAccurate { .. })
-    ));
+    // The full membrane's own error is measured, not stated.
+    match choose([1e-5, deep], 1e-17) {
+        Err(NoChoice::TooAccurate { best, .. }) => assert!(best > 0.0 && best < 1e-8, "{best:e}"),
+        other => panic!("{other:?}"),
+    }
     assert_eq!(choose([0.0, deep], 0.1), Err(NoChoice::NoRange));
 }
 

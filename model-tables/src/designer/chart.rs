@@ -8,7 +8,7 @@ use super::table::write_all;
 use super::{Answer, Refusal};
 use crate::membrane::TensionField;
 use crate::methods::contest::{self, Contestant, DESIGNS, Sweep};
-use crate::methods::ladder::{Evidence, RUNGS, Yardstick};
+use crate::methods::ladder::{Evidence, RUNGS, SAMPLES, Yardstick};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -123,7 +123,8 @@ fn results_csv(measured: &[Measured]) -> String {
 }
 
 fn ladder_csv(measured: &[Measured]) -> String {
-    let mut text = "design,rung,indentation_mm,force_error,pressure_rise_error,outcome\n".to_owned();
+    let mut text =
+        "design,rung,us_per_state,indentation_mm,force_error,pressure_rise_error,outcome\n".to_owned();
     for design in measured {
         for evidence in &design.ladder {
             for sample in &evidence.samples {
@@ -138,9 +139,10 @@ fn ladder_csv(measured: &[Measured]) -> String {
                 };
                 let _ = writeln!(
                     text,
-                    "{},{},{:.14},{error},{rise},{outcome}",
+                    "{},{},{:.6},{:.14},{error},{rise},{outcome}",
                     design.sweep.contestant.name,
                     evidence.rung,
+                    evidence.seconds * 1e6 / SAMPLES as f64,
                     sample.indentation * 1e3,
                 );
             }
