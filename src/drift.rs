@@ -1,6 +1,6 @@
 //! How far the zero has drifted since it was taken: followed while nothing touches, frozen in contact.
 //!
-//! Drift is slow and a touch is not: the follower moves by no more than [`Pace::rate`], only after a second untouched,
+//! Drift is slow and a touch is not: the follower moves by no more than `Pace::rate`, only after a second untouched,
 //! and only while the rise is within [`Pace::band`], where force is not to be trusted anyway. So a sustained grasp
 //! is never eaten, whatever its length, and a press so slow and so light that it passes for drift costs at most the
 //! band. Beyond [`Pace::reach`] it does not go.
