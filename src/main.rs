@@ -7,6 +7,8 @@ mod board;
 #[cfg(target_os = "none")]
 mod chosen;
 #[cfg(target_os = "none")]
+mod retained;
+#[cfg(target_os = "none")]
 mod tasks;
 
 #[cfg(not(target_os = "none"))]

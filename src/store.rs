@@ -83,9 +83,15 @@ impl<F: NorFlash> Store<F> {
         let mut torn = false;
         let mut used = [0; 2];
         for which in 0..2_u32 {
+            let mut blanks = 0;
             for place in 0..store.places() {
                 match store.read(which, place).await {
-                    Ok(Found::Blank) => continue,
+                    // Within a log a failed save leaves fewer blanks than it tries places.
+                    Ok(Found::Blank) if blanks + 1 == TRIES => break,
+                    Ok(Found::Blank) => {
+                        blanks += 1;
+                        continue;
+                    }
                     Ok(Found::Record(record)) => {
                         store.erasures = store.erasures.max(record.erasures);
                         if store
@@ -99,6 +105,7 @@ impl<F: NorFlash> Store<F> {
                     Ok(Found::Torn) => torn = true,
                     Err(()) => store.unreadable = true,
                 }
+                blanks = 0;
                 used[which as usize] = place + 1;
             }
         }
@@ -191,12 +198,9 @@ impl<F: NorFlash> Store<F> {
     /// Writes into the next places of the current slot; whether one took it.
     async fn append(&mut self, mut record: Record) -> bool {
         record.erasures = self.erasures;
-        for _ in 0..TRIES {
-            if self.next >= self.places() {
-                return false;
-            }
-            let place = self.next;
-            self.next += 1;
+        // The first place that is blank after all is the next one still.
+        let mut blank = None;
+        for place in self.next..self.places().min(self.next + TRIES) {
             // A place that is not blank, or cannot be read, is passed over.
             if self.read(self.current, place).await != Ok(Found::Blank) {
                 continue;
@@ -204,12 +208,18 @@ impl<F: NorFlash> Store<F> {
             let bytes = record::encode(&record);
             // What is read back is what the next start will read, whatever the memory says of the write.
             let _ = self.flash.write(self.offset(self.current, place), &bytes).await;
-            if self.read(self.current, place).await == Ok(Found::Record(record)) {
-                self.latest = Some(record);
-                self.home = self.current;
-                return true;
+            match self.read(self.current, place).await {
+                Ok(Found::Record(found)) if found == record => {
+                    self.latest = Some(record);
+                    self.home = self.current;
+                    self.next = place + 1;
+                    return true;
+                }
+                Ok(Found::Blank) => blank = blank.or(Some(place)),
+                _ => {}
             }
         }
+        self.next = blank.unwrap_or(self.next + TRIES).min(self.places());
         false
     }
 

@@ -1,25 +1,29 @@
-//! The two tasks of the firmware: [`signal`] makes reports, [`send`] puts them on the line.
+//! The tasks of the firmware: [`signal`] makes reports, [`send`] puts them on the line, [`listen`] takes commands from
+//! it, [`remember`] stores the calibration. The first one feeds the watchdog, while all four report.
 
-use crate::board::{Board, Clock, Line, Watchdog};
+use crate::board::{Board, Clock, Ears, Line, Memory, SLOT, Watchdog};
 use crate::chosen::{self, Pace};
+use crate::retained;
+use core::cell::RefCell;
+use core::sync::atomic::{AtomicU32, Ordering};
 use defmt_rtt as _;
 use embassy_executor::Spawner;
+use embassy_sync::blocking_mutex::ThreadModeMutex;
 use embassy_sync::blocking_mutex::raw::ThreadModeRawMutex;
 use embassy_sync::channel::{Channel, TrySendError};
-use embassy_time::Delay;
-use fingertip::calibration::Calibration;
+use embassy_time::{Delay, Duration, with_timeout};
+use fingertip::command::{self, Request};
 use fingertip::design::Design;
 use fingertip::image::ImageDesign;
 use fingertip::pipeline::Pipeline;
-use fingertip::report::{Microseconds, Report, Status, Warnings};
-use fingertip::tare::StartUp;
-use fingertip::telemetry::{self, Frame, Hello, Message, ResetCause};
+use fingertip::report::{Microseconds, Report, Status};
+use fingertip::station::{Beginning, Station, ToStore};
+use fingertip::store::{Identity, Store, StoreError};
+use fingertip::supervisor::{Breadcrumb, GOOD_RUN, Roster};
+use fingertip::telemetry::{self, Frame, LastFault, Message};
 use fingertip::transducer::Transducer;
 use fingertip::transducer::keeper::Keeper;
-use panic_probe as _;
-
-/// From one hello to the next, microseconds.
-const HELLO_PERIOD: u64 = 1_000_000;
+use fingertip::wire::Deframer;
 
 /// Every how many reports one goes to the log.
 const LOGGED: u32 = 250;
@@ -27,129 +31,167 @@ const LOGGED: u32 = 250;
 /// From one report to the next, microseconds.
 const PERIOD: u32 = Pipeline::<ImageDesign>::PERIOD;
 
+/// From one look at the tasks, and one meal of the watchdog, to the next, microseconds.
+const MEALS: u64 = 16_000;
+
+/// From one note of the zero for the next run to the next, microseconds.
+const NOTES: u64 = 1_000_000;
+
+/// A task that waits for something wakes so often to report, and may be late by as much again. The memory is given the
+/// time of an erasure.
+const IDLE: Duration = Duration::from_millis(50);
+const ALLOWED: [u64; 3] = [150_000, 150_000, 5_000_000];
+const SEND: usize = 0;
+const LISTEN: usize = 1;
+const REMEMBER: usize = 2;
+
 /// Frames waiting for the line: 8 ms of reports. When full the oldest goes, and is counted.
 static QUEUE: Channel<ThreadModeRawMutex, Frame, 8> = Channel::new();
+
+/// Commands waiting for the next report. When full the newest is refused, and counted.
+static REQUESTS: Channel<ThreadModeRawMutex, Request, 2> = Channel::new();
+
+/// What came over the line and was no command.
+static REFUSED: AtomicU32 = AtomicU32::new(0);
+
+/// To be stored, and what came of it.
+static TO_STORE: Channel<ThreadModeRawMutex, ToStore, 1> = Channel::new();
+static STORED: Channel<ThreadModeRawMutex, (Result<(), StoreError>, u32), 1> = Channel::new();
+
+/// Who reported when.
+static ROSTER: ThreadModeMutex<RefCell<Roster<3>>> =
+    ThreadModeMutex::new(RefCell::new(Roster::new(ALLOWED, Microseconds(0))));
+
+fn alive(task: usize, clock: Clock) {
+    ROSTER.lock(|roster| roster.borrow_mut().report(task, clock.now()));
+}
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
     let board = Board::take();
-    if !board.crystal {
-        defmt::warn!("the crystal does not run: times are 1 % off");
-    }
-    spawner.spawn(send(board.line).expect("spawned once"));
-    let standing = Warnings::CLOCK.when(!board.crystal);
+    let number = |text: &str| text.parse().unwrap_or(u8::MAX);
+    let firmware = [
+        number(env!("CARGO_PKG_VERSION_MAJOR")),
+        number(env!("CARGO_PKG_VERSION_MINOR")),
+        number(env!("CARGO_PKG_VERSION_PATCH")),
+    ];
+    let constants = ImageDesign::CONSTANTS;
+    let identity = Identity {
+        design_hash: constants.hash,
+        table_version: constants.table_version,
+        firmware,
+        range: constants.transducer.range,
+    };
+    let (store, stored) = Store::open(board.memory, SLOT, identity).await;
+    let start = Breadcrumb::start(retained::read(), board.reset_cause, constants.hash);
+    retained::write(&start.crumb);
+    let beginning = Beginning {
+        reset_cause: board.reset_cause,
+        start,
+        stored,
+        stored_sequence: store.sequence(),
+        calibration: store.calibration(),
+        clock_failed: !board.crystal,
+        firmware,
+    };
+    defmt::info!(
+        "fingertip {=str}, design {=str} ({=u64:016x}), reset by {}",
+        env!("CARGO_PKG_VERSION"),
+        constants.name,
+        constants.hash,
+        defmt::Display2Format(&board.reset_cause)
+    );
+    let clock = board.clock;
+    spawner.spawn(send(board.line, clock).expect("spawned once"));
+    spawner.spawn(listen(board.ears, clock).expect("spawned once"));
+    spawner.spawn(remember(store, clock).expect("spawned once"));
     let transducer = chosen::transducer(board.port);
-    signal(
-        board.clock,
-        transducer,
-        board.watchdog,
-        board.reset_cause,
-        standing,
-    )
-    .await
+    signal(clock, transducer, board.watchdog, &beginning).await
 }
 
-/// Turns samples into reports. Period: one sample, 1 ms of a converter. Deadline: the next one; when late, samples are
-/// lost, which is reported and counted. Feeds the watchdog with every sample or the reason why there is none, so that
-/// a hang here does not go on for ever.
+/// Turns samples into reports, and answers commands. Period: one sample, 1 ms of a converter. Deadline: the next one;
+/// when late, samples are lost, which is reported and counted. Feeds the watchdog between samples or the reasons why
+/// there are none, as long as the other tasks report too; who does not is left for the next run to say.
 async fn signal(
     clock: Clock,
     transducer: impl Transducer,
     mut watchdog: Watchdog,
-    reset_cause: ResetCause,
-    standing: Warnings,
+    beginning: &Beginning,
 ) -> ! {
-    let start_up = StartUp::after(reset_cause, None);
-    let mut pipeline = Pipeline::<ImageDesign>::new(start_up, Calibration::default(), standing);
-    let mut publisher = Publisher::new(reset_cause);
+    let mut station = Station::<ImageDesign>::new(beginning);
+    let mut crumb = beginning.start.crumb;
+    let mut outbox = Outbox::default();
     let mut log = Log::default();
     let mut keeper = Keeper::new(transducer, Delay);
     let mut pace = Pace::new();
+    let (mut last_sample, mut next_meal, mut next_note) = (None, 0, 0);
     loop {
         pace.wait().await;
         let sample = keeper.next().await;
         let now = clock.now();
-        watchdog.pet();
         if let Ok(sample) = sample {
-            publisher.count_lost(Microseconds(now.0.saturating_sub(u64::from(sample.age))));
+            let measured = now.0.saturating_sub(u64::from(sample.age));
+            let lost = missing(last_sample.replace(measured), measured);
+            station.counters.samples_lost = station.counters.samples_lost.saturating_add(lost);
         }
-        let report = pipeline.step(now, sample);
+        let report = station.step(now, sample, |message| outbox.put(message));
         log.report(&report);
-        publisher.report(now, report);
+        if let Ok(request) = REQUESTS.try_receive()
+            && let Some(to_store) = station.request(now, request, |message| outbox.put(message))
+        {
+            // The station asks for one at a time.
+            let _ = TO_STORE.try_send(to_store);
+        }
+        if now.0 < next_meal {
+            continue;
+        }
+        next_meal = now.0.saturating_add(MEALS);
+        if let Ok((result, sequence)) = STORED.try_receive() {
+            station.stored(now, result, sequence, |message| outbox.put(message));
+        }
+        station.counters.frames_dropped = outbox.dropped;
+        station.counters.commands_refused = REFUSED.load(Ordering::Relaxed);
+        match ROSTER.lock(|roster| roster.borrow().late(now)) {
+            None => watchdog.pet(),
+            Some(task) => retained::blame(LastFault::Late, task as u32),
+        }
+        if now.0 >= next_note {
+            next_note = now.0.saturating_add(NOTES);
+            crumb.good = now.0 >= GOOD_RUN;
+            crumb.zero = station.zero();
+            retained::write(&crumb);
+        }
     }
+}
+
+/// Samples missing between the last one and the one measured at this time.
+fn missing(last: Option<u64>, measured: u64) -> u32 {
+    last.map_or(0, |last| {
+        let passed = u32::try_from(measured.saturating_sub(last)).unwrap_or(u32::MAX);
+        // Rounded, because the time of a block is known to a conversion or two.
+        (passed.saturating_add(PERIOD / 2) / PERIOD).saturating_sub(1)
+    })
 }
 
 /// Numbers the frames and queues them.
-struct Publisher {
+#[derive(Default)]
+struct Outbox {
     sequence: u16,
-    next_hello: u64,
-    last_sample: Option<Microseconds>,
-    hello: Hello,
+    dropped: u32,
 }
 
-impl Publisher {
-    fn new(reset_cause: ResetCause) -> Self {
-        let number = |text: &str| text.parse().unwrap_or(u8::MAX);
-        let hello = Hello {
-            firmware: [
-                number(env!("CARGO_PKG_VERSION_MAJOR")),
-                number(env!("CARGO_PKG_VERSION_MINOR")),
-                number(env!("CARGO_PKG_VERSION_PATCH")),
-            ],
-            reset_cause,
-            design_hash: ImageDesign::CONSTANTS.hash,
-            table_version: ImageDesign::CONSTANTS.table_version,
-            report_period: PERIOD,
-            ..Hello::default()
-        };
-        defmt::info!(
-            "fingertip {=str}, design {=str} ({=u64:016x}), reset by {}",
-            env!("CARGO_PKG_VERSION"),
-            ImageDesign::CONSTANTS.name,
-            hello.design_hash,
-            defmt::Display2Format(&reset_cause)
-        );
-        Self {
-            sequence: 0,
-            next_hello: 0,
-            last_sample: None,
-            hello,
-        }
-    }
-
-    /// Counts the samples missing between the last one and the one measured at this time.
-    fn count_lost(&mut self, measured: Microseconds) {
-        if let Some(last) = self.last_sample.replace(measured) {
-            let passed = u32::try_from(measured.0.saturating_sub(last.0)).unwrap_or(u32::MAX);
-            // Rounded, because the time of a block is known to a conversion or two.
-            let missing = (passed.saturating_add(PERIOD / 2) / PERIOD).saturating_sub(1);
-            self.hello.samples_lost = self.hello.samples_lost.saturating_add(missing);
-        }
-    }
-
-    fn report(&mut self, now: Microseconds, report: Report) {
-        if now.0 >= self.next_hello {
-            self.next_hello = now.0.saturating_add(HELLO_PERIOD);
-            self.hello.time = now;
-            self.publish(Message::Hello(self.hello));
-        }
-        self.publish(Message::Report {
-            report,
-            pressure_fraction_bits: ImageDesign::PRESSURE_FRACTION_BITS as u8,
-        });
-    }
-
-    fn publish(&mut self, message: Message) {
+impl Outbox {
+    fn put(&mut self, message: Message) {
         let frame = Frame {
             sequence: self.sequence,
-            dropped: self.hello.frames_dropped as u16,
+            dropped: self.dropped as u16,
             message,
         };
         self.sequence = self.sequence.wrapping_add(1);
         if let Err(TrySendError::Full(frame)) = QUEUE.try_send(frame) {
             let _oldest = QUEUE.try_receive();
             let _ = QUEUE.try_send(frame);
-            self.hello.frames_dropped = self.hello.frames_dropped.saturating_add(1);
+            self.dropped = self.dropped.saturating_add(1);
         }
     }
 }
@@ -157,12 +199,63 @@ impl Publisher {
 /// Sends frames. Period: as they come. Deadline: a period on average (a report takes 0.5 ms on the line); when late,
 /// the queue drops its oldest, and the signal task is none the later for it.
 #[embassy_executor::task]
-async fn send(mut line: Line) {
+async fn send(mut line: Line, clock: Clock) {
     loop {
-        let frame = QUEUE.receive().await;
-        let encoded = telemetry::encode(&frame);
-        // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
-        let _ = line.write(encoded.as_slice()).await;
+        if let Ok(frame) = with_timeout(IDLE, QUEUE.receive()).await {
+            let encoded = telemetry::encode(&frame);
+            // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
+            let _ = line.write(encoded.as_slice()).await;
+        }
+        alive(SEND, clock);
+    }
+}
+
+/// Takes commands. Period: as they come. Deadline: the ring of bytes is full, 2.8 ms of a line that never pauses; when
+/// late, bytes are lost, which is counted. Work is bounded by the rate of the line, and other tasks run in between.
+#[embassy_executor::task]
+async fn listen(mut ears: Ears, clock: Clock) {
+    let mut deframer = Deframer::default();
+    let mut bytes = [0; 32];
+    loop {
+        alive(LISTEN, clock);
+        let heard = match with_timeout(IDLE, ears.read(&mut bytes)).await {
+            Ok(Ok(length)) => bytes.get(..length).unwrap_or(&[]),
+            Ok(Err(_lost)) => {
+                refuse();
+                &[]
+            }
+            Err(_idle) => continue,
+        };
+        for &byte in heard {
+            let taken = match deframer.push(byte) {
+                None => continue,
+                Some(body) => body.and_then(|body| command::read_body(&body)),
+            };
+            if !taken.is_ok_and(|request| REQUESTS.try_send(request).is_ok()) {
+                refuse();
+            }
+        }
+        embassy_futures::yield_now().await;
+    }
+}
+
+fn refuse() {
+    // Only this task counts, and one core has no exclusive access to lose.
+    REFUSED.store(
+        REFUSED.load(Ordering::Relaxed).saturating_add(1),
+        Ordering::Relaxed,
+    );
+}
+
+/// Stores the calibration. Period: when asked for. Deadline: none; other tasks run meanwhile.
+#[embassy_executor::task]
+async fn remember(mut store: Store<Memory>, clock: Clock) {
+    loop {
+        alive(REMEMBER, clock);
+        if let Ok(ToStore(calibration)) = with_timeout(IDLE, TO_STORE.receive()).await {
+            let result = store.save(calibration).await;
+            STORED.send((result, store.sequence())).await;
+        }
     }
 }
 

@@ -2,16 +2,17 @@
 
 #[cfg(not(transducer = "ratiometric"))]
 mod i2c;
+mod memory;
 
 #[cfg(feature = "board-nucleo-f429zi")]
 mod nucleo_f429zi;
 #[cfg(feature = "board-nucleo-f429zi")]
-pub(crate) use nucleo_f429zi::{Board, Clock, Line, Port, Watchdog};
+pub(crate) use nucleo_f429zi::{Board, Clock, Ears, Line, Memory, Port, SLOT, Watchdog};
 
 #[cfg(feature = "board-nucleo-l432kc")]
 mod nucleo_l432kc;
 #[cfg(feature = "board-nucleo-l432kc")]
-pub(crate) use nucleo_l432kc::{Board, Clock, Line, Port, Watchdog};
+pub(crate) use nucleo_l432kc::{Board, Clock, Ears, Line, Memory, Port, SLOT, Watchdog};
 
 #[cfg(not(any(feature = "board-nucleo-f429zi", feature = "board-nucleo-l432kc")))]
 compile_error!("choose a board: --no-default-features --features board-nucleo-l432kc");

@@ -5,7 +5,8 @@
 //! | clock | HSE, 8 MHz, bypass | the ST-LINK's MCO drives it by default (UM1974 6.8.1); a crystal is not fitted |
 //! | transducer, analogue | PA3, `ADC123_IN3` | A0 of the Zio and Arduino header (UM1974 table 19) |
 //! | transducer, bus | PB8, PB9, I2C1 | D15 and D14 of that header, with pull-ups at the transducer |
-//! | serial port | PD8, `USART3_TX` | the ST-LINK's virtual COM port by default (UM1974 6.9) |
+//! | serial port | PD8, PD9, USART3 | the ST-LINK's virtual COM port by default (UM1974 6.9) |
+//! | calibration | flash from 0x0810_0000, two sectors of 16 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
 //!
 //! The transducer's output must reach A0 in the ratio of its supply to the board's 3.3 V, which is the
 //! converter's reference (for a 5 V part: through a divider from the same 5 V), at no more than 10 kilo-ohm. A
@@ -13,21 +14,23 @@
 
 #[cfg(not(transducer = "ratiometric"))]
 use super::i2c::{I2cBus, Wires};
+use super::memory::Patient;
 #[cfg(transducer = "ratiometric")]
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 #[cfg(transducer = "ratiometric")]
 use embassy_stm32::adc::{Adc, SampleTime};
+use embassy_stm32::flash::{self, Bank2Region1, Flash};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::gpio::{Level, OutputOpenDrain, Speed};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::i2c::{self, I2c, Master};
 use embassy_stm32::mode::Async;
-use embassy_stm32::peripherals::{DMA1_CH3, IWDG};
+use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, IWDG, USART3};
 use embassy_stm32::rcc::{
     AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllSource, Sysclk,
 };
 use embassy_stm32::time::Hertz;
-use embassy_stm32::usart::{self, UartTx};
+use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Config, bind_interrupts, dma, pac, peripherals};
 use embassy_time::Instant;
@@ -40,9 +43,13 @@ use fingertip::{
     counts::{BLOCK_LENGTH, Block, PERIOD, Ring},
     transducer::ratiometric,
 };
+use static_cell::ConstStaticCell;
 
 bind_interrupts!(struct Interrupts {
+    DMA1_STREAM1 => dma::InterruptHandler<DMA1_CH1>;
     DMA1_STREAM3 => dma::InterruptHandler<DMA1_CH3>;
+    FLASH => flash::InterruptHandler;
+    USART3 => usart::InterruptHandler<USART3>;
 });
 
 #[cfg(not(transducer = "ratiometric"))]
@@ -56,7 +63,7 @@ bind_interrupts!(struct BusInterrupts {
 /// The crystal oscillator of the ST-LINK.
 const HSE: Hertz = Hertz(8_000_000);
 
-/// 36 % used by reports of 31 bytes each millisecond. From 32 MHz the divider gives 920 863, 0.1 % slow.
+/// Half used by reports of 46 bytes each millisecond. From 32 MHz the divider gives 920 863, 0.1 % slow.
 const BAUD: u32 = 921_600;
 
 /// The slowest report comes after a transducer's start, 60 ms; the oscillator of the watchdog runs at 17 to 47 kHz for a
@@ -68,6 +75,18 @@ const LOOKS: u32 = 8_000;
 
 /// The serial port's sender.
 pub(crate) type Line = UartTx<'static, Async>;
+
+/// The serial port's receiver.
+pub(crate) type Ears = RingBufferedUartRx<'static>;
+
+/// Bytes heard and not yet taken: 2.8 ms of a line that never pauses.
+static HEARD: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
+
+/// Where the calibration lies: the first sectors of bank 2.
+pub(crate) type Memory = Patient<Bank2Region1<'static, flash::Async>>;
+
+/// Bytes of each of its two slots: a sector.
+pub(crate) const SLOT: u32 = 16 * 1024;
 
 /// Resets the chip unless it is fed.
 pub(crate) type Watchdog = IndependentWatchdog<'static, IWDG>;
@@ -96,6 +115,10 @@ pub(crate) struct Board {
     pub(crate) port: Port,
     /// The way out for frames.
     pub(crate) line: Line,
+    /// The way in for commands.
+    pub(crate) ears: Ears,
+    /// Where the calibration lies.
+    pub(crate) memory: Memory,
     /// Running from here on.
     pub(crate) watchdog: Watchdog,
     /// Why the chip was reset.
@@ -167,19 +190,27 @@ impl Board {
 
         let mut serial = usart::Config::default();
         serial.baudrate = BAUD;
-        let line = UartTx::new(
+        let (line, ears) = Uart::new(
             peripherals.USART3,
+            peripherals.PD9,
             peripherals.PD8,
             peripherals.DMA1_CH3,
+            peripherals.DMA1_CH1,
             Interrupts,
             serial,
         )
-        .expect("the rate divides from the clock");
+        .expect("the rate divides from the clock")
+        .split();
+
+        steady_bank_2();
+        let flash = Flash::new(peripherals.FLASH, Interrupts).into_regions();
 
         Self {
             clock,
             port,
             line,
+            ears: ears.into_ring_buffered(HEARD.take()),
+            memory: Patient::new(flash.bank2_region1, 0),
             watchdog,
             reset_cause: take_reset_cause(),
             crystal,
@@ -206,6 +237,24 @@ fn take_reset_cause() -> ResetCause {
         ResetCause::Pin
     } else {
         ResetCause::Unknown
+    }
+}
+
+/// Chips before revision 3 may read bank 2 wrong unless PA12 is pulled low (ES0206 2.2.14); the driver insists on it. On
+/// this board it goes to the USB socket, which is not used.
+fn steady_bank_2() {
+    const REVISION_3: u16 = 0x2001;
+    const PA12: usize = 12;
+    if pac::DBGMCU.idcode().read().rev_id() < REVISION_3 {
+        pac::GPIOA
+            .odr()
+            .modify(|w| w.set_odr(PA12, pac::gpio::vals::Odr::LOW));
+        pac::GPIOA
+            .pupdr()
+            .modify(|w| w.set_pupdr(PA12, pac::gpio::vals::Pupdr::PULL_DOWN));
+        pac::GPIOA
+            .moder()
+            .modify(|w| w.set_moder(PA12, pac::gpio::vals::Moder::OUTPUT));
     }
 }
 

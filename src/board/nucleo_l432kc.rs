@@ -5,7 +5,8 @@
 //! | clock | HSI16 | no crystal is fitted but the 32 kHz one; 1 % off at most (DS11451 table 49) is enough for the serial port |
 //! | transducer, analogue | PA0, `ADC1_IN5` | A0 of the Nano header (UM1956 table 9) |
 //! | transducer, bus | PB6, PB7, I2C1 | D5 and D4 of that header, with pull-ups at the transducer; A5 and A4 (PA5, PA6) are wired to them by default (SB16, SB18) and stay inputs |
-//! | serial port | PA2, `USART2_TX` | the ST-LINK's virtual COM port by default (UM1956 6.8) |
+//! | serial port | PA2, PA15, USART2 | the ST-LINK's virtual COM port by default (UM1956 6.8) |
+//! | calibration | the last two pages of flash, 2 KB each | erasing one stalls the code for 25 ms at most (DS11451 table 58): samples are lost, which is said |
 //!
 //! The transducer's output must reach A0 in the ratio of its supply to the board's 3.3 V, which is the
 //! converter's reference, at no more than 10 kilo-ohm. A pull-up of about 1 megohm to 3.3 V makes a broken wire read as
@@ -16,20 +17,22 @@
 
 #[cfg(not(transducer = "ratiometric"))]
 use super::i2c::{I2cBus, Wires};
+use super::memory::Patient;
 #[cfg(transducer = "ratiometric")]
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 #[cfg(transducer = "ratiometric")]
 use embassy_stm32::adc::{Adc, SampleTime};
+use embassy_stm32::flash::{self, Bank1Region, Flash};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::gpio::{Level, OutputOpenDrain, Speed};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::i2c::{self, I2c, Master};
 use embassy_stm32::mode::Async;
-use embassy_stm32::peripherals::{DMA1_CH7, IWDG};
+use embassy_stm32::peripherals::{DMA1_CH6, DMA1_CH7, IWDG, USART2};
 use embassy_stm32::rcc::{Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk, mux};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::time::Hertz;
-use embassy_stm32::usart::{self, UartTx};
+use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Config, bind_interrupts, dma, pac, peripherals};
 use embassy_time::Instant;
@@ -42,9 +45,13 @@ use fingertip::{
     counts::{BLOCK_LENGTH, Block, PERIOD, Ring},
     transducer::ratiometric,
 };
+use static_cell::ConstStaticCell;
 
 bind_interrupts!(struct Interrupts {
+    DMA1_CHANNEL6 => dma::InterruptHandler<DMA1_CH6>;
     DMA1_CHANNEL7 => dma::InterruptHandler<DMA1_CH7>;
+    FLASH => flash::InterruptHandler;
+    USART2 => usart::InterruptHandler<USART2>;
 });
 
 #[cfg(not(transducer = "ratiometric"))]
@@ -55,7 +62,7 @@ bind_interrupts!(struct BusInterrupts {
     DMA2_CHANNEL7 => dma::InterruptHandler<peripherals::DMA2_CH7>;
 });
 
-/// 36 % used by reports of 31 bytes each millisecond. From 24 MHz the divider gives 923 077, 0.2 % fast.
+/// Half used by reports of 46 bytes each millisecond. From 24 MHz the divider gives 923 077, 0.2 % fast.
 const BAUD: u32 = 921_600;
 
 /// The slowest report comes after a transducer's start, 60 ms; the oscillator of the watchdog runs at 29.5 to 34 kHz
@@ -64,6 +71,21 @@ const WATCHDOG: u32 = 200_000;
 
 /// The serial port's sender.
 pub(crate) type Line = UartTx<'static, Async>;
+
+/// The serial port's receiver.
+pub(crate) type Ears = RingBufferedUartRx<'static>;
+
+/// Bytes heard and not yet taken: 2.8 ms of a line that never pauses.
+static HEARD: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
+
+/// Where the calibration lies: behind the image.
+pub(crate) type Memory = Patient<Bank1Region<'static, flash::Async>>;
+
+/// Bytes of each of its two slots: a page.
+pub(crate) const SLOT: u32 = 2 * 1024;
+
+/// The first of them, from the start of the flash.
+const CALIBRATION: u32 = 256 * 1024 - 2 * SLOT;
 
 /// Resets the chip unless it is fed.
 pub(crate) type Watchdog = IndependentWatchdog<'static, IWDG>;
@@ -92,6 +114,10 @@ pub(crate) struct Board {
     pub(crate) port: Port,
     /// The way out for frames.
     pub(crate) line: Line,
+    /// The way in for commands.
+    pub(crate) ears: Ears,
+    /// Where the calibration lies.
+    pub(crate) memory: Memory,
     /// Running from here on.
     pub(crate) watchdog: Watchdog,
     /// Why the chip was reset.
@@ -149,19 +175,25 @@ impl Board {
 
         let mut serial = usart::Config::default();
         serial.baudrate = BAUD;
-        let line = UartTx::new(
+        let (line, ears) = Uart::new(
             peripherals.USART2,
+            peripherals.PA15,
             peripherals.PA2,
             peripherals.DMA1_CH7,
+            peripherals.DMA1_CH6,
             Interrupts,
             serial,
         )
-        .expect("the rate divides from the clock");
+        .expect("the rate divides from the clock")
+        .split();
+        let flash = Flash::new(peripherals.FLASH, Interrupts).into_regions();
 
         Self {
             clock,
             port,
             line,
+            ears: ears.into_ring_buffered(HEARD.take()),
+            memory: Patient::new(flash.bank1_region, CALIBRATION),
             watchdog,
             reset_cause: take_reset_cause(),
             crystal: true,

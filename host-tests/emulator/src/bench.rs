@@ -3,6 +3,8 @@
 use crate::board::Nucleo;
 use crate::image::{Image, ImageError};
 use crate::plant::Plant;
+use crate::scenario::Happening;
+use fingertip::command::{self, Request};
 use rigless::emulator::{Access, AccessKind, Driver, Hit, Host, Settled, Start, Stop, Watch};
 use rigless::session::{Reset, Session};
 use rigless::time::VirtualNanos;
@@ -111,6 +113,7 @@ pub fn run<L: Listener>(
         counter,
         clock_zero: None,
         resets: 0,
+        last_stop: 0.0,
         end: VirtualNanos((duration * 1e9) as u64),
     };
     let images = [elf];
@@ -164,10 +167,45 @@ struct Bench<L> {
     counter: CallCounter,
     clock_zero: Option<f64>,
     resets: usize,
+    /// Milliseconds.
+    last_stop: f64,
     end: VirtualNanos,
 }
 
 impl<L> Bench<L> {
+    /// Everything that the scenario has for the time since the last stop.
+    fn happen(&mut self, session: &mut Session<Nucleo>, stop: Stop, host: &mut dyn Host) {
+        let now = seconds(stop.at) * 1e3;
+        let since = std::mem::replace(&mut self.last_stop, now);
+        for (number, event) in self.plant.scenario().event.iter().enumerate() {
+            let begins = (since..now).contains(&event.at_ms);
+            let ends = event.at_ms + event.for_ms.unwrap_or(0.0);
+            let over = (since..now).contains(&ends);
+            match event.is {
+                Happening::Hang if begins => host.hold(true),
+                Happening::Hang if over => host.hold(false),
+                Happening::PinReset if begins => {
+                    session.reset_by_pin(stop.at, stop.instruction_count, host);
+                }
+                // More than the line carries in a millisecond, a different byte each, some of them zero.
+                Happening::Flood if since >= event.at_ms && since < ends => {
+                    let bytes: Vec<u8> = (0..100_u64)
+                        .map(|i| ((i + stop.at.0 / 1000).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 58) as u8)
+                        .collect();
+                    session.board_mut().send(&bytes);
+                }
+                _ => {
+                    if let Some(command) = event.is.command().filter(|_| begins) {
+                        let sequence = number as u16;
+                        session
+                            .board_mut()
+                            .send(&command::encode(&Request { sequence, command }));
+                    }
+                }
+            }
+        }
+    }
+
     /// The first timer that is started after a reset keeps the time.
     fn note_clock(&mut self, access: Access) {
         let starts = access.kind == AccessKind::Write
@@ -202,8 +240,9 @@ impl<L: Listener> Driver<Nucleo> for Bench<L> {
         &mut self,
         session: &mut Session<Nucleo>,
         stop: Stop,
-        _host: &mut dyn Host,
+        host: &mut dyn Host,
     ) -> Option<VirtualNanos> {
+        self.happen(session, stop, host);
         for (at, byte) in session.board_mut().take_bytes() {
             let moment = Moment {
                 time: seconds(at),

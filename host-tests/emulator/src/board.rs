@@ -14,6 +14,7 @@ use rigless::soc::stm32f427::Stm32f427;
 use rigless::soc::stm32f427::peripherals::SERIAL_PORTS;
 use rigless::soc::stm32f427::peripherals::adc::Channel;
 use rigless::time::VirtualNanos;
+use std::collections::VecDeque;
 use std::num::{NonZeroU32, NonZeroU64};
 
 /// Name of the board and of its one target.
@@ -92,6 +93,13 @@ impl Nucleo {
         }
     }
 
+    /// Has the host send bytes, behind those that are under way.
+    pub(crate) fn send(&mut self, bytes: &[u8]) {
+        if let Some(wire) = self.mcu.usart[self.host_port].chip_mut::<HostWire>() {
+            wire.to_send.extend(bytes);
+        }
+    }
+
     /// The bytes that have come over the serial wire since the last call, each with the end of its stop bit.
     pub(crate) fn take_bytes(&mut self) -> Vec<(VirtualNanos, u8)> {
         self.mcu.usart[self.host_port]
@@ -135,10 +143,11 @@ impl Board for Nucleo {
     }
 }
 
-/// The host's end of the serial wire: it listens.
+/// The host's end of the serial wire: it listens, and sends what it is given.
 #[derive(Debug, Default)]
 struct HostWire {
     bytes: Vec<(VirtualNanos, u8)>,
+    to_send: VecDeque<u8>,
 }
 
 impl Store for HostWire {}
@@ -149,6 +158,6 @@ impl Peer for HostWire {
     }
 
     fn transmit(&mut self, _now: VirtualNanos) -> Option<u16> {
-        None
+        self.to_send.pop_front().map(u16::from)
     }
 }

@@ -3,6 +3,26 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The files on their way.
+static PARTIAL: Mutex<Vec<PathBuf>> = Mutex::new(vec![]);
+
+/// Removes what is on its way: for a process that ends without dropping anything.
+pub fn abandon() {
+    for partial in PARTIAL.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+        // Nothing better can be done about a file that does not go away.
+        let _ = fs::remove_file(partial);
+    }
+}
+
+/// It is on its way no more.
+fn forget(partial: &Path) {
+    PARTIAL
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .retain(|one| one != partial);
+}
 
 /// A file on its way. Dropped unfinished, it leaves nothing behind.
 #[derive(Debug)]
@@ -30,6 +50,10 @@ impl Output {
         partial.push(".partial");
         let partial = PathBuf::from(partial);
         let writer = BufWriter::new(File::create(&partial).map_err(named)?);
+        PARTIAL
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(partial.clone());
         Ok(Self {
             path: path.to_owned(),
             partial,
@@ -46,6 +70,7 @@ impl Output {
         self.writer.flush()?;
         fs::rename(&self.partial, &self.path)?;
         self.finished = true;
+        forget(&self.partial);
         Ok(self.path.clone())
     }
 }
@@ -65,6 +90,7 @@ impl Drop for Output {
         if !self.finished {
             // Nothing better can be done about a file that does not go away.
             let _ = fs::remove_file(&self.partial);
+            forget(&self.partial);
         }
     }
 }

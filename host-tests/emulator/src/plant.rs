@@ -123,6 +123,7 @@ pub(crate) mod tests {
                 phase("hold", 100.0, None),
             ],
             wire: vec![],
+            event: vec![],
         }
     }
 

@@ -1,6 +1,7 @@
 //! What happens to the fingertip: the plate's travel over time, and faults of the transducer's wire.
 
 use crate::transducer::Wiring;
+use fingertip::command::Command;
 use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,65 @@ pub struct Scenario {
     /// What happens to the transducer's wire, in any order; it is sound at other times.
     #[serde(default)]
     pub wire: Vec<WireFault>,
+    /// What happens to the chip and its serial line, in any order.
+    #[serde(default)]
+    pub event: Vec<Event>,
+}
+
+/// Something that happens to the chip or its serial line.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Event {
+    /// When, milliseconds.
+    pub at_ms: f64,
+    /// What.
+    pub is: Happening,
+    /// Of what lasts: for how long, milliseconds.
+    pub for_ms: Option<f64>,
+}
+
+/// What happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Happening {
+    /// The core executes nothing for a while: the firmware hangs.
+    Hang,
+    /// The reset pin is pulled.
+    PinReset,
+    /// The host sends bytes that mean nothing, without a pause.
+    Flood,
+    /// The host sends a command.
+    Tare,
+    /// Another.
+    Undo,
+    /// Another.
+    Save,
+    /// Another.
+    Info,
+    /// Another.
+    SelfTest,
+    /// Another: every hundredth report.
+    Rate,
+}
+
+impl Happening {
+    /// The command it is, if it is one.
+    pub fn command(self) -> Option<Command> {
+        match self {
+            Self::Hang | Self::PinReset | Self::Flood => None,
+            Self::Tare => Some(Command::Tare),
+            Self::Undo => Some(Command::Undo),
+            Self::Save => Some(Command::Save { gain: None }),
+            Self::Info => Some(Command::Info),
+            Self::SelfTest => Some(Command::SelfTest { indentation: 0 }),
+            Self::Rate => Some(Command::Rate { every: 100 }),
+        }
+    }
+
+    /// Whether it lasts.
+    const fn lasts(self) -> bool {
+        matches!(self, Self::Hang | Self::Flood)
+    }
 }
 
 /// A stretch of the plate's travel: from where it is to another indentation, at a constant speed.
@@ -196,6 +256,18 @@ impl Scenario {
                 demand((0.0..=100.0).contains(&found), key, found, "from 0 to 100")?;
             }
         }
+        for (i, event) in self.event.iter().enumerate() {
+            let key = format!("event[{i}].at_ms");
+            demand(event.at_ms >= 0.0, key, event.at_ms, "0 or more")?;
+            let found = event.for_ms.unwrap_or(0.0);
+            let key = format!("event[{i}].for_ms");
+            let (holds, allowed) = if event.is.lasts() {
+                (found > 0.0, "above 0 for what lasts")
+            } else {
+                (event.for_ms.is_none(), "left out for what does not last")
+            };
+            demand(holds, key, found, allowed)?;
+        }
         for (i, fault) in self.wire.iter().enumerate() {
             let key = format!("wire[{i}].from_ms");
             demand(fault.from_ms >= 0.0, key, fault.from_ms, "0 or more")?;
@@ -294,6 +366,13 @@ mod tests {
         assert!(with("duration_ms = 200", "duration_ms = -1").contains("phase[1].duration_ms = -1"));
         assert!(with("until_ms = 160", "until_ms = 150").contains("above from_ms"));
         assert!(with("\"open\"", "\"loose\"").contains("loose"));
+        let event = |words: &str| {
+            let text = format!("{TRAPEZIUM}\n[[event]]\nat_ms = 10\n{words}");
+            parsed(&text)
+        };
+        assert!(event("is = \"hang\"").is_err_and(|error| error.contains("event[0].for_ms")));
+        assert!(event("is = \"tare\"\nfor_ms = 1").is_err_and(|error| error.contains("left out")));
+        assert!(event("is = \"flood\"\nfor_ms = 1").is_ok());
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod faults;
 mod integers;
 mod press;
 mod readme;
+mod service;
 mod solver;
 
 use emulator::bench::{self, Outcome};

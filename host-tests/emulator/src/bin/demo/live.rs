@@ -1,5 +1,6 @@
 //! The table that grows while the image runs.
 
+use crate::say::say;
 use emulator::record::Row;
 use emulator::scenario::Scenario;
 use fingertip::report::Status;
@@ -33,13 +34,13 @@ impl Table {
     /// What prints the lines of the rows it is given: one every 50 ms, and one at each change of status.
     pub(crate) fn into_printer(mut self) -> impl FnMut(&Row) + Send + 'static {
         for line in HEAD {
-            println!("{line}");
+            say!("{line}");
         }
         move |row| {
             let changed = self.status.replace(row.status) != Some(row.status);
             if changed || row.time >= self.next {
                 self.next = (row.time / EVERY).floor() * EVERY + EVERY;
-                println!("{}", line(row, self.scenario.phase_at(row.time)));
+                say!("{}", line(row, self.scenario.phase_at(row.time)));
             }
         }
     }

@@ -3,16 +3,18 @@
 
 mod live;
 mod options;
+mod say;
 mod summary;
 
 use emulator::bench;
 use emulator::chart::{self, Caption};
 use emulator::fingertip_design::FingertipDesign;
 use emulator::image::Image;
-use emulator::output::Output;
+use emulator::output::{self, Output};
 use emulator::record::{Recorder, write_csv};
 use emulator::scenario::Scenario;
 use options::Options;
+use say::say;
 use std::error::Error;
 use std::io::Write;
 use std::path::PathBuf;
@@ -22,7 +24,17 @@ use std::time::Instant;
 /// Largest median error that the reports may have, percent of reading.
 const TARGET_PERCENT: f64 = 0.5;
 
+/// Exit status after an interrupt, as shells have it: 128 and the number of the signal.
+const INTERRUPTED: i32 = 130;
+
 fn main() -> ExitCode {
+    // Whoever interrupts it finds no half-written files.
+    if let Err(error) = ctrlc::set_handler(|| {
+        output::abandon();
+        std::process::exit(INTERRUPTED);
+    }) {
+        eprintln!("note: an interrupt will leave files behind ({error})");
+    }
     let outcome = match options::parse() {
         Ok(options) => demo(&options),
         Err(exit) => return exit,
@@ -42,24 +54,24 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut csv = Output::create(&options.csv)?;
     let mut svg = Output::create(&options.chart)?;
 
-    println!(
+    say!(
         "1/3 building the firmware image for the NUCLEO-F429ZI and {} ...",
         design.name()
     );
     let image = Image::firmware(Some(&design.path))?;
-    println!(
+    say!(
         "2/3 solving the full model of {} for the truth ...",
         design.name()
     );
     let started = Instant::now();
     let plant = design.plant(scenario.clone())?;
-    println!("    solved in {:.1} s", started.elapsed().as_secs_f64());
-    println!(
+    say!("    solved in {:.1} s", started.elapsed().as_secs_f64());
+    say!(
         "3/3 running the image on the emulated STM32F427: {} ({:.1} s)",
         options.scenario,
         scenario.duration()
     );
-    println!("    {}\n", scenario.about);
+    say!("    {}\n", scenario.about);
 
     let started = Instant::now();
     let table = live::Table::new(scenario.clone());
@@ -95,13 +107,13 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
     let files: [PathBuf; 2] = [svg.finish()?, csv.finish()?];
 
     summary::print(&record, &plant, &accuracy);
-    println!(
+    say!(
         "\n{time:.1} s on the chip ({:.0} instructions/ms) took {wall:.1} s",
         instructions as f64 / (time * 1e3)
     );
     for trouble in resets.iter().map(|reset| format!("reset: {reset}")).chain(gaps) {
-        println!("note: {trouble}");
+        say!("note: {trouble}");
     }
-    println!("chart   {}\nnumbers {}", files[0].display(), files[1].display());
+    say!("chart   {}\nnumbers {}", files[0].display(), files[1].display());
     Ok(())
 }

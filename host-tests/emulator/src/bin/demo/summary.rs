@@ -1,5 +1,6 @@
 //! What the run comes to.
 
+use crate::say::say;
 use emulator::accuracy::{Accuracy, is_wrong};
 use emulator::plant::Plant;
 use emulator::record::{Record, Row};
@@ -7,19 +8,19 @@ use fingertip::report::Status;
 
 /// Prints accuracy phase by phase and over all, then what else came over the wire.
 pub(crate) fn print(record: &Record, plant: &Plant, accuracy: &Accuracy) {
-    println!(
+    say!(
         "\n                       median error / %        within 2 sigma of {} Pa / %      rms error",
         plant.transducer().noise
     );
-    println!("phase      readings   force  indentation   pressure   force  indentation   pressure / Pa");
+    say!("phase      readings   force  indentation   pressure   force  indentation   pressure / Pa");
     for phase in phases(plant) {
         let of_phase = |row: &&Row| plant.scenario().phase_at(row.time) == phase;
         print_line(phase, &Accuracy::of(record.rows.iter().filter(of_phase), plant));
     }
     print_line("all", accuracy);
-    println!("(median errors: percent of reading, from 5 % of full scale up)");
+    say!("(median errors: percent of reading, from 5 % of full scale up)");
     let count = |wanted: fn(&Status) -> bool| record.rows.iter().filter(|row| wanted(&row.status)).count();
-    println!(
+    say!(
         "\n{} reports: {} ok, of them {} wrong; {} with a warning, {} faults without values; {} frames lost, {} broken",
         record.rows.len(),
         count(|status| *status == Status::Ok),
@@ -40,7 +41,7 @@ fn print_line(name: &str, accuracy: &Accuracy) {
         }
     };
     let within = |share: f64| percent(if accuracy.readings == 0 { f64::NAN } else { share }, 1);
-    println!(
+    say!(
         "{name:<9} {:>9}  {:>6}  {:>11}   {:>8}  {:>6}  {:>11}   {:>13.2}",
         accuracy.readings,
         percent(accuracy.force_median, 3),

@@ -1,0 +1,74 @@
+//! The flash of the calibration, with an end to every wait: a memory that never says that it is ready is one that
+//! failed.
+
+use embassy_time::{Duration, with_timeout};
+use embedded_storage_async::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
+
+/// Longest erasure of a slot: 16 KB take 0.5 s, 8 bits at a time 0.8 s (DS9405 table 48).
+const ERASE: Duration = Duration::from_secs(2);
+
+/// Longest write of a record: 12 words of 0.1 ms.
+const WRITE: Duration = Duration::from_millis(10);
+
+/// A flash from an offset on.
+pub(crate) struct Patient<F> {
+    flash: F,
+    base: u32,
+}
+
+impl<F> Patient<F> {
+    /// The flash from `base` on.
+    pub(crate) const fn new(flash: F, base: u32) -> Self {
+        Self { flash, base }
+    }
+}
+
+/// It refused, or was not ready in time.
+#[derive(Debug)]
+pub(crate) struct MemoryFailure;
+
+impl NorFlashError for MemoryFailure {
+    fn kind(&self) -> NorFlashErrorKind {
+        NorFlashErrorKind::Other
+    }
+}
+
+impl<F: NorFlash> ErrorType for Patient<F> {
+    type Error = MemoryFailure;
+}
+
+impl<F: NorFlash> ReadNorFlash for Patient<F> {
+    const READ_SIZE: usize = F::READ_SIZE;
+
+    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), MemoryFailure> {
+        let read = self.flash.read(self.base + offset, bytes);
+        read.await.map_err(|_| MemoryFailure)
+    }
+
+    fn capacity(&self) -> usize {
+        self.flash.capacity() - self.base as usize
+    }
+}
+
+impl<F: NorFlash> NorFlash for Patient<F> {
+    const WRITE_SIZE: usize = F::WRITE_SIZE;
+    const ERASE_SIZE: usize = F::ERASE_SIZE;
+
+    async fn erase(&mut self, from: u32, to: u32) -> Result<(), MemoryFailure> {
+        let erased = with_timeout(ERASE, self.flash.erase(self.base + from, self.base + to));
+        erased
+            .await
+            .map_err(|_| MemoryFailure)?
+            .map_err(|_| MemoryFailure)
+    }
+
+    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), MemoryFailure> {
+        let written = with_timeout(WRITE, self.flash.write(self.base + offset, bytes));
+        written
+            .await
+            .map_err(|_| MemoryFailure)?
+            .map_err(|_| MemoryFailure)
+    }
+}
