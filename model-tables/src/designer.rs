@@ -49,36 +49,53 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// The rest state and the limits of a design
+    #[command(after_help = "Example:\n  cargo designer rest model-tables/designs/index-fingertip.toml")]
     Rest {
         /// The design file
         design: PathBuf,
     },
     /// Pressed states of a design, one row each, in the order asked
+    #[command(
+        after_help = "Example:\n  cargo designer solve model-tables/designs/index-fingertip.toml --indentation-mm 0.2,0.5,1.0 --format csv"
+    )]
     Solve(solve::Arguments),
     /// Shape, stretches and tensions along the meridian of one state, sorted from the pole to the equator
     #[command(after_long_help = profile::COLUMN_HELP)]
     Profile(profile::Arguments),
     /// The tables of a design: Rust source, binary, CSV, and the certificate
+    #[command(
+        after_help = "Example:\n  cargo designer table model-tables/designs/index-fingertip.toml --out target/tables"
+    )]
     Table(table::Arguments),
     /// Speed against accuracy of every method, and the ladder of models: SVG and CSV
+    #[command(after_help = "Example:\n  cargo designer chart paper --out target/chart")]
     Chart(chart::Arguments),
     /// Where each method answers, refuses or is silently wrong, over designs; and what a state costs
+    #[command(after_help = "Example:\n  cargo designer atlas --stride 4 --out target/atlas")]
     Atlas(atlas::Arguments),
     /// The models over random walls: error against time, and what `model.kind = "auto"` takes: SVG and CSV
     Ladder(ladder::Arguments),
     /// What the chip would say at pressure rises, bit for bit
+    #[command(
+        after_help = "Example:\n  cargo designer estimate model-tables/designs/index-fingertip.toml --pressure-rise-pa 642,2571"
+    )]
     Estimate(estimate::Arguments),
     /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
+    #[command(after_help = "Example:\n  cargo designer actuator my.toml --pressure-kpa 5,17.9")]
     Actuator(actuator::Arguments),
     /// Calibrates a design to bench data
     #[command(after_help = fit::HELP)]
     Fit(fit::Arguments),
     /// What a calibration gains, on stand-ins for a device
+    #[command(after_help = "Example:\n  cargo designer calibration --out model-tables/CALIBRATION.md")]
     Calibration(calibration::Arguments),
     /// Finds membranes for a wanted force over the indentation
     #[command(after_help = size::HELP)]
     Size(size::Arguments),
     /// The materials that a design can name, with where their constants come from
+    #[command(
+        after_help = "Example:\n  cargo designer materials --format json\n\nIn a design: [material] preset = \"ecoflex-00-30\""
+    )]
     Materials,
     /// Completions for a shell, on standard output
     ///

@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     /// Leave the model out: tables from a monotone curve through the data alone
     #[arg(long, conflicts_with = "parameters")]
     from_data: bool,
-    /// Let the curve of --from-data go straight to zero below data that begin late
+    /// Let the curve of --from-data run to the origin even if the data begin late
     #[arg(long, requires = "from_data")]
     to_zero: bool,
     /// What the transducer reads at rest, kilopascals, for --from-data [default: the model's]

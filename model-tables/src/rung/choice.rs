@@ -2,7 +2,7 @@
 //!
 //! `kind = "auto"` climbs a ladder, cheapest rung first: the membrane in the middle of the wall, then solids of more and more
 //! elements. **The rule:** each rung that is solved judges those below it, the cheapest first. One is taken when its force and
-//! its pressure rise differ from the judge's by no more than what [`Accuracy`] allows of the
+//! its pressure rise differ from the judge's by no more than what [`Accuracy`](crate::design_file::Accuracy) allows of the
 //! force less the judge's own error ([`LADDER`]), at eight indentations up to the deepest one. If none is, the last rung
 //! answers. `designer ladder` holds the rule to a refined solid over random designs.
 

@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
         if found.start > EMPTY * found.end && !arguments.to_zero {
             let reason = format!(
                 "the data begin at a pressure rise of {} kPa, and nothing is known of lighter presses: measure them, or let \
-                 the curve go straight to zero with --to-zero",
+                 the curve run to the origin all the same with --to-zero",
                 digits(1e-3 * found.start)
             );
             return Err(Refusal::about(&arguments.data, &reason));
@@ -179,8 +179,8 @@ fn knots(found: &FromData, rest_pressure_kpa: f64) -> Option<DataCurve> {
 
 fn findings(found: &FromData, data: &Data) -> Vec<String> {
     let mut lines = vec![format!(
-        "calibrated for pressure rises of {} to {} kPa: beyond, the chip reports `saturated`; below, the curve goes \
-         straight to zero",
+        "calibrated for pressure rises of {} to {} kPa: beyond, the chip reports `saturated`; below, the curve runs to \
+         the origin, where nothing was measured",
         digits(1e-3 * found.start),
         digits(1e-3 * found.end)
     )];
