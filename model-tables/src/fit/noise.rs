@@ -13,6 +13,8 @@ const STUDENT: f64 = 4.0;
 const STEPS: usize = 30;
 /// What is taken before anything is known: a hundredth of full scale and as much of reading at full scale.
 const FIRST_RATIO: f64 = 10.0;
+/// Standard deviations, roughly known, beyond which a value does not count.
+const OUTLYING: f64 = 4.5;
 /// Residuals under which a ratio is not worth estimating.
 const ENOUGH: usize = 12;
 
@@ -54,7 +56,7 @@ impl Noise {
                 .zip(readings)
                 .map(|(residual, &reading)| residual / shape(reading))
                 .collect();
-            let floor = (lost * deviation(&scaled)).max(least);
+            let floor = (lost * spread(&scaled)).max(least);
             let logarithms: f64 = readings.iter().map(|&reading| libm::log(shape(reading))).sum();
             (student(&scaled, least) + logarithms, floor)
         };
@@ -82,6 +84,21 @@ impl Noise {
     /// The part that grows with the reading, as a fraction of it.
     pub fn of_reading(&self) -> f64 {
         self.floor * self.ratio / self.largest
+    }
+}
+
+/// Root mean square of all but the outliers: of normal values as sure as can be, which what weighs force against pressure
+/// has to be.
+fn spread(values: &[f64]) -> f64 {
+    let limit = OUTLYING * deviation(values);
+    let kept = values.iter().filter(|value| value.abs() <= limit);
+    let (count, squares) = kept.fold((0.0, 0.0), |(count, squares), value| {
+        (count + 1.0, squares + value * value)
+    });
+    if count > 0.0 {
+        libm::sqrt(squares / count)
+    } else {
+        0.0
     }
 }
 
