@@ -6,7 +6,7 @@
 //! | transducer, analogue | PA3, `ADC123_IN3` | A0 of the Zio and Arduino header (UM1974 table 19) |
 //! | transducer, bus | PB8, PB9, I2C1 | D15 and D14 of that header, with pull-ups at the transducer |
 //! | serial port | PD8, PD9, USART3 | the ST-LINK's virtual COM port by default (UM1974 6.9) |
-//! | calibration | flash from 0x0810_0000, two sectors of 16 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
+//! | calibration | flash from `0x0810_0000`, two sectors of 16 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
 //!
 //! The transducer's output must reach A0 in the ratio of its supply to the board's 3.3 V, which is the
 //! converter's reference (for a 5 V part: through a divider from the same 5 V), at no more than 10 kilo-ohm. A
