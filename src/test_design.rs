@@ -20,6 +20,7 @@ impl Design for Linear {
         name: "linear",
         hash: 1,
         table_version: 1,
+        certificate: 2,
         rest_pressure: 20_000,
         maximum_pressure: 60_000,
         transducer: Transducer {

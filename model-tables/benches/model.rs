@@ -66,7 +66,7 @@ fn main() {
     let mut press = Press::new(&file.design(), TensionField::Relaxed).expect("a shipped design");
     let deepest = 1e-3 * file.max_indentation_mm.expect("shipped with it");
     let curve = press.curve(deepest).expect("a shipped design");
-    let fitted = || generate::tables(&curve, &accuracy, resolution).expect("a shipped design");
+    let fitted = || generate::tables(&curve, curve.end(), &accuracy, resolution).expect("a shipped design");
     figure("paper-prestretched: curve to certified tables", 1, fitted);
     let tables = fitted().tables;
     let bits = tables.layout.pressure_fraction_bits;

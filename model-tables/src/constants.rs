@@ -11,6 +11,8 @@ pub struct DesignConstants {
     pub hash: u64,
     /// Version of the tables' layout and of the generator.
     pub table_version: u32,
+    /// First eight bytes, big-endian, of the SHA-256 of the tables' certificate.
+    pub certificate: u64,
     /// Gauge pressure at rest, pascals.
     pub rest_pressure: i32,
     /// Gauge pressure at the end of the tables, pascals.

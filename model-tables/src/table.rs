@@ -1,54 +1,84 @@
 //! The lookup on the chip: pressure rise -> force and indentation, integers only.
 //!
-//! Segments widen geometrically. With `y = clamp(rise, 0, maximum) + bias`, one count of leading zeros names
-//! the octave of `y`, one shift left brings its highest set bit to bit 31, and what is left of that word, read
-//! as a signed number, *is* the place inside the octave: `t = 2^31 (f - 1)` for a fraction `0 <= f < 1`. Both
-//! outputs share it, each a polynomial evaluated by Horner's rule in products that keep their upper 32 bits.
-//! There is no search, no division and no branch on data, and no input can panic.
+//! Segments widen geometrically. With `y = clamp(rise, 0, maximum) + bias`, one count of leading zeros names the octave of
+//! `y`, and one shift left makes its mantissa `m` of it, a fraction of `2^32`. A segment is one octave (`1/2 <= m < 1`) or
+//! two (`1/4 <= m < 1`). In it both outputs are `c0 + c1 s + c2 s^2 + ...` in the distance `s = 1 - m` from the segment's upper
+//! end, with gaps between the powers: 1, 2, 4 or 1, 2, 6 instead of 1, 2, 3. What a press does over two octaves is much
+//! like `m^p` with `p` from 0.3 to 1.3, and there a third coefficient on `s^4` leaves half the error of one on `s^3`
+//! at the same cost, since `s^4` is one squaring.
+//!
+//! Coefficients are 16-bit numbers, two to a word, and a product with one is a single instruction. A segment's sum
+//! is scaled by the square root of the octave (the shift grows by one where `y` shrinks to a quarter), which is about how both
+//! outputs fall, so that 16 bits suffice in every segment. There is no search, no division, no loop and no branch on
+//! data, and no input can panic.
 //!
 //! The tables of a design are a constant, so the compiler folds everything but the coefficients.
 
 use crate::units::{Micronewtons, Nanometres, PressureRise};
 
-/// Coefficients of one segment, constant term first.
-///
-/// In units of `2^-shift` of the output. The argument is `u = (f - 1) / 2`, from -1/2 at the segment's lower
-/// end to just below 0 at its upper end, so the constant term is the value at the upper end.
+/// Powers of `s` beside 1 that a segment's sums are made of.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-#[repr(C)]
-pub struct Segment<const FORCE: usize, const INDENTATION: usize> {
-    /// Coefficients of the force, `2^-force_shift` micronewtons.
-    pub force: [i32; FORCE],
-    /// Coefficients of the indentation, `2^-indentation_shift` nanometres.
-    pub indentation: [i32; INDENTATION],
+pub enum Powers {
+    /// 1, 2.
+    Two,
+    /// 1, 2, 4.
+    Four,
+    /// 1, 2, 6.
+    Six,
+    /// 1, 2, 4, 8.
+    Eight,
 }
 
-/// Where the segments lie: everything of a design's tables but the coefficients.
+impl Powers {
+    /// How many there are.
+    pub const fn terms(self) -> usize {
+        match self {
+            Self::Two => 2,
+            Self::Four | Self::Six => 3,
+            Self::Eight => 4,
+        }
+    }
+}
+
+/// Where the constant terms are kept.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Constant {
+    /// In the upper half of a word; the lower half, which holds the linear coefficient, counts as its fraction.
+    Half,
+    /// In a word of their own.
+    Whole,
+}
+
+/// Where the segments lie and how their words are read: everything of a design's tables but the coefficients.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Layout {
     /// `k`: a count of pressure rise is `1 / 2^k` pascal.
     pub pressure_fraction_bits: u32,
-    /// Last input covered, counts; inputs above it read as it does, flagged. `maximum + bias < 2^31`.
+    /// Last input covered, counts; inputs above it read as it does, flagged.
     pub maximum: i32,
     /// Added to the input before its octave is taken, counts, >= 1: the first segment starts at zero input.
     pub bias: i32,
-    /// Every octave is cut into `2^split_bits` equal segments; 0 or 1.
-    pub split_bits: u32,
+    /// Octaves of a segment: 1 or 2.
+    pub octaves: u32,
+    /// The powers of its sums.
+    pub powers: Powers,
+    /// Where its constant terms are.
+    pub constant: Constant,
     /// Number of the first entry of the segments, counting all segments of a 32-bit word downwards from 0.
     pub first_index: u32,
-    /// Bits of the force's coefficients below one micronewton.
+    /// Bits of the force's sum below one micronewton, beside those of the octave.
     pub force_shift: u32,
-    /// Bits of the indentation's coefficients below one nanometre.
+    /// Bits of the indentation's sum below one nanometre, beside those of the octave.
     pub indentation_shift: u32,
 }
 
-/// The tables of one design: `SEGMENTS` segments, polynomials of `FORCE` and `INDENTATION` coefficients.
+/// The tables of one design: `SEGMENTS` segments of `WORDS` words, as [`Layout::words`] says.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct Tables<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize> {
+pub struct Tables<const SEGMENTS: usize, const WORDS: usize> {
     /// Where the segments lie.
     pub layout: Layout,
     /// Segments downwards: the one of the largest inputs first.
-    pub segments: [Segment<FORCE, INDENTATION>; SEGMENTS],
+    pub segments: [[i32; WORDS]; SEGMENTS],
 }
 
 /// What the tables say of a pressure rise.
@@ -58,7 +88,8 @@ pub struct Reading {
     pub force: Micronewtons,
     /// Indentation of the pole.
     pub indentation: Nanometres,
-    /// The input lay above the tables: force and indentation are lower bounds.
+    /// The input lay above the tables: force and indentation are lower bounds. (Also said of `i32::MIN`, the other end of
+    /// the word.)
     pub saturated: bool,
     /// The input was negative and read as zero.
     pub negative: bool,
@@ -67,131 +98,200 @@ pub struct Reading {
 /// An input's segment and its place in it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(crate) struct Place {
-    /// Entry of the segments.
-    pub(crate) index: usize,
-    /// `2^31 (f - 1)` at the fraction `f` of the segment.
-    pub(crate) t: i32,
+    /// The segment, counting all segments of a 32-bit word downwards from 0.
+    pub(crate) number: u32,
+    /// The mantissa, a fraction of `2^32`.
+    pub(crate) mantissa: u32,
     /// The input lay above [`Layout::maximum`].
     pub(crate) saturated: bool,
-    /// The input lay below zero.
-    pub(crate) negative: bool,
 }
 
 impl Layout {
+    /// Words of a segment. The first two hold the constant terms of force and indentation (with
+    /// [`Constant::Half`] also their linear coefficients), each of the others the coefficients of one power: force in
+    /// the upper half, indentation in the lower.
+    pub const fn words(&self) -> usize {
+        match self.constant {
+            Constant::Half => 1 + self.powers.terms(),
+            Constant::Whole => 2 + self.powers.terms(),
+        }
+    }
+
     /// The pre-lookup that both outputs share.
     #[inline(always)]
     #[allow(clippy::inline_always)] // part of the lookup
     pub(crate) fn place(&self, rise: PressureRise) -> Place {
-        // Neither sum of two positive `i32` leaves the `u32`.
-        let top = (self.maximum as u32).wrapping_add(self.bias as u32);
-        let shifted = (rise.0.max(0) as u32).wrapping_add(self.bias as u32);
-        let y = shifted.min(top);
-        // `y >= bias`, so its highest bit is not below the bias's: setting that bit changes nothing but what
-        // the compiler can prove of the index.
-        let lowest_octave = 0x8000_0000_u32.wrapping_shr(self.bias.leading_zeros());
-        let leading_zeros = (y | lowest_octave).leading_zeros();
-        let normalised = y.wrapping_shl(leading_zeros);
-        let (number, place) = if self.split_bits == 0 {
-            (leading_zeros, normalised)
-        } else {
-            let part = (!normalised & 0x7fff_ffff).wrapping_shr(31_u32.wrapping_sub(self.split_bits));
-            let place = normalised.wrapping_shl(self.split_bits) | 0x8000_0000;
-            (leading_zeros.wrapping_shl(self.split_bits) | part, place)
-        };
+        let held = rise.0.clamp(0, self.maximum);
+        // The sign of a difference, as a comparison costs an instruction more; it leaves the word for `i32::MIN` alone.
+        let saturated = held.wrapping_sub(rise.0) < 0;
+        // Neither of two positive `i32` leaves the `u32` in their sum.
+        let y = (held as u32).wrapping_add(self.bias as u32);
+        let zeros = y.leading_zeros();
+        let number = if self.octaves == 2 { zeros >> 1 } else { zeros };
+        let mantissa = y.wrapping_shl(if self.octaves == 2 { number << 1 } else { number });
         Place {
-            index: number.wrapping_sub(self.first_index) as usize,
-            t: place as i32,
-            saturated: shifted > top,
-            negative: rise.0 < 0,
+            number,
+            mantissa,
+            saturated,
         }
     }
 
-    /// The outputs at a place, from its segment's coefficients.
+    /// Shift of a segment's sums for their octave.
     #[inline(always)]
     #[allow(clippy::inline_always)] // part of the lookup
-    pub(crate) fn reading(&self, place: Place, force: &[i32], indentation: &[i32]) -> Reading {
+    pub(crate) const fn octave_shift(&self, number: u32) -> u32 {
+        if self.octaves == 2 { number } else { number >> 1 }
+    }
+
+    /// What the coefficients are multiplied with, fractions of `2^32`: `1/2 - s`, `s^2 / 2`, and as [`Powers`] has
+    /// them `s^4 / 4`, `s^6 / 8`, `s^8 / 16`; the rest is 0.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // part of the lookup
+    pub(crate) const fn factors(&self, mantissa: u32) -> [i32; 4] {
+        // m - 1/2 = 1/2 - s. Unsigned products: a compiler that knows a square is not negative takes three
+        // instructions for its product with a coefficient.
+        let linear = (mantissa ^ 0x8000_0000) as i32;
+        // m^2 / 2 - (m - 1/2) = s^2 / 2, at most 9/32.
+        let second = ((high(mantissa, mantissa) >> 1) as i32).wrapping_sub(linear);
+        let fourth = high(second as u32, second as u32);
+        match self.powers {
+            Powers::Two => [linear, second, 0, 0],
+            Powers::Four => [linear, second, fourth as i32, 0],
+            Powers::Six => [linear, second, high(fourth, second as u32) as i32, 0],
+            Powers::Eight => [linear, second, fourth as i32, high(fourth, fourth) as i32],
+        }
+    }
+
+    /// The sums of force and indentation from a segment's words, before their shifts.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // part of the lookup
+    pub(crate) fn sums(&self, words: &[i32], mantissa: u32) -> [i32; 2] {
+        let [linear, second, third, fourth] = self.factors(mantissa);
+        // Nothing is ever missing in generated tables; this keeps panics out.
+        let word = |at: usize| words.get(at).copied().unwrap_or(0);
+        let pair = |[force, indentation]: [i32; 2], factor: i32, at: usize| {
+            let word = word(at);
+            [
+                force.wrapping_add(product(factor, (word >> 16) as i16)),
+                indentation.wrapping_add(product(factor, word as i16)),
+            ]
+        };
+        let (force, indentation) = (word(0), word(1));
+        let (mut sums, mut at) = match self.constant {
+            // Written out, as `map` would stay a loop where the compiler is told to save space.
+            Constant::Half => (
+                [
+                    force.wrapping_add(product(linear, force as i16)),
+                    indentation.wrapping_add(product(linear, indentation as i16)),
+                ],
+                2,
+            ),
+            Constant::Whole => (pair([force, indentation], linear, 2), 3),
+        };
+        sums = pair(sums, second, at);
+        at += 1;
+        if self.powers.terms() > 2 {
+            sums = pair(sums, third, at);
+            at += 1;
+        }
+        if self.powers.terms() > 3 {
+            sums = pair(sums, fourth, at);
+        }
+        sums
+    }
+
+    /// The outputs at a place, from its segment's words.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // part of the lookup
+    pub(crate) fn reading(&self, rise: PressureRise, place: Place, words: &[i32]) -> Reading {
+        let [force, indentation] = self.sums(words, place.mantissa);
+        let octave = self.octave_shift(place.number);
         Reading {
-            force: Micronewtons(horner(force, place.t).wrapping_shr(self.force_shift)),
-            indentation: Nanometres(horner(indentation, place.t).wrapping_shr(self.indentation_shift)),
+            force: Micronewtons(force.wrapping_shr(octave).wrapping_shr(self.force_shift)),
+            indentation: Nanometres(
+                indentation
+                    .wrapping_shr(octave)
+                    .wrapping_shr(self.indentation_shift),
+            ),
             saturated: place.saturated,
-            negative: place.negative,
+            negative: rise.0 < 0,
         }
     }
 }
 
-impl<const SEGMENTS: usize, const FORCE: usize, const INDENTATION: usize>
-    Tables<SEGMENTS, FORCE, INDENTATION>
-{
+/// The upper half of a product.
+#[inline(always)]
+#[allow(clippy::inline_always)] // one instruction
+const fn high(a: u32, b: u32) -> u32 {
+    ((a as u64 * b as u64) >> 32) as u32
+}
+
+/// `factor * coefficient / 2^16`, rounded down: SMLAWB or SMLAWT with the addition that follows.
+#[inline(always)]
+#[allow(clippy::inline_always)] // one instruction
+fn product(factor: i32, coefficient: i16) -> i32 {
+    ((i64::from(factor) * i64::from(coefficient)) >> 16) as i32
+}
+
+impl<const SEGMENTS: usize, const WORDS: usize> Tables<SEGMENTS, WORDS> {
     /// Bytes of the coefficients; the layout becomes immediates of the code.
-    pub const BYTES: usize = size_of::<[Segment<FORCE, INDENTATION>; SEGMENTS]>();
+    pub const BYTES: usize = size_of::<[[i32; WORDS]; SEGMENTS]>();
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     #[inline(always)]
     #[allow(clippy::inline_always)] // so that the layout folds into the code of the one call site
     pub fn lookup(&self, rise: PressureRise) -> Reading {
         let place = self.layout.place(rise);
-        // The index is in range for every input of a generated table; the limit keeps panics out.
-        let segment = &self.segments[place.index.min(SEGMENTS - 1)];
-        self.layout.reading(place, &segment.force, &segment.indentation)
+        // The index is in range for every input of a generated table, as the compiler sees; the limit keeps panics out.
+        let index = place.number.wrapping_sub(self.layout.first_index) as usize;
+        self.layout
+            .reading(rise, place, &self.segments[index.min(SEGMENTS - 1)])
     }
-}
-
-/// `c0 + u (c1 + u (c2 + u c3))` with `u = t / 2^32`, every product rounded down; up to four coefficients.
-///
-/// Generated coefficients stay below 2^30 in magnitude and `|u| <= 1/2`, so no sum leaves 32 bits.
-#[inline(always)]
-#[allow(clippy::inline_always)] // part of the lookup
-fn horner(coefficients: &[i32], t: i32) -> i32 {
-    let coefficient = |power: usize| coefficients.get(power).copied().unwrap_or(0);
-    let times_u = |sum: i32| ((i64::from(sum) * i64::from(t)) >> 32) as i32;
-    // Written out, as a loop would stay one where the compiler is told to save space.
-    let mut sum = 0;
-    if coefficients.len() > 3 {
-        sum = coefficient(3);
-    }
-    if coefficients.len() > 2 {
-        sum = coefficient(2).wrapping_add(times_u(sum));
-    }
-    if coefficients.len() > 1 {
-        sum = coefficient(1).wrapping_add(times_u(sum));
-    }
-    coefficient(0).wrapping_add(times_u(sum))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Force `= rise` and indentation `= rise^2` on 0..=12 counts, in two octaves of `y = rise + 4`.
+    /// Force `= rise` on 0..=11 counts in two octaves of `y = rise + 4`, and indentation `= rise^2`.
     ///
-    /// Octave [4, 8): u = (y - 8) / 8, so y = 8 + 8 u. Octave [8, 16]: y = 16 + 16 u (the last, partial one
-    /// ends at y = 15 with maximum 11).
-    const HAND_MADE: Tables<2, 2, 3> = Tables {
+    /// An octave that ends at `U` has `y = U (1 - s)`, so with `h = 1/2 - s` and `q = s^2 / 2`: `rise = U/2 - 4 + U h`, and
+    /// `rise^2 = (U - 4)^2 - 2 U (U - 4) s + U^2 s^2 = (U - 4)^2 - U (U - 4) + 2 U (U - 4) h + 2 U^2 q`.
+    const fn hand_made(upper: i32, octave: u32, shifts: [u32; 2]) -> [i32; 4] {
+        let units = [octave + shifts[0], octave + shifts[1]];
+        // A factor of 2^32 times a coefficient over 2^16: coefficients count 2^16 units of the sum.
+        let force = [(upper / 2 - 4) << units[0], upper << (units[0] - 16)];
+        let indentation = [
+            ((upper - 4) * (upper - 4) - upper * (upper - 4)) << units[1],
+            (2 * upper * (upper - 4)) << (units[1] - 16),
+            (2 * upper * upper) << (units[1] - 16),
+        ];
+        [
+            force[0],
+            indentation[0],
+            force[1] << 16 | indentation[1],
+            indentation[2],
+        ]
+    }
+
+    /// Octaves [4, 8) and [8, 16): 29 and 28 leading zeros, both shifted by 14.
+    const HAND_MADE: Tables<2, 4> = Tables {
         layout: Layout {
             pressure_fraction_bits: 2,
             maximum: 11,
             bias: 4,
-            split_bits: 0,
+            octaves: 1,
+            powers: Powers::Two,
+            constant: Constant::Whole,
             first_index: 28,
             force_shift: 4,
-            indentation_shift: 6,
+            indentation_shift: 2,
         },
-        segments: [
-            // rise = 12 + 16 u; rise^2 = 144 + 384 u + 256 u^2.
-            Segment {
-                force: [12 << 4, 16 << 4],
-                indentation: [144 << 6, 384 << 6, 256 << 6],
-            },
-            // rise = 4 + 8 u; rise^2 = 16 + 64 u + 64 u^2.
-            Segment {
-                force: [4 << 4, 8 << 4],
-                indentation: [16 << 6, 64 << 6, 64 << 6],
-            },
-        ],
+        segments: [hand_made(16, 14, [4, 2]), hand_made(8, 14, [4, 2])],
     };
 
     #[test]
-    fn evaluates_the_polynomial_of_the_segment() {
+    fn evaluates_the_sum_of_the_segment() {
         for rise in 0..=11 {
             let reading = HAND_MADE.lookup(PressureRise(rise));
             assert_eq!(reading.force, Micronewtons(rise));
@@ -211,7 +311,7 @@ mod tests {
             );
             assert!(reading.saturated && !reading.negative);
         }
-        for rise in [-1, -1000, i32::MIN] {
+        for rise in [-1, -1000, -i32::MAX] {
             let reading = HAND_MADE.lookup(PressureRise(rise));
             assert_eq!(
                 (reading.force, reading.indentation),
@@ -221,32 +321,57 @@ mod tests {
         }
     }
 
-    /// The same functions with every octave cut in two: [4, 6) [6, 8) [8, 12) [12, 16).
-    #[test]
-    fn cuts_octaves_into_equal_parts() {
-        let line = |upper: i32, width: i32| Segment {
-            force: [(upper - 4) << 4, (2 * width) << 4],
-            indentation: [7, 0],
-        };
-        let tables = Tables::<4, 2, 2> {
-            layout: Layout {
-                pressure_fraction_bits: 2,
-                maximum: 11,
-                bias: 4,
-                split_bits: 1,
-                first_index: 56,
-                force_shift: 4,
-                indentation_shift: 0,
-            },
-            segments: [line(16, 4), line(12, 4), line(8, 2), line(6, 2)],
-        };
-        for rise in 0..=11 {
-            assert_eq!(tables.lookup(PressureRise(rise)).force, Micronewtons(rise));
+    /// A layout of two octaves a segment.
+    fn layout(powers: Powers, constant: Constant) -> Layout {
+        Layout {
+            octaves: 2,
+            powers,
+            constant,
+            ..HAND_MADE.layout
         }
     }
 
     #[test]
-    fn counts_the_bytes_of_the_coefficients() {
-        assert_eq!(Tables::<5, 3, 3>::BYTES, 120);
+    fn two_octaves_make_a_segment() {
+        let layout = layout(Powers::Four, Constant::Half);
+        // y = 4 .. 15: four bits, 28 or 29 zeros.
+        for rise in 0..=11 {
+            let place = layout.place(PressureRise(rise));
+            assert_eq!(place.number, 14);
+            assert_eq!(place.mantissa, ((rise + 4) as u32) << 28);
+        }
+    }
+
+    #[test]
+    fn factors_are_the_powers_of_the_distance_from_the_upper_end() {
+        let whole = 4_294_967_296.0;
+        for mantissa in [1 << 30, 0x5555_5555, 0x8000_0000, 0xdead_beef, u32::MAX] {
+            let s = 1.0 - f64::from(mantissa) / whole;
+            let (fourth, sixth, eighth) = (s.powi(4) / 4.0, s.powi(6) / 8.0, s.powi(8) / 16.0);
+            for (powers, third, last) in [
+                (Powers::Two, 0.0, 0.0),
+                (Powers::Four, fourth, 0.0),
+                (Powers::Six, sixth, 0.0),
+                (Powers::Eight, fourth, eighth),
+            ] {
+                let found = layout(powers, Constant::Whole).factors(mantissa);
+                let expected = [0.5 - s, s * s / 2.0, third, last];
+                for (found, expected) in found.into_iter().zip(expected) {
+                    // Three roundings of one unit at most.
+                    assert!(
+                        (f64::from(found) - expected * whole).abs() <= 3.0,
+                        "{mantissa:#x}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn words_are_counted_by_constants_and_powers() {
+        let words = |powers, constant| layout(powers, constant).words();
+        assert_eq!(words(Powers::Four, Constant::Half), 4);
+        assert_eq!(words(Powers::Eight, Constant::Whole), 6);
+        assert_eq!(Tables::<8, 4>::BYTES, 128);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::owned::OwnedTables;
 use super::truth::Truth;
+use crate::curve::Curve;
 use crate::design_file::Accuracy;
 use crate::table::Reading;
 use crate::units::PressureRise;
@@ -22,7 +23,7 @@ pub struct Certificate {
 /// Errors of one output over every input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Errors {
-    /// The output at the largest input.
+    /// The output at the end of the press.
     pub full_scale: f64,
     /// Where errors of reading begin, in units of the output.
     pub from: f64,
@@ -76,11 +77,16 @@ impl Certificate {
 }
 
 /// Evaluates every input. `None` when an end is not held and flagged as it must be.
-pub(super) fn certify(tables: &OwnedTables, truth: &Truth, accuracy: &Accuracy) -> Option<Certificate> {
+pub(super) fn certify(
+    tables: &OwnedTables,
+    curve: &Curve,
+    truth: &Truth,
+    accuracy: &Accuracy,
+) -> Option<Certificate> {
     if !ends_are_held(tables) {
         return None;
     }
-    let full_scale = truth.at(truth.maximum);
+    let full_scale = truth.full_scale;
     let from = full_scale.map(|full| full * accuracy.from_percent_of_full_scale / 100.0);
     let mut force = Tally::new(full_scale[0], from[0]);
     let mut indentation = Tally::new(full_scale[1], from[1]);
@@ -95,7 +101,7 @@ pub(super) fn certify(tables: &OwnedTables, truth: &Truth, accuracy: &Accuracy) 
         inputs: truth.maximum as u64 + 1,
         force: force.finish(accuracy.force_percent_of_reading),
         indentation: indentation.finish(accuracy.indentation_percent_of_reading),
-        comparison_error: truth.deviation,
+        comparison_error: truth.deviation(curve),
     })
 }
 
@@ -107,7 +113,7 @@ fn ends_are_held(tables: &OwnedTables) -> bool {
         tables.lookup(PressureRise(maximum)),
     );
     let above = [maximum + 1, maximum.saturating_mul(2), i32::MAX - 1, i32::MAX];
-    let below = [-1, -maximum, i32::MIN + 1, i32::MIN];
+    let below = [-1, -maximum, i32::MIN / 2, -i32::MAX];
     above.iter().all(|&count| {
         tables.lookup(PressureRise(count))
             == Reading {

@@ -1,15 +1,30 @@
 //! From a design to its tables: the full model, and every refusal on the way.
 
 use super::{Certified, NoTables, emit, tables};
+use crate::adapt::Resolution;
 use crate::constants::{Transducer, TransducerKind};
 use crate::curve::{Contact, Curve};
 use crate::design_file::{
-    DataCurve, DesignFile, DesignFileError, TransducerKindSection, TransducerSection, Transfer,
+    DataCurve, DesignFile, DesignFileError, ModelSection, TransducerKindSection, TransducerSection, Transfer,
 };
-use crate::press::{CurveFailure, ModelError};
+use crate::membrane::TensionField;
+use crate::press::{CurveFailure, FULL, ModelError, Press};
 use crate::rung::Rung;
+use sha2::{Digest as _, Sha256};
 use std::fmt;
 use std::path::Path;
+
+/// A mesh twice as fine as the full model's.
+const FINER: Resolution = Resolution {
+    density: 2.0 * FULL.density,
+    contact_elements: 2 * FULL.contact_elements,
+    ..FULL
+};
+/// States that the curve is compared with on it, about.
+const CHECKED: usize = 12;
+/// How much deeper than the press the curve goes where it can, so that the last input can be a number that the chip handles in
+/// fewer instructions: the pressure, which grows faster than the indentation, then goes on by as much at least.
+const BEYOND: f64 = 1.0 + 1.0 / 64.0;
 
 /// Tables of a design, with everything that is written beside them.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +39,19 @@ pub struct Generated {
     pub end: Contact,
     /// Tables and certificate.
     pub certified: Certified,
+    /// How far the curve is from the model's own limit; not measured for the solid, each of whose states takes long.
+    pub model_error: Option<Convergence>,
+}
+
+/// A curve against states of the same model on a mesh twice as fine, half way between those that it was made from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Convergence {
+    /// States compared.
+    pub states: usize,
+    /// Largest error of the force at a pressure rise, percent of reading, as the tables' errors are.
+    pub force_percent: f64,
+    /// The same of the indentation.
+    pub indentation_percent: f64,
 }
 
 /// Why a design has no tables. `Display` is one line that names the design's key, the numbers and the remedy.
@@ -138,32 +166,75 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
     let transducer = design.transducer.ok_or(missing("transducer"))?;
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
     let deepest = indentation * 1e-3;
-    let (rest_pressure, curve) = match &design.calibration.curve {
-        Some(data) => (data.rest_pressure_kpa * 1e3, measured(data, deepest)?),
+    let (rest_pressure, curve, end) = match &design.calibration.curve {
+        Some(data) => {
+            let curve = measured(data, deepest)?;
+            let end = curve.end();
+            (data.rest_pressure_kpa * 1e3, curve, end)
+        }
         None => pressed(&design, &transducer, indentation)?,
     };
     in_range(&transducer, State::Rest, rest_pressure)?;
     in_range(
         &transducer,
         State::Pressed { indentation },
-        rest_pressure + curve.end().pressure_rise,
+        rest_pressure + end.pressure_rise,
     )?;
-    let certified = tables(&curve, &accuracy, transducer.resolution_pa).map_err(GenerateError::NoTables)?;
+    let certified =
+        tables(&curve, end, &accuracy, transducer.resolution_pa).map_err(GenerateError::NoTables)?;
+    let from = accuracy.from_percent_of_full_scale / 100.0;
+    let model_error = match design.calibration.curve {
+        None => convergence(&design, &curve, end, from),
+        Some(_) => None,
+    };
     Ok(Generated {
-        rest_pressure,
-        end: curve.end(),
-        certified,
-        transducer,
         design,
+        transducer,
+        rest_pressure,
+        end,
+        certified,
+        model_error,
     })
 }
 
-/// What the transducer reads at rest, and the curve of the model as it reads it: its own zero takes the offset away.
+/// Solves the design again on a finer mesh at some indentations.
+fn convergence(design: &DesignFile, curve: &Curve, end: Contact, from: f64) -> Option<Convergence> {
+    if !matches!(design.model, ModelSection::Membrane) {
+        return None;
+    }
+    let mut press: Press = Press::with_resolution(&design.design(), TensionField::Relaxed, FINER).ok()?;
+    let gain = design.calibration.pressure_gain;
+    let mut found = Convergence {
+        states: 0,
+        force_percent: 0.0,
+        indentation_percent: 0.0,
+    };
+    let pairs: Vec<&[Contact]> = curve
+        .points()
+        .windows(2)
+        .filter(|pair| pair[1].indentation >= from * end.indentation)
+        .collect();
+    for pair in pairs.iter().step_by(pairs.len().div_ceil(CHECKED).max(1)) {
+        let indentation = libm::sqrt(pair[0].indentation * pair[1].indentation);
+        let state = press.contact_at(indentation).ok()?;
+        let read = curve.at_pressure_rise(gain * state.pressure_rise);
+        let share = |got: f64, truth: f64, full: f64| 100.0 * (got - truth).abs() / truth.max(from * full);
+        let force = share(read.force, state.force, end.force);
+        let indentation = share(read.indentation, indentation, end.indentation);
+        found.states += 1;
+        found.force_percent = found.force_percent.max(force);
+        found.indentation_percent = found.indentation_percent.max(indentation);
+    }
+    Some(found)
+}
+
+/// What the transducer reads at rest, and the curve of the model as it reads it with the end of the press: its own zero takes
+/// the offset away.
 fn pressed(
     design: &DesignFile,
     transducer: &TransducerSection,
     indentation: f64,
-) -> Result<(f64, Curve), GenerateError> {
+) -> Result<(f64, Curve, Contact), GenerateError> {
     let calibration = &design.calibration;
     let deepest = indentation * 1e-3;
     let mut press = Rung::new(design).map_err(GenerateError::Model)?;
@@ -176,9 +247,13 @@ fn pressed(
         State::Pressed { indentation },
         calibration.pressure_read(press.rest_pressure() + end.pressure_rise),
     )?;
-    let curve = press.curve(deepest).map_err(GenerateError::Curve)?;
+    let curve = match press.curve(deepest * BEYOND) {
+        Ok(curve) => curve,
+        Err(_) => press.curve(deepest).map_err(GenerateError::Curve)?,
+    };
+    let end = curve.at_indentation(deepest);
     if calibration.pressure_gain.to_bits() == 1.0_f64.to_bits() {
-        return Ok((rest_pressure, curve));
+        return Ok((rest_pressure, curve, end));
     }
     let read = |point: &Contact| Contact {
         pressure_rise: calibration.pressure_gain * point.pressure_rise,
@@ -186,7 +261,7 @@ fn pressed(
     };
     let curve = Curve::new(curve.points().iter().map(read).collect())
         .map_err(|error| GenerateError::Curve(CurveFailure::Shape(error)))?;
-    Ok((rest_pressure, curve))
+    Ok((rest_pressure, curve, read(&end)))
 }
 
 /// The curve of the data down to an indentation within them.
@@ -221,6 +296,12 @@ impl Generated {
         u64::from_be_bytes([a, b, c, d, e, f, g, h])
     }
 
+    /// First eight bytes of the SHA-256 of the certificate, big-endian: [`crate::constants::DesignConstants::certificate`].
+    pub fn certificate_hash(&self) -> u64 {
+        let [a, b, c, d, e, f, g, h, ..]: [u8; 32] = Sha256::digest(self.certificate()).into();
+        u64::from_be_bytes([a, b, c, d, e, f, g, h])
+    }
+
     /// The transducer as the firmware knows it.
     pub fn transducer(&self) -> Transducer {
         let section = &self.transducer;
@@ -238,13 +319,12 @@ impl Generated {
     }
 
     /// The tables as bytes; little-endian: `FTIP`, `u32` table version, `u64` design hash, the fields of
-    /// [`crate::table::Layout`] (four bytes each), `u32` numbers of segments, force coefficients and indentation
-    /// coefficients, then the coefficients.
+    /// [`crate::table::Layout`] (four bytes each), `u32` numbers of segments and of words in each, then the words.
     pub fn binary(&self) -> Vec<u8> {
         emit::binary(self)
     }
 
-    /// The tables as CSV: one row a coefficient.
+    /// The tables as CSV: one row a word.
     pub fn csv(&self) -> String {
         emit::csv(self)
     }

@@ -1,14 +1,14 @@
 //! The forms in which tables are written.
 //!
-//! Binary, little-endian: `FTIP`; `u32` table version; `u64` design hash; the seven fields of
-//! [`crate::table::Layout`] in their order, four bytes each; `u32` segments, coefficients of the force,
-//! coefficients of the indentation; then the coefficients, `i32`, force and indentation segment by segment.
+//! Binary, little-endian: `FTIP`; `u32` table version; `u64` design hash; the nine fields of
+//! [`crate::table::Layout`] in their order, four bytes each (powers as how far they go: 2, 4, 6 or 8; constants in a
+//! half word or a whole one: 0 or 1); `u32` segments, words of a segment; then the words, `i32`, segment by segment.
 
-use super::TABLE_VERSION;
 use super::certify::Errors;
 use super::design::{Generated, integer};
 use super::owned::OwnedTables;
-use crate::table::Layout;
+use super::{AVERAGED, GAIN, TABLE_VERSION};
+use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
 
@@ -25,10 +25,9 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     let transducer = generated.transducer();
     let layout = &tables.layout;
     let shape = format!(
-        "model_tables::table::Tables<{}, {}, {}>",
+        "model_tables::table::Tables<{}, {}>",
         tables.segments(),
-        tables.force_order,
-        tables.indentation_order
+        layout.words()
     );
     writeln!(
         out,
@@ -43,6 +42,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
          \x20   name: {:?},\n\
          \x20   hash: {:#018x},\n\
          \x20   table_version: {},\n\
+         \x20   certificate: {:#018x},\n\
          \x20   rest_pressure: {},\n\
          \x20   maximum_pressure: {},\n\
          \x20   transducer: model_tables::constants::Transducer {{\n\
@@ -55,6 +55,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
         generated.design.name,
         generated.hash(),
         TABLE_VERSION,
+        generated.certificate_hash(),
         integer(generated.rest_pressure),
         integer(generated.rest_pressure + generated.end.pressure_rise),
         transducer.range,
@@ -70,15 +71,19 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
         out,
         "/// Pressure rise -> force and indentation.\n\
          pub const TABLES: DesignTables = model_tables::table::Tables {{\n\
-         \x20   layout: model_tables::table::{layout:?},\n\
-         \x20   segments: ["
+         \x20   layout: model_tables::table::Layout {{"
     )?;
+    for (name, value) in fields(layout) {
+        let value = match name {
+            "powers" => format!("model_tables::table::Powers::{:?}", layout.powers),
+            "constant" => format!("model_tables::table::Constant::{:?}", layout.constant),
+            _ => value.to_string(),
+        };
+        writeln!(out, "        {name}: {value},")?;
+    }
+    writeln!(out, "    }},\n    segments: [")?;
     for index in 0..tables.segments() {
-        let (force, indentation) = tables.segment(index);
-        writeln!(
-            out,
-            "        model_tables::table::Segment {{ force: {force:?}, indentation: {indentation:?} }},"
-        )?;
+        writeln!(out, "        {:?},", tables.segment(index))?;
     }
     writeln!(out, "    ],\n}};")
 }
@@ -91,7 +96,7 @@ pub(super) fn binary(generated: &Generated) -> Vec<u8> {
     for field in fields(&tables.layout) {
         bytes.extend((field.1 as i32).to_le_bytes());
     }
-    for size in [tables.segments(), tables.force_order, tables.indentation_order] {
+    for size in [tables.segments(), tables.layout.words()] {
         bytes.extend((size as u32).to_le_bytes());
     }
     for word in &tables.words {
@@ -101,12 +106,20 @@ pub(super) fn binary(generated: &Generated) -> Vec<u8> {
 }
 
 /// Names and values of a layout, in the order of its fields.
-fn fields(layout: &Layout) -> [(&'static str, i64); 7] {
+fn fields(layout: &Layout) -> [(&'static str, i64); 9] {
+    let powers = match layout.powers {
+        Powers::Two => 2,
+        Powers::Four => 4,
+        Powers::Six => 6,
+        Powers::Eight => 8,
+    };
     [
         ("pressure_fraction_bits", layout.pressure_fraction_bits.into()),
         ("maximum", layout.maximum.into()),
         ("bias", layout.bias.into()),
-        ("split_bits", layout.split_bits.into()),
+        ("octaves", layout.octaves.into()),
+        ("powers", powers),
+        ("constant", (layout.constant == Constant::Whole).into()),
         ("first_index", layout.first_index.into()),
         ("force_shift", layout.force_shift.into()),
         ("indentation_shift", layout.indentation_shift.into()),
@@ -115,14 +128,11 @@ fn fields(layout: &Layout) -> [(&'static str, i64); 7] {
 
 pub(super) fn csv(generated: &Generated) -> String {
     let tables = &generated.certified.tables;
-    let mut text = String::from("segment,from_count,output,power,coefficient\n");
-    let from = first_counts(tables);
-    for (index, from) in from.iter().enumerate() {
-        let (force, indentation) = tables.segment(index);
-        for (output, coefficients) in [("force", force), ("indentation", indentation)] {
-            for (power, coefficient) in coefficients.iter().enumerate() {
-                writeln!(text, "{index},{from},{output},{power},{coefficient}").expect(NEVER);
-            }
+    let mut text = String::from("segment,from_count,word,value,upper_half,lower_half\n");
+    for (index, from) in first_counts(tables).iter().enumerate() {
+        for (at, &word) in tables.segment(index).iter().enumerate() {
+            let (upper, lower) = (word >> 16, word as i16);
+            writeln!(text, "{index},{from},{at},{word},{upper},{lower}").expect(NEVER);
         }
     }
     text
@@ -136,7 +146,8 @@ fn first_counts(tables: &OwnedTables) -> Vec<i32> {
             let (mut low, mut high) = (0, layout.maximum);
             while low < high {
                 let middle = low + (high - low) / 2;
-                if layout.place(PressureRise(middle)).index <= index {
+                let number = layout.place(PressureRise(middle)).number;
+                if number - layout.first_index <= index as u32 {
                     high = middle;
                 } else {
                     low = middle + 1;
@@ -169,18 +180,32 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
          table_version = {}\n\
          inputs_checked = {}\n\
          bytes = {}\n\
-         rest_pressure_pa = {:?}\n\
+         # Of a lookup on the chip, inlined, both outputs and the saturation flag.\n\
+         instructions = {}\n\
+         rest_pressure_pa = {:.3}\n\
          maximum_pressure_rise_pa = {:?}\n\
+         saturation_flagged = true\n\
          # Relative error of the comparison: local polynomials of degree five stand for the curve.\n\
          comparison_error = {:.1e}\n",
         generated.design.name,
         TABLE_VERSION,
         certificate.inputs,
         tables.bytes(),
+        tables.instructions(),
         generated.rest_pressure,
         PressureRise(tables.layout.maximum).pascals(tables.layout.pressure_fraction_bits),
         certificate.comparison_error,
     )?;
+    if let Some(model) = &generated.model_error {
+        writeln!(
+            out,
+            "[model] # the curve against states of its own on a mesh twice as fine, between those it was made from\n\
+             states = {}\n\
+             force_percent = {:.1e}\n\
+             indentation_percent = {:.1e}\n",
+            model.states, model.force_percent, model.indentation_percent
+        )?;
+    }
     writeln!(
         out,
         "[layout] # an input count is 2^-pressure_fraction_bits pascal"
@@ -189,10 +214,15 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
         writeln!(out, "{name} = {value}")?;
     }
     writeln!(out, "segments = {}", tables.segments())?;
-    writeln!(out, "force_coefficients = {}", tables.force_order)?;
-    writeln!(out, "indentation_coefficients = {}", tables.indentation_order)?;
-    write_errors("force", "un", &certificate.force, out)?;
-    write_errors("indentation", "nm", &certificate.indentation, out)?;
+    writeln!(out, "words_per_segment = {}", tables.layout.words())?;
+    let asked = generated.design.accuracy.as_ref().map_or([0.0; 2], |accuracy| {
+        [
+            accuracy.force_percent_of_reading,
+            accuracy.indentation_percent_of_reading,
+        ]
+    });
+    write_errors("force", "un", asked[0], &certificate.force, out)?;
+    write_errors("indentation", "nm", asked[1], &certificate.indentation, out)?;
     write_transducer(generated, out)
 }
 
@@ -201,24 +231,38 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
     let tables = &generated.certified.tables;
     let transducer = &generated.transducer;
     let bits = tables.layout.pressure_fraction_bits;
+    let resolvable = generated.certified.resolvable_percent;
     let touch = tables.lookup(PressureRise::from_pascals(transducer.resolution_pa, bits));
     writeln!(
         out,
-        "\n[transducer] # at first contact, where the indentation is steepest, it cannot tell less than this\n\
+        "\n[transducer] # what it leaves undecided: at first contact, and as a share of the reading where it tells most. With\n\
+         # {AVERAGED} readings averaged it tells the last two; tables finer than those would be waste and are not made.\n\
          resolution_pa = {:?}\n\
          noise_pa = {:?}\n\
          resolution_moves_force_un = {}\n\
-         resolution_moves_indentation_nm = {}",
-        transducer.resolution_pa, transducer.noise_pa, touch.force.0, touch.indentation.0
+         resolution_moves_indentation_nm = {}\n\
+         resolution_is_force_percent = {:.6}\n\
+         resolution_is_indentation_percent = {:.6}\n\
+         averaged_force_percent = {:.6}\n\
+         averaged_indentation_percent = {:.6}",
+        transducer.resolution_pa,
+        transducer.noise_pa,
+        touch.force.0,
+        touch.indentation.0,
+        resolvable[0] * GAIN,
+        resolvable[1] * GAIN,
+        resolvable[0],
+        resolvable[1],
     )
 }
 
-fn write_errors(name: &str, unit: &str, errors: &Errors, out: &mut String) -> fmt::Result {
+fn write_errors(name: &str, unit: &str, asked: f64, errors: &Errors, out: &mut String) -> fmt::Result {
     writeln!(
         out,
         "\n[{name}]\n\
          full_scale_{unit} = {:.3}\n\
          reading_from_{unit} = {:.3}\n\
+         asked_percent_of_reading = {asked:?}\n\
          allowed_percent_of_reading = {:?}\n\
          max_percent_of_reading = {:.6}\n\
          rms_percent_of_reading = {:.6}\n\
@@ -227,6 +271,8 @@ fn write_errors(name: &str, unit: &str, errors: &Errors, out: &mut String) -> fm
          max_percent_of_full_scale = {:.6}\n\
          rms_percent_of_full_scale = {:.6}\n\
          mean_percent_of_full_scale = {:.6}\n\
+         monotone = {}\n\
+         strictly_increasing = {}\n\
          falling_steps = {}\n\
          equal_steps = {}\n\
          largest_step_{unit} = {}\n\
@@ -242,6 +288,8 @@ fn write_errors(name: &str, unit: &str, errors: &Errors, out: &mut String) -> fm
         errors.of_full_scale.max,
         errors.of_full_scale.rms,
         errors.of_full_scale.mean,
+        errors.falling_steps == 0,
+        errors.falling_steps + errors.equal_steps == 0,
         errors.falling_steps,
         errors.equal_steps,
         errors.largest_step,

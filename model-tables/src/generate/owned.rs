@@ -3,46 +3,43 @@
 use crate::table::{Layout, Reading};
 use crate::units::PressureRise;
 
-/// Tables of any number of segments and coefficients; reads exactly as [`crate::table::Tables`] does.
+/// Tables of any number of segments; reads exactly as [`crate::table::Tables`] does.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct OwnedTables {
-    /// Where the segments lie.
+    /// Where the segments lie and how their words are read.
     pub layout: Layout,
-    /// Coefficients of the force in each segment.
-    pub force_order: usize,
-    /// Coefficients of the indentation in each segment.
-    pub indentation_order: usize,
-    /// The coefficients, in the order of [`crate::table::Segment`]: force, then indentation, segment by segment.
+    /// The words, [`Layout::words`] a segment, the segment of the largest inputs first.
     pub words: Vec<i32>,
 }
 
 impl OwnedTables {
     /// Number of segments.
     pub fn segments(&self) -> usize {
-        self.words.len() / self.width()
+        self.words.len() / self.layout.words()
     }
 
-    /// Bytes of the coefficients.
+    /// Bytes of the words.
     pub fn bytes(&self) -> usize {
         size_of_val(self.words.as_slice())
+    }
+
+    /// Instructions from a pressure rise to both outputs and the saturation flag, inlined on the chip.
+    pub fn instructions(&self) -> u32 {
+        super::shape::instructions(&self.layout)
     }
 
     /// Force and indentation at a pressure rise, bit for bit as on the chip.
     #[inline]
     pub fn lookup(&self, rise: PressureRise) -> Reading {
         let place = self.layout.place(rise);
-        let index = place.index.min(self.segments() - 1);
-        let (force, indentation) = self.segment(index);
-        self.layout.reading(place, force, indentation)
+        let index = place.number.wrapping_sub(self.layout.first_index) as usize;
+        let words = self.segment(index.min(self.segments() - 1));
+        self.layout.reading(rise, place, words)
     }
 
-    /// The coefficients of one segment: force, indentation.
-    pub fn segment(&self, index: usize) -> (&[i32], &[i32]) {
-        let start = index * self.width();
-        self.words[start..start + self.width()].split_at(self.force_order)
-    }
-
-    fn width(&self) -> usize {
-        self.force_order + self.indentation_order
+    /// The words of one segment.
+    pub fn segment(&self, index: usize) -> &[i32] {
+        let width = self.layout.words();
+        &self.words[index * width..(index + 1) * width]
     }
 }

@@ -73,11 +73,16 @@ fn accuracy(percent: f64) -> Accuracy {
     }
 }
 
+/// Tables over the whole curve.
+fn made(curve: &Curve, percent: f64, resolution: f64) -> Result<Certified, NoTables> {
+    tables(curve, curve.end(), &accuracy(percent), resolution)
+}
+
 /// What the certificate claims, found again from the closed form itself at every `step`-th input.
 #[test]
 fn tables_meet_the_accuracy_against_the_closed_form() {
     for press in PRESSES {
-        let certified = tables(&press.curve(), &accuracy(0.1), 10.0).expect("tables");
+        let certified = made(&press.curve(), 0.1, 10.0).expect("tables");
         let layout = &certified.tables.layout;
         let end = press.at(press.end);
         let mut count = 0;
@@ -102,13 +107,20 @@ fn tables_meet_the_accuracy_against_the_closed_form() {
     }
 }
 
+/// A curve that ends with the press leaves nothing beyond it; one that goes on lets the last input be a round number.
 #[test]
-fn tables_reach_the_end_of_the_press_and_no_further() {
+fn tables_reach_the_end_of_the_press_and_hardly_further() {
     let press = PRESSES[0];
-    let layout = tables(&press.curve(), &accuracy(0.5), 10.0)
+    let curve = press.curve();
+    let before = press.at(press.end / 1.01);
+    let last = tables(&curve, before, &accuracy(0.5), 10.0)
         .expect("tables")
         .tables
         .layout;
+    let reached = PressureRise(last.maximum).pascals(last.pressure_fraction_bits);
+    assert!(reached >= before.pressure_rise && reached <= before.pressure_rise * (1.0 + 1.0 / 128.0));
+    assert!(32 - last.maximum.leading_zeros() - last.maximum.trailing_zeros() <= 8);
+    let layout = made(&press.curve(), 0.5, 10.0).expect("tables").tables.layout;
     let last = PressureRise(layout.maximum).pascals(layout.pressure_fraction_bits);
     let next = PressureRise(layout.maximum + 1).pascals(layout.pressure_fraction_bits);
     assert!(last <= press.end * (1.0 + 1e-12) && next > press.end);
@@ -117,7 +129,7 @@ fn tables_reach_the_end_of_the_press_and_no_further() {
 #[test]
 fn less_accuracy_takes_fewer_bytes() {
     let bytes = |percent| {
-        tables(&PRESSES[1].curve(), &accuracy(percent), 10.0)
+        made(&PRESSES[1].curve(), percent, 10.0)
             .expect("tables")
             .tables
             .bytes()
@@ -128,20 +140,30 @@ fn less_accuracy_takes_fewer_bytes() {
 
 #[test]
 fn two_runs_give_the_same_tables() {
-    let run = || tables(&PRESSES[2].curve(), &accuracy(0.2), 5.0).expect("tables");
+    let run = || made(&PRESSES[2].curve(), 0.2, 5.0).expect("tables");
     assert_eq!(run(), run());
 }
 
 #[test]
 fn the_unit_is_as_fine_as_the_tolerance_asks_and_the_transducer_has_use_for() {
-    let curve = PRESSES[0].curve();
-    let bits = |percent, resolution| *fraction_bits(&curve, &accuracy(percent), resolution).start();
+    let curve = PRESSES[2].curve();
+    let bits = |percent, resolution| fraction_bits(&curve, curve.end(), &accuracy(percent), resolution)[0];
     // 1/128 of the resolution: 1/2 Pa of 64 Pa, 1/16 Pa of 8 Pa.
     assert_eq!((bits(0.01, 64.0), bits(0.01, 8.0)), (1, 4));
-    // Force: 2.3e-4 N/Pa, full scale 44.2 N; indentation: about 6e-7 m/Pa, full scale 2 mm. 10 % of 1 % of full
-    // scale is 2 um or 3 Pa; a quarter of that is over 1/2 Pa.
-    assert!(bits(10.0, 1e-3) <= 1);
+    // Indentation: at most 2.2e-6 * (1 + 0.15 ln(8e5)) = 6.7e-6 m/Pa, full scale 2.2 mm. A quarter of 10 % of 1 % of it is
+    // 0.55 um, or 0.08 Pa: over 1/16 Pa.
+    assert!(bits(10.0, 1e-3) <= 4);
     assert_eq!(bits(0.1, 1e-3), bits(0.2, 1e-3) + 1);
+}
+
+/// 44 N in a word of 31 bits: at 1 Pa the highest octave has 15 bits free, and the sums would be shifted by 7 or 8.
+#[test]
+fn the_unit_leaves_the_sums_room_in_their_word() {
+    let press = PRESSES[0];
+    let [coarsest, _] = fraction_bits(&press.curve(), press.at(press.end), &accuracy(0.1), 1e3);
+    let free = ((press.end as u32) << coarsest).leading_zeros() / 2;
+    assert!(44.2e6 * f64::from(1 << free) < 2_147_483_648.0);
+    assert!(made(&press.curve(), 0.1, 1e3).is_ok());
 }
 
 #[test]
@@ -152,7 +174,7 @@ fn says_how_far_off_an_accuracy_is_that_cannot_be_had() {
         point.force *= 1.5;
     }
     let curve = Curve::new(points).expect("still grows");
-    let error = tables(&curve, &accuracy(0.01), 10.0).expect_err("no table follows a step");
+    let error = made(&curve, 0.01, 10.0).expect_err("no table follows a step");
     assert!(
         matches!(error, NoTables::Inaccurate { share_of_allowed } if share_of_allowed > 1.0),
         "{error}"
@@ -170,7 +192,7 @@ fn refuses_outputs_that_do_not_fit_their_word() {
             ..*point
         })
         .collect();
-    let error = tables(&Curve::new(points).expect("grows"), &accuracy(0.1), 10.0);
+    let error = made(&Curve::new(points).expect("grows"), 0.1, 10.0);
     assert!(matches!(error, Err(NoTables::TooLarge { .. })));
 }
 
@@ -185,8 +207,39 @@ fn a_finer_unit_is_taken_where_the_first_counts_need_it() {
         bend: 40.0,
     };
     let curve = press.curve();
-    let first = *fraction_bits(&curve, &accuracy(0.1), 200.0).start();
-    let certified = tables(&curve, &accuracy(0.1), 200.0).expect("tables");
+    let first = fraction_bits(&curve, curve.end(), &accuracy(0.1), 200.0)[0];
+    let certified = made(&curve, 0.1, 200.0).expect("tables");
     assert!(certified.certificate.holds());
     assert!(certified.tables.layout.pressure_fraction_bits > first);
+}
+
+/// What a transducer of 50 Pa tells of a press of 60 kPa, a thousand readings averaged: the force grows about as the pressure
+/// does, so half a step is about `25 / 32 / 60e3 = 0.0013 %` of it at the end.
+#[test]
+fn what_the_transducer_cannot_tell_is_not_made() {
+    let curve = PRESSES[1].curve();
+    let [force, indentation] = resolvable_percent(&curve, curve.end(), &accuracy(0.1), 50.0);
+    assert!((0.0012..0.0016).contains(&force), "{force}");
+    assert!(indentation < force, "{indentation}");
+    let asked = |percent| held_to(&accuracy(percent), [force, indentation]).force_percent_of_reading;
+    assert_eq!(asked(1e-4).to_bits(), force.to_bits());
+    assert_eq!(asked(0.1).to_bits(), 0.1_f64.to_bits());
+}
+
+/// As accurate for a coarse transducer as for a fine one, in a coarser unit.
+#[test]
+fn what_the_transducer_can_tell_is_made_in_its_unit() {
+    let (coarse, fine) = (
+        made(&PRESSES[1].curve(), 0.1, 50.0),
+        made(&PRESSES[1].curve(), 0.1, 1.0),
+    );
+    let (coarse, fine) = (coarse.expect("tables"), fine.expect("tables"));
+    for certified in [&coarse, &fine] {
+        assert_eq!(
+            certified.certificate.force.allowed_percent.to_bits(),
+            0.1_f64.to_bits()
+        );
+    }
+    let bits = |certified: &Certified| certified.tables.layout.pressure_fraction_bits;
+    assert!(bits(&fine) > bits(&coarse));
 }

@@ -32,23 +32,22 @@ struct Block {
 pub(super) struct Truth {
     exact: Vec<[f64; 2]>,
     blocks: Vec<Block>,
+    /// A count is `2^-fraction_bits` pascal.
+    pub(super) fraction_bits: u32,
     /// Last count.
     pub(super) maximum: i32,
-    /// Largest deviation of a polynomial from the curve, relative to the curve, seen at the points farthest
-    /// from its nodes.
-    pub(super) deviation: f64,
+    /// Force and indentation at the end of the press, which the last count may lie a little beyond.
+    pub(super) full_scale: [f64; 2],
 }
 
 impl Truth {
-    /// Prepares the curve at counts of `2^-fraction_bits` pascal.
-    pub(super) fn new(curve: &Curve, fraction_bits: u32, maximum: i32) -> Self {
-        let unit = libm::ldexp(1.0, -(fraction_bits as i32));
-        let at = |count: f64| outputs(curve.at_pressure_rise(count * unit));
+    /// Prepares the curve at counts of `2^-fraction_bits` pascal; the press ends at `end`.
+    pub(super) fn new(curve: &Curve, end: Contact, fraction_bits: u32, maximum: i32) -> Self {
+        let at = exactly(curve, fraction_bits);
         let exact = (0..EXACT.min(maximum + 1))
             .map(|count| at(f64::from(count)))
             .collect();
         let mut blocks = Vec::new();
-        let mut deviation = 0.0_f64;
         let mut octave = EXACT;
         while octave <= maximum {
             let step = (octave / BLOCKS_PER_OCTAVE).max(1);
@@ -57,19 +56,11 @@ impl Truth {
                 let width = f64::from(step.min(maximum - start).max(1));
                 let place = |z: f64| f64::from(start) + 0.5 * width * (z + 1.0);
                 let values = CHEBYSHEV.map(|z| at(place(z)));
-                let block = Block {
+                blocks.push(Block {
                     start,
                     width,
                     powers: [0, 1].map(|output| powers(values.map(|value| value[output]))),
-                };
-                for z in [-1.0, -0.5, 0.0, 0.5, 1.0] {
-                    let truth = at(place(z));
-                    for (output, &value) in truth.iter().enumerate() {
-                        let got = evaluate(&block.powers[output], z);
-                        deviation = deviation.max((got / value - 1.0).abs());
-                    }
-                }
-                blocks.push(block);
+                });
                 start = start.saturating_add(step);
             }
             octave = octave.saturating_mul(2);
@@ -77,9 +68,26 @@ impl Truth {
         Self {
             exact,
             blocks,
+            fraction_bits,
             maximum,
-            deviation,
+            full_scale: outputs(end),
         }
+    }
+
+    /// Largest deviation of a polynomial from the curve, relative to the curve, at the points farthest from its
+    /// nodes.
+    pub(super) fn deviation(&self, curve: &Curve) -> f64 {
+        let at = exactly(curve, self.fraction_bits);
+        let mut deviation = 0.0_f64;
+        for block in &self.blocks {
+            for z in [-1.0, -0.5, 0.0, 0.5, 1.0] {
+                let truth = at(f64::from(block.start) + 0.5 * block.width * (z + 1.0));
+                for (powers, value) in block.powers.iter().zip(truth) {
+                    deviation = deviation.max((evaluate(powers, z) / value - 1.0).abs());
+                }
+            }
+        }
+        deviation
     }
 
     /// Force in micronewtons and indentation in nanometres at a count.
@@ -111,6 +119,12 @@ impl Block {
         let z = 2.0 * f64::from(count - self.start) / self.width - 1.0;
         [evaluate(&self.powers[0], z), evaluate(&self.powers[1], z)]
     }
+}
+
+/// The curve itself at a count.
+fn exactly(curve: &Curve, fraction_bits: u32) -> impl Fn(f64) -> [f64; 2] {
+    let unit = libm::ldexp(1.0, -(fraction_bits as i32));
+    move |count| outputs(curve.at_pressure_rise(count * unit))
 }
 
 /// Micronewtons and nanometres of a contact.
