@@ -4,8 +4,8 @@ use crate::plant::Plant;
 use crate::scenario::Scenario;
 use crate::transducer::{Part, Transducer, Wiring};
 use model_tables::design_file::{DesignFile, DesignFileError, TransducerKindSection};
-use model_tables::membrane::TensionField;
-use model_tables::press::{CurveFailure, ModelError, Press};
+use model_tables::press::{CurveFailure, ModelError};
+use model_tables::rung::Rung;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -126,9 +126,8 @@ impl FingertipDesign {
         if let Some(fault) = scenario.wire.iter().find(|fault| !fault.is.concerns(part)) {
             return Err(FingertipDesignError::NoSuchFault(self.path.clone(), fault.is));
         }
-        let mut press =
-            Press::new(&self.file.design(), TensionField::Relaxed).map_err(FingertipDesignError::Rest)?;
-        let rest_pressure = press.rest().pressure;
+        let mut press = Rung::new(&self.file).map_err(FingertipDesignError::Rest)?;
+        let rest_pressure = press.rest_pressure();
         let curve = press
             .curve(self.max_indentation)
             .map_err(FingertipDesignError::Press)?;

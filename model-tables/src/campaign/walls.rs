@@ -172,7 +172,7 @@ impl Measured {
     /// What the rule takes for an accuracy.
     pub fn take(&self, error: f64) -> Taken {
         let wanted = self.case.wanted(error);
-        let mut below: Vec<(usize, &[Contact])> = Vec::new();
+        let mut below: Vec<(usize, Kind, &[Contact])> = Vec::new();
         let mut taken = LADDER.len() - 1;
         for (place, evidence) in self.rungs.iter().enumerate() {
             let Some(Evidence {
@@ -182,16 +182,14 @@ impl Measured {
             else {
                 continue;
             };
-            let judged = wanted.judge(
-                below.iter().map(|&(_, contacts)| contacts),
-                contacts,
-                LADDER[place].1,
-            );
+            let (kind, own_error) = LADDER[place];
+            let rungs = below.iter().map(|&(_, kind, contacts)| (kind, contacts));
+            let judged = wanted.judge(rungs, (kind, contacts), own_error);
             if let Some(near) = judged {
                 taken = below[near].0;
                 break;
             }
-            below.push((place, contacts));
+            below.push((place, kind, contacts));
         }
         Taken {
             rung: taken,

@@ -461,7 +461,7 @@ fn a_solid_rests_unstretched_or_at_a_pressure() {
         file.model,
         ModelSection::Solid {
             through: 2,
-            along: 24
+            along: 60
         }
     );
     let finer = solid("[rest]\npressure_kpa = 20\n", "through = 1\nalong = 60\n").expect("an inflated solid");

@@ -1,10 +1,10 @@
 //! Which model a design needs.
 //!
 //! `kind = "auto"` climbs a ladder, cheapest rung first: the membrane in the middle of the wall, then solids of more and more
-//! elements. **The rule:** each rung that is solved judges those below it, the cheapest first. One is taken when its force and
-//! its pressure rise differ from the judge's by no more than what [`Accuracy`](crate::design_file::Accuracy) allows of the
-//! force less the judge's own error ([`LADDER`]), at eight indentations up to the deepest one. If none is, the last rung
-//! answers. `designer ladder` holds the rule to a refined solid over random designs.
+//! elements. **The rule:** each rung that is solved judges those below it that have fewer elements along, the cheapest first.
+//! One is taken when its force and its pressure rise differ from the judge's by no more than what
+//! [`Accuracy`](crate::design_file::Accuracy) allows of the force less the judge's own error ([`LADDER`]), at eight
+//! indentations up to the deepest one. If none is, the last rung answers. `designer ladder` holds the rule to a refined solid over random designs.
 
 use super::{Kind, Rung};
 use crate::curve::Contact;
@@ -18,8 +18,8 @@ use crate::solid::mesh::Elements;
 /// against a refined solid.
 pub const LADDER: [(Kind, f64); 5] = [
     (Kind::Membrane, f64::INFINITY),
-    (Kind::Solid(solid::press::COARSE), 0.02),
-    (Kind::Solid(solid::press::FULL), 0.01),
+    (Kind::Solid(solid::press::COARSE), 0.015),
+    (Kind::Solid(solid::press::FULL), 0.015),
     (Kind::Solid(FINE), 0.002),
     (Kind::Solid(REFINED), 0.0),
 ];
@@ -88,14 +88,17 @@ impl Wanted {
             .fold(0.0, f64::max)
     }
 
-    /// The first of some rungs that is near enough to a judge with an error of its own.
+    /// The first of some rungs that is near enough to a judge with an error of its own. Solids with as many elements along as
+    /// the judge share its error, and are not judged.
     pub fn judge<'a>(
         &self,
-        mut rungs: impl Iterator<Item = &'a [Contact]>,
-        judge: &[Contact],
+        mut rungs: impl Iterator<Item = (Kind, &'a [Contact])>,
+        (judge, truth): (Kind, &[Contact]),
         own_error: f64,
     ) -> Option<usize> {
-        rungs.position(|contacts| self.distance(contacts, judge) + own_error <= self.error)
+        rungs.position(|(kind, contacts)| {
+            kind.along() < judge.along() && self.distance(contacts, truth) + own_error <= self.error
+        })
     }
 
     /// A model's contacts at [`PARTS`] of the deepest indentation.
@@ -144,10 +147,10 @@ pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
                 continue;
             }
         };
-        let near = solved
+        let below = solved
             .iter()
-            .position(|(_, _, below)| wanted.distance(below, &contacts) + own_error <= wanted.error);
-        if let Some(near) = near {
+            .map(|(kind, _, contacts)| (*kind, contacts.as_slice()));
+        if let Some(near) = wanted.judge(below, (kind, &contacts), own_error) {
             let (chosen, rung, below) = solved.swap_remove(near);
             let distance = wanted.distance(&below, &contacts);
             return Ok(Choice {

@@ -32,7 +32,7 @@ const SMALLEST_STEP: f64 = 1e-5;
 const LIMIT_TOLERANCE: f64 = 1e-7;
 
 /// States of a curve.
-const CURVE_STATES: usize = 64;
+const CURVE_STATES: usize = 96;
 /// Deepest over shallowest indentation of a curve.
 const CURVE_RANGE: f64 = 500.0;
 
