@@ -131,12 +131,19 @@ impl FingertipDesign {
         let curve = press
             .curve(self.max_indentation)
             .map_err(FingertipDesignError::Press)?;
+        let allowed = self.file.accuracy.map_or([0.0; 2], |accuracy| {
+            [
+                accuracy.force_percent_of_reading / 100.0,
+                accuracy.indentation_percent_of_reading / 100.0,
+            ]
+        });
         Ok(Plant::new(
             curve,
             rest_pressure,
             self.max_indentation,
             self.transducer,
             scenario,
-        ))
+        )
+        .with_tables_allowed(allowed))
     }
 }

@@ -16,6 +16,8 @@ pub struct Plant {
     transducer: Transducer,
     scenario: Scenario,
     noise: Noise,
+    /// Shares of reading of force and indentation that the tables may be off.
+    tables_allowed: [f64; 2],
 }
 
 impl Plant {
@@ -35,7 +37,22 @@ impl Plant {
             transducer,
             scenario,
             noise,
+            tables_allowed: [0.0; 2],
         }
+    }
+
+    /// The same where the tables may be off by these shares of reading of force and indentation.
+    #[must_use]
+    pub fn with_tables_allowed(self, tables_allowed: [f64; 2]) -> Self {
+        Self {
+            tables_allowed,
+            ..self
+        }
+    }
+
+    /// Shares of reading of force and indentation that the tables may be off.
+    pub fn tables_allowed(&self) -> [f64; 2] {
+        self.tables_allowed
     }
 
     /// The contact at a time in seconds.

@@ -211,7 +211,7 @@ mod tests {
             clock_zero: 0.01,
         };
         for frame in frames {
-            for &byte in &encode(frame) {
+            for &byte in encode(frame).iter() {
                 assert!(recorder.hear(byte, moment, &plant).is_continue());
             }
         }
