@@ -22,7 +22,7 @@ pub use design::{GenerateError, Generated, State, from_design, from_design_file}
 pub use owned::OwnedTables;
 
 /// Version of the tables' layout and of the generator; counts up when either changes the integers.
-pub const TABLE_VERSION: u32 = 2;
+pub const TABLE_VERSION: u32 = 3;
 
 /// Readings that an average is made of at most, and what that gains: their noise falls, and their steps with it.
 const AVERAGED: u32 = 1024;

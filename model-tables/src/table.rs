@@ -60,6 +60,9 @@ pub struct Layout {
     pub bias: i32,
     /// Octaves of a segment: 1 or 2.
     pub octaves: u32,
+    /// How often an octave is cut in halves: a segment is `2^-halvings` of one, and as if it were one. For curves that bend
+    /// most at their end, as those of bench data do whose pressure saturates; only with one octave.
+    pub halvings: u32,
     /// The powers of its sums.
     pub powers: Powers,
     /// Where its constant terms are.
@@ -129,9 +132,18 @@ impl Layout {
         let zeros = y.leading_zeros();
         let number = if self.octaves == 2 { zeros >> 1 } else { zeros };
         let mantissa = y.wrapping_shl(if self.octaves == 2 { number << 1 } else { number });
+        if self.halvings == 0 {
+            return Place {
+                number,
+                mantissa,
+                saturated,
+            };
+        }
+        // The bits after the first name the part of the octave, downwards as octaves are numbered.
+        let part = !(mantissa << 1) >> (32 - self.halvings);
         Place {
-            number,
-            mantissa,
+            number: (number << self.halvings) + part,
+            mantissa: mantissa << self.halvings | 0x8000_0000,
             saturated,
         }
     }
@@ -140,7 +152,11 @@ impl Layout {
     #[inline(always)]
     #[allow(clippy::inline_always)] // part of the lookup
     pub(crate) const fn octave_shift(&self, number: u32) -> u32 {
-        if self.octaves == 2 { number } else { number >> 1 }
+        if self.octaves == 2 {
+            number
+        } else {
+            number >> self.halvings >> 1
+        }
     }
 
     /// What the coefficients are multiplied with, fractions of `2^32`: `1/2 - s`, `s^2 / 2`, and as [`Powers`] has
@@ -281,6 +297,7 @@ mod tests {
             maximum: 11,
             bias: 4,
             octaves: 1,
+            halvings: 0,
             powers: Powers::Two,
             constant: Constant::Whole,
             first_index: 28,
@@ -340,6 +357,23 @@ mod tests {
             assert_eq!(place.number, 14);
             assert_eq!(place.mantissa, ((rise + 4) as u32) << 28);
         }
+    }
+
+    #[test]
+    fn octaves_are_cut_into_halves_and_quarters() {
+        let layout = Layout {
+            halvings: 2,
+            ..HAND_MADE.layout
+        };
+        // y = 8 .. 15 in quarters of two, counted downwards, after the four of the octave above; each as if it were an octave.
+        for rise in 4..=11 {
+            let place = layout.place(PressureRise(rise));
+            let y = rise as u32 + 4;
+            assert_eq!(place.number, 28 * 4 + (15 - y) / 2);
+            assert_eq!(place.mantissa, 0x8000_0000 | (y % 2) << 30);
+            assert_eq!(layout.octave_shift(place.number), 14);
+        }
+        assert_eq!(layout.place(PressureRise(0)).number, 29 * 4 + 3);
     }
 
     #[test]

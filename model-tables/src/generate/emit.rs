@@ -1,6 +1,6 @@
 //! The forms in which tables are written.
 //!
-//! Binary, little-endian: `FTIP`; `u32` table version; `u64` design hash; the nine fields of
+//! Binary, little-endian: `FTIP`; `u32` table version; `u64` design hash; the ten fields of
 //! [`crate::table::Layout`] in their order, four bytes each (powers as how far they go: 2, 4, 6 or 8; constants in a
 //! half word or a whole one: 0 or 1); `u32` segments, words of a segment; then the words, `i32`, segment by segment.
 
@@ -106,7 +106,7 @@ pub(super) fn binary(generated: &Generated) -> Vec<u8> {
 }
 
 /// Names and values of a layout, in the order of its fields.
-fn fields(layout: &Layout) -> [(&'static str, i64); 9] {
+fn fields(layout: &Layout) -> [(&'static str, i64); 10] {
     let powers = match layout.powers {
         Powers::Two => 2,
         Powers::Four => 4,
@@ -118,6 +118,7 @@ fn fields(layout: &Layout) -> [(&'static str, i64); 9] {
         ("maximum", layout.maximum.into()),
         ("bias", layout.bias.into()),
         ("octaves", layout.octaves.into()),
+        ("halvings", layout.halvings.into()),
         ("powers", powers),
         ("constant", (layout.constant == Constant::Whole).into()),
         ("first_index", layout.first_index.into()),

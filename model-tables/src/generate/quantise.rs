@@ -56,17 +56,17 @@ impl Search<'_> {
             self.finish(real, given);
             return;
         }
-        let below = libm::floor(real);
+        // Over a short segment a high power is worth little, and what is best for it may be any number.
+        let below = libm::floor(real.clamp(f64::from(i16::MIN), f64::from(i16::MAX)));
         let mut nearest: Vec<f64> = (1 - self.reach..=self.reach)
             .map(|step| below + f64::from(step))
+            .filter(|&integer| integer >= f64::from(i16::MIN) && integer <= f64::from(i16::MAX))
             .collect();
         nearest.sort_by(|a, b| (a - real).abs().total_cmp(&(b - real).abs()));
         for integer in nearest {
-            if integer >= f64::from(i16::MIN) && integer <= f64::from(i16::MAX) {
-                let mut given = given;
-                given[last] = integer;
-                self.descend(last, given);
-            }
+            let mut given = given;
+            given[last] = integer;
+            self.descend(last, given);
         }
     }
 

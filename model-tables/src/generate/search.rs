@@ -49,20 +49,27 @@ pub(super) fn smallest<T>(
     accuracy: &Accuracy,
     mut accept: impl FnMut(&OwnedTables, &Truth) -> Option<T>,
 ) -> Result<Found<T>, f64> {
-    let mut sizes: Vec<(usize, usize, Shape)> = Shape::ALL
-        .into_iter()
-        .flat_map(|shape| {
-            (1..=MOST_SEGMENTS).map(move |segments| (segments * shape.bytes(), segments, shape))
-        })
-        .collect();
-    // Stable: shapes stay in the order of their cost.
-    sizes.sort_by_key(|&(bytes, ..)| bytes);
+    let sizes = |shapes: &[Shape]| {
+        let of = |&shape: &Shape| {
+            let most = MOST_SEGMENTS << shape.halvings;
+            (1..=most).map(move |segments| (segments * shape.bytes(), segments, shape))
+        };
+        let mut sizes: Vec<(usize, usize, Shape)> = shapes.iter().flat_map(of).collect();
+        // Stable: shapes stay in the order of their cost.
+        sizes.sort_by_key(|&(bytes, ..)| bytes);
+        sizes
+    };
+    let (usual, cut) = (sizes(&Shape::ALL), sizes(&Shape::CUT));
     let (mut tried, mut closest) = (0, f64::INFINITY);
-    for (most_bytes, most_instructions) in [(SMALL, QUICK), (usize::MAX, u32::MAX)] {
+    for (sizes, most_bytes, most_instructions) in [
+        (&usual, SMALL, QUICK),
+        (&usual, usize::MAX, u32::MAX),
+        (&cut, usize::MAX, u32::MAX),
+    ] {
         for &(bytes, segments, shape) in sizes.iter().take_while(|(bytes, ..)| *bytes <= most_bytes) {
             let mut hopeful = Vec::new();
             for truth in truths {
-                for bias in biases(shape.octaves, truth.maximum, segments as u32) {
+                for bias in biases(shape, truth.maximum, segments as u32) {
                     let layout = shape.layout(truth.fraction_bits, truth.maximum, bias);
                     if instructions(&layout) > most_instructions {
                         break;

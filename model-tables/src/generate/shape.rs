@@ -14,6 +14,7 @@ const IMMEDIATE_BITS: u32 = 8;
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(super) struct Shape {
     pub(super) octaves: u32,
+    pub(super) halvings: u32,
     pub(super) powers: Powers,
     pub(super) constant: Constant,
 }
@@ -33,12 +34,24 @@ impl Shape {
         Self::new(1, Powers::Eight, Constant::Whole),
     ];
 
+    /// For curves that no other serves: octaves cut into halves, quarters and eighths.
+    pub(super) const CUT: [Self; 3] = [
+        Self::new(1, Powers::Four, Constant::Whole).cut(1),
+        Self::new(1, Powers::Four, Constant::Whole).cut(2),
+        Self::new(1, Powers::Four, Constant::Whole).cut(3),
+    ];
+
     const fn new(octaves: u32, powers: Powers, constant: Constant) -> Self {
         Self {
             octaves,
+            halvings: 0,
             powers,
             constant,
         }
+    }
+
+    const fn cut(self, halvings: u32) -> Self {
+        Self { halvings, ..self }
     }
 
     /// The layout of this shape for a unit, a last input and a bias, the rest still zero.
@@ -48,6 +61,7 @@ impl Shape {
             maximum,
             bias,
             octaves: self.octaves,
+            halvings: self.halvings,
             powers: self.powers,
             constant: self.constant,
             first_index: 0,
@@ -75,7 +89,7 @@ pub(super) fn instructions(layout: &Layout) -> u32 {
     };
     // Bias, flag, zeros, mantissa, its factors 1 and 2; the sums' constants and the shifts of both.
     let common = 1 + 2 + 1 + 1 + 3 + 2;
-    let octaves = if layout.octaves == 2 { 2 } else { 1 };
+    let octaves = if layout.octaves == 2 { 2 } else { 1 } + if layout.halvings > 0 { 5 } else { 0 };
     let powers = match layout.powers {
         Powers::Two => 0,
         Powers::Four => 1,
@@ -120,7 +134,7 @@ impl Segmentation {
             let end = if number == last {
                 i64::from(layout.maximum) + 1
             } else {
-                (1_i64 << (32 - number * layout.octaves)) - i64::from(layout.bias)
+                upper(&layout, number)? - i64::from(layout.bias)
             };
             if end - i64::from(start) < i64::from(LEAST_COUNTS) {
                 return None;
@@ -134,8 +148,22 @@ impl Segmentation {
     }
 }
 
-/// The biases with which a shape has `segments` segments up to `maximum`, increasing.
-pub(super) fn biases(octaves: u32, maximum: i32, segments: u32) -> impl Iterator<Item = i32> {
+/// Upper end of a segment, exclusive, bias included; `None` where it has less than a count.
+fn upper(layout: &Layout, number: u32) -> Option<i64> {
+    let end = 1_i64 << (32 - (number >> layout.halvings) * layout.octaves);
+    let parts = 2_i64 << layout.halvings;
+    // Parts of the octave above this segment's, of the `parts` below its end.
+    let above = i64::from(number & ((1 << layout.halvings) - 1));
+    (end >= parts).then(|| end - above * (end / parts))
+}
+
+/// The biases with which a shape may have `segments` segments up to `maximum`, increasing.
+pub(super) fn biases(shape: Shape, maximum: i32, segments: u32) -> impl Iterator<Item = i32> {
+    let Shape {
+        octaves, halvings, ..
+    } = shape;
+    // Octaves are counted here; the topmost may lack some of its parts.
+    let segments = segments.div_ceil(1 << halvings);
     // The lowest segment of so many, if the bias does not lift the highest input into another: it hardly does.
     let last = (maximum as u32).leading_zeros() / octaves;
     let number = last + segments - 1;
@@ -167,10 +195,10 @@ mod tests {
 
     #[test]
     fn spans_agree_with_the_lookup_on_every_count() {
-        for octaves in [1, 2] {
-            let shape = Shape::new(octaves, Powers::Four, Constant::Half);
-            for segments in 1..8 {
-                for bias in biases(octaves, 3000, segments) {
+        let shape = |octaves, halvings| Shape::new(octaves, Powers::Four, Constant::Half).cut(halvings);
+        for shape in [shape(1, 0), shape(2, 0), shape(1, 1), shape(1, 2)] {
+            for segments in 1..12 {
+                for bias in biases(shape, 3000, segments) {
                     let Some(segmentation) = Segmentation::of(shape.layout(2, 3000, bias)) else {
                         continue;
                     };
@@ -180,10 +208,15 @@ mod tests {
                         for count in span.start..span.end {
                             let place = segmentation.layout.place(PressureRise(count));
                             assert_eq!(place.number, span.number);
-                            // y = m 2^e with the octave's upper end 2^e.
-                            let upper = 2_f64.powi(32 - (span.number * octaves) as i32);
-                            let mantissa = f64::from(place.mantissa) / 4_294_967_296.0;
-                            assert!((mantissa * upper - f64::from(count + bias)).abs() < 1e-9);
+                            // As far below the segment's upper end as its mantissa is below one; a part of an octave
+                            // counts as the upper half of one.
+                            let upper =
+                                2_f64.powi(32 - ((span.number >> shape.halvings) * shape.octaves) as i32);
+                            let part = f64::from(span.number & ((1 << shape.halvings) - 1));
+                            let parts = f64::from(1_u32 << shape.halvings);
+                            let below = 1.0 - f64::from(place.mantissa) / 4_294_967_296.0;
+                            let y = upper * (1.0 - (below + 0.5 * part) / parts);
+                            assert!((y - f64::from(count + bias)).abs() < 1e-9, "{y} {count} {bias}");
                         }
                     }
                 }
@@ -195,7 +228,7 @@ mod tests {
     fn biases_give_as_many_segments_as_asked() {
         for segments in 2..6 {
             let shape = Shape::new(2, Powers::Four, Constant::Half);
-            let all: Vec<i32> = biases(2, 600_000, segments).collect();
+            let all: Vec<i32> = biases(shape, 600_000, segments).collect();
             assert_eq!(all.len(), 16);
             assert!(all.is_sorted());
             for bias in all {
