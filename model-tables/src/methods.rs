@@ -88,6 +88,13 @@ pub enum Failure {
         /// What is left of its equation, relative.
         residual: f64,
     },
+    /// The law is not stable at the stretches found: the state is one of several at best.
+    LawUnstable,
+    /// The state is too far off: its own estimate says so.
+    Inaccurate {
+        /// Estimate of the force's error, relative.
+        estimate: f64,
+    },
     /// Newton's method got no further.
     Stalled {
         /// What is left of the equations, relative.
@@ -143,6 +150,14 @@ impl fmt::Display for Failure {
                 write!(
                     f,
                     "bisection of the {unknown} closed in on a jump, {residual:.1e} left"
+                )
+            }
+            Self::LawUnstable => write!(f, "the law is not stable at the stretches found"),
+            Self::Inaccurate { estimate } => {
+                write!(
+                    f,
+                    "the force is off by {:.1} %: more steps are needed",
+                    estimate * 100.0
                 )
             }
             Self::Stalled { residual, condition } => write!(

@@ -7,9 +7,11 @@
 //!
 //! Its weaknesses: thousands of integrations a state, each bisection at the mercy of the tolerance of those inside
 //! it; and fixed steps that are too long next to a small contact, where everything varies with the distance to the
-//! pole.
+//! pole. So a state is shown to twice the steps before it is believed: one Newton step from it says how far it is
+//! off, and one that is further off than half a per cent is refused.
 
-use super::plain::Problem;
+use super::plain::{Met, Problem};
+use super::shooting::invert;
 use super::{Failure, Found, Unknown};
 use crate::design::Design;
 use crate::material::Hyperelastic;
@@ -27,6 +29,10 @@ const SPREAD_GROWTH: f64 = 2.5;
 const MOST_BRACKETS: usize = 12;
 /// What is left of an equation, over the tolerance, at which a root was a jump.
 const JUMP: f64 = 300.0;
+/// Force error, relative, beyond which a state is refused.
+const MOST_ERROR: f64 = 0.005;
+/// Relative differences that its estimate takes.
+const DIFFERENCE: f64 = 1e-4;
 /// Indentations below so many tolerances of the height are lost in the errors of the bisections.
 const LEAST_INDENTATION: f64 = 30.0;
 
@@ -51,24 +57,27 @@ pub struct Bisection {
     problem: Problem,
     fineness: Fineness,
     rest: Rest,
+    /// The rest state with twice the steps.
+    finer_rest: Rest,
     /// Pole stretch, pressure, contact parameter of the state before.
     latest: Option<[f64; 3]>,
     integrations: u64,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Rest {
     pressure: f64,
     edge: f64,
     height: f64,
     volume: f64,
+    compressed: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Reached {
     end: State,
     contact_radius: f64,
-    compressed: bool,
+    met: Met,
 }
 
 /// The side of the root on which a function may be undefined: the integration blows up there.
@@ -140,6 +149,22 @@ fn bisect(
     Ok(0.5 * (low + high))
 }
 
+impl Rest {
+    fn of(pressure: f64, reached: &Reached) -> Result<Self, Failure> {
+        if reached.met.unstable {
+            return Err(Failure::LawUnstable);
+        }
+        let [edge, _, _, height, volume] = reached.end;
+        Ok(Self {
+            pressure,
+            edge,
+            height,
+            volume,
+            compressed: reached.met.least < 0.0,
+        })
+    }
+}
+
 impl Bisection {
     /// Inflates a design to its rest state.
     ///
@@ -151,12 +176,8 @@ impl Bisection {
         let mut found = Self {
             problem,
             fineness,
-            rest: Rest {
-                pressure: 0.0,
-                edge: 0.0,
-                height: 0.0,
-                volume: 0.0,
-            },
+            rest: Rest::default(),
+            finer_rest: Rest::default(),
             latest: None,
             integrations: 0,
         };
@@ -171,13 +192,12 @@ impl Bisection {
             [0.01 * guess, 10.0 * guess],
             |pressure| Ok(found.integrate([stretch, pressure, 0.0])?.end[2] - FRAC_PI_2),
         )?;
-        let end = found.integrate([stretch, pressure, 0.0])?.end;
-        found.rest = Rest {
-            pressure,
-            edge: end[0],
-            height: end[3],
-            volume: end[4],
-        };
+        found.rest = Rest::of(pressure, &found.integrate([stretch, pressure, 0.0])?)?;
+        let mut finer = |pressure: f64| found.integrate_in(2 * fineness.steps, [stretch, pressure, 0.0]);
+        let aside = pressure * (1.0 + DIFFERENCE);
+        let (here, there) = (finer(pressure)?.end[2], finer(aside)?.end[2]);
+        let pressure = pressure + (FRAC_PI_2 - here) / (there - here) * (aside - pressure);
+        found.finer_rest = Rest::of(pressure, &finer(pressure)?)?;
         Ok(found)
     }
 
@@ -230,6 +250,13 @@ impl Bisection {
         if ratio > 1.0 + tolerance {
             return Err(Failure::BeyondLimit { ratio });
         }
+        if reached.met.unstable {
+            return Err(Failure::LawUnstable);
+        }
+        let estimate = self.error([pole_stretch, pressure, contact], target)?;
+        if estimate.is_nan() || estimate > MOST_ERROR {
+            return Err(Failure::Inaccurate { estimate });
+        }
         let contact_radius = reached.contact_radius * scale.length;
         Ok(Found {
             indentation,
@@ -239,8 +266,40 @@ impl Bisection {
             contact_radius,
             contact_parameter: contact,
             pole_stretch,
-            compressed: reached.compressed,
+            compressed: self.rest.compressed || reached.met.least < 0.0,
         })
+    }
+
+    /// How far the force of a state is off, relative: by what a Newton step with twice the steps changes it.
+    fn error(&mut self, state: [f64; 3], target: f64) -> Result<f64, Failure> {
+        let steps = 2 * self.fineness.steps;
+        let (rest, compliance) = (self.finer_rest, self.problem.compliance);
+        let fluid = rest.volume + compliance * rest.pressure;
+        let mut at = |state: [f64; 3]| {
+            let Reached {
+                end, contact_radius, ..
+            } = self.integrate_in(steps, state)?;
+            let left = [
+                end[0] / rest.edge - 1.0,
+                (end[4] + compliance * state[1]) / fluid - 1.0,
+                (rest.height - target - end[3]) / target,
+            ];
+            Ok::<_, Failure>((left, state[1] * contact_radius * contact_radius))
+        };
+        let (left, force) = at(state)?;
+        let mut matrix = [[0.0; 3]; 3];
+        for column in 0..3 {
+            let mut aside = state;
+            aside[column] *= 1.0 + DIFFERENCE;
+            let (moved, _) = at(aside)?;
+            for row in 0..3 {
+                matrix[row][column] = (moved[row] - left[row]) / (aside[column] - state[column]);
+            }
+        }
+        let (inverse, _) = invert(&matrix).ok_or(Failure::Singular)?;
+        let step = inverse.map(|row| row[0] * left[0] + row[1] * left[1] + row[2] * left[2]);
+        let (_, better) = at(core::array::from_fn(|i| state[i] - step[i]))?;
+        Ok((better / force - 1.0).abs())
     }
 
     fn first_contact(&self, target: f64) -> [f64; 3] {
@@ -292,17 +351,24 @@ impl Bisection {
     }
 
     /// From the pole to the equator; a contact edge at 0 means no plate.
-    fn integrate(&mut self, [stretch, pressure, contact]: [f64; 3]) -> Result<Reached, Failure> {
+    fn integrate(&mut self, state: [f64; 3]) -> Result<Reached, Failure> {
+        self.integrate_in(self.fineness.steps, state)
+    }
+
+    fn integrate_in(
+        &mut self,
+        steps: usize,
+        [stretch, pressure, contact]: [f64; 3],
+    ) -> Result<Reached, Failure> {
         self.integrations += 1;
         let problem = &self.problem;
-        let steps = self.fineness.steps;
-        let mut least = f64::INFINITY;
+        let mut met = Met::NOTHING;
         let (start, mut y) = if contact > 0.0 {
             // The pole's series where the first step would begin.
             let contact_steps = (steps / CONTACT_SHARE).max(2);
             let first = contact / contact_steps as f64;
             let y: State = [stretch * libm::sin(first), stretch, 0.0, 0.0, 0.0];
-            let flat = |t: f64, y: &State| rates(problem, t, y, None, &mut least);
+            let flat = |t: f64, y: &State| rates(problem, t, y, None, &mut met);
             (
                 contact,
                 runge_kutta(flat, [first, contact], contact_steps - 1, y)?,
@@ -315,12 +381,12 @@ impl Bisection {
             (first, [stretch * libm::sin(first), stretch, angle, cap, 0.0])
         };
         let contact_radius = if contact > 0.0 { y[0] } else { 0.0 };
-        let free = |t: f64, y: &State| rates(problem, t, y, Some(pressure), &mut least);
+        let free = |t: f64, y: &State| rates(problem, t, y, Some(pressure), &mut met);
         y = runge_kutta(free, [start, FRAC_PI_2], steps, y)?;
         Ok(Reached {
             end: y,
             contact_radius,
-            compressed: least < 0.0,
+            met,
         })
     }
 }
@@ -331,7 +397,7 @@ fn rates(
     t: f64,
     &[rho, l1, angle, _, _]: &State,
     pressure: Option<f64>,
-    least: &mut f64,
+    met: &mut Met,
 ) -> Option<State> {
     if !(rho > 0.0 && l1 > 0.0 && l1 < 100.0 && rho < 100.0 && angle.abs() < 10.0) {
         return None;
@@ -341,7 +407,7 @@ fn rates(
     let d = problem.law.derivatives(l1, l2);
     // Tensions per deformed length; T1' = -(rho'/rho)(T1 - T2).
     let (t1, t2) = (d.w1 / l2, d.w2 / l1);
-    *least = least.min(t1).min(t2);
+    met.note(problem, [l1, l2], [t1, t2]);
     let (sin, cos) = libm::sincos(angle);
     let forward = l1 * g * cos;
     let l2_rate = (forward - l2 * x_rate) / x;

@@ -50,7 +50,7 @@ impl LightContact {
     pub fn new(design: &Design) -> Result<Self, Failure> {
         let problem = Problem::new(design)?;
         let rest = Rest::new(&problem, TOLERANCE)?;
-        if rest.compressed {
+        if rest.met.least < 0.0 {
             return Err(Failure::RestWrinkled);
         }
         let stretch = problem.pole_stretch;

@@ -15,6 +15,7 @@
 use super::Failure;
 use crate::design::{Design, RestBy};
 use crate::material::{Derivatives, Hyperelastic, Law, Scaled};
+use crate::stability;
 use crate::state::Scale;
 use core::f64::consts::PI;
 
@@ -49,6 +50,8 @@ pub struct Problem {
     pub pole_stretch: f64,
     /// Compliance of tubing, actuator and bubbles.
     pub compliance: f64,
+    /// The law may lose its stability, so that it has to be watched: some constant of it is negative.
+    pub watched: bool,
 }
 
 /// What loads the free zone, and its variation by the three parameters.
@@ -69,8 +72,33 @@ pub struct Load {
 pub struct Memory {
     /// The last meridional stretch: the next one is near.
     pub stretch: f64,
-    /// Least of `W_1` and `W_2` met.
+    /// What was met on the way.
+    pub met: Met,
+}
+
+/// What an integration met on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// Least of `W_1` and `W_2`: below zero some tension is negative.
     pub least: f64,
+    /// The law was not stable somewhere.
+    pub unstable: bool,
+}
+
+impl Met {
+    /// Nothing yet.
+    pub const NOTHING: Self = Self {
+        least: f64::INFINITY,
+        unstable: false,
+    };
+
+    /// Takes note of a point with its stretches.
+    pub fn note(&mut self, problem: &Problem, [l1, l2]: [f64; 2], [w1, w2]: [f64; 2]) {
+        self.least = self.least.min(w1).min(w2);
+        if problem.watched && !self.unstable {
+            self.unstable = !stability::margin(&problem.law, l1, l2).is_stable();
+        }
+    }
 }
 
 impl Memory {
@@ -78,7 +106,7 @@ impl Memory {
     pub fn new(stretch: f64) -> Self {
         Self {
             stretch,
-            least: f64::INFINITY,
+            met: Met::NOTHING,
         }
     }
 }
@@ -106,6 +134,11 @@ impl Problem {
             scale,
             pole_stretch,
             compliance: design.compliance * scale.pressure / scale.volume(),
+            watched: match design.law {
+                Law::NeoHookean { c1 } => c1 < 0.0,
+                Law::MooneyRivlin { c1, c2 } => c1.min(c2) < 0.0,
+                Law::Yeoh { c1, c2, c3 } => c1.min(c2).min(c3) < 0.0,
+            },
         })
     }
 
@@ -128,7 +161,7 @@ impl Problem {
             l1 = (l1 + step).clamp(0.5 * l1, 2.0 * l1);
             if step.abs() < 1e-9 * l1 {
                 memory.stretch = l1;
-                memory.least = memory.least.min(n).min(d.w2);
+                memory.met.note(self, [l1, u], [n, d.w2]);
                 return Some(self.law.derivatives(l1, u));
             }
         }

@@ -6,7 +6,7 @@
 //! exceeds a million, and Newton's method fails from guesses a few parts in ten thousand off.
 
 use super::dop853::{Tolerance, integrate};
-use super::plain::{Free, HEIGHT, Load, Memory, Problem, RADIUS, STATE, THRUST, VARIED, VOLUME};
+use super::plain::{Free, HEIGHT, Load, Memory, Met, Problem, RADIUS, STATE, THRUST, VARIED, VOLUME};
 use super::{Failure, Found};
 use crate::design::Design;
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -48,8 +48,8 @@ pub struct Rest {
     pub volume: f64,
     /// State at the equator, varied by pole stretch, pressure and a point force over `2 pi` at the pole.
     pub varied: Free,
-    /// Some tension is negative.
-    pub compressed: bool,
+    /// What was met on the meridian.
+    pub met: Met,
 }
 
 /// Shooting for one design.
@@ -67,7 +67,7 @@ pub struct Shooting {
 struct Shot {
     end: Free,
     contact_radius: f64,
-    compressed: bool,
+    met: Met,
 }
 
 /// Where the series is as good as the tolerance.
@@ -90,7 +90,7 @@ pub(super) fn inflate(
     pressure: f64,
     [start, relative]: [f64; 2],
     controlled: usize,
-) -> Result<(Free, f64), Failure> {
+) -> Result<(Free, Met), Failure> {
     let load = Load {
         pressure,
         load: 0.0,
@@ -105,7 +105,7 @@ pub(super) fn inflate(
         FIRST_STEP * start,
         &tolerance(relative, controlled),
     )?;
-    Ok((end, memory.least))
+    Ok((end, memory.met))
 }
 
 impl Rest {
@@ -119,26 +119,29 @@ impl Rest {
         let mut pressure = 2.0 * d.w1 / (stretch * stretch) * problem.aspect;
         let mut moved = f64::INFINITY;
         for _ in 0..MOST_STEPS {
-            let (end, least) =
-                match inflate(problem, stretch, pressure, [start_of(relative), relative], STATE) {
-                    Ok(reached) => reached,
-                    Err(Failure::BlewUp { .. }) => {
-                        // Too much pressure for the stretch.
-                        pressure *= 0.7;
-                        continue;
-                    }
-                    Err(failure) => return Err(failure),
-                };
+            let (end, met) = match inflate(problem, stretch, pressure, [start_of(relative), relative], STATE)
+            {
+                Ok(reached) => reached,
+                Err(Failure::BlewUp { .. }) => {
+                    // Too much pressure for the stretch.
+                    pressure *= 0.7;
+                    continue;
+                }
+                Err(failure) => return Err(failure),
+            };
             let step = -end[THRUST] / end[2 * STATE + THRUST];
             moved = (step / pressure).abs();
             if moved < 0.1 * relative {
+                if met.unstable {
+                    return Err(Failure::LawUnstable);
+                }
                 return Ok(Self {
                     pressure,
                     edge: end[RADIUS],
                     height: end[HEIGHT],
                     volume: end[VOLUME],
                     varied: end,
-                    compressed: least < 0.0,
+                    met,
                 });
             }
             pressure += step.clamp(-0.5 * pressure, pressure);
@@ -244,7 +247,7 @@ impl Shooting {
             contact_radius,
             contact_parameter,
             pole_stretch,
-            compressed: shot.compressed,
+            compressed: self.rest.met.least.min(shot.met.least) < 0.0,
         }
     }
 
@@ -329,7 +332,7 @@ impl Shooting {
         Ok(Shot {
             end,
             contact_radius: rho,
-            compressed: memory.least < 0.0,
+            met: memory.met,
         })
     }
 
@@ -427,6 +430,9 @@ impl Shooting {
         if ratio > 1.0 + EDGE_ROUNDING {
             return Err(Failure::BeyondLimit { ratio });
         }
+        if shot.met.unstable {
+            return Err(Failure::LawUnstable);
+        }
         let place = libm::log(target);
         self.history.retain(|(other, _)| (other - place).abs() > 1e-6);
         if self.history.len() == HISTORY {
@@ -438,7 +444,7 @@ impl Shooting {
 }
 
 /// Inverse by cofactors, and the condition in the largest row sum. `None` if it is singular.
-fn invert(m: &[[f64; 3]; 3]) -> Option<([[f64; 3]; 3], f64)> {
+pub(super) fn invert(m: &[[f64; 3]; 3]) -> Option<([[f64; 3]; 3], f64)> {
     let cofactor = |i: usize, j: usize| {
         let (a, b) = ((i + 1) % 3, (i + 2) % 3);
         let (c, d) = ((j + 1) % 3, (j + 2) % 3);

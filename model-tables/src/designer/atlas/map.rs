@@ -57,12 +57,15 @@ pub(super) fn svg(survey: &Survey) -> String {
         drawing.text([left, top - 12.0], Anchor::Start, 14.0, BLACK, method.title());
         for cell in &survey.cells {
             let (column, row) = (cell.column as f64, cell.row as f64);
-            let size = CELL * survey.stride as f64;
-            let corner = [left + CELL * column, top + high - CELL * row - size];
+            // Cells of a coarse survey are cut off at the panel's end.
+            let side = CELL * survey.stride as f64;
+            let size = [side.min(wide - CELL * column), side.min(high - CELL * row)];
+            let corner = [left + CELL * column, top + high - CELL * row - size[1]];
             let verdict = cell.verdicts[i];
-            drawing.area(corner, [size - 1.0, size - 1.0], color(verdict));
+            drawing.area(corner, size.map(|side| side - 1.0), color(verdict));
             if verdict == Verdict::Silent {
-                drawing.marker(Marker::Cross, corner.map(|c| c + 0.5 * size), "#ffffff", false);
+                let middle = [corner[0] + 0.5 * size[0], corner[1] + 0.5 * size[1]];
+                drawing.marker(Marker::Cross, middle, "#ffffff", false);
             }
         }
         axes(&mut drawing, survey, [left, top], i == 0);
