@@ -22,6 +22,8 @@ pub enum Failure {
         /// The contact parameter.
         position: f64,
     },
+    /// The press turns back: with more contact the indentation is less, and a plate that goes on would find the tip snap.
+    SnapsThrough,
     /// The solid model's.
     Solid(crate::solid::Failure),
     /// The edge of a wrinkled zone, or the kind of the pole, did not settle.
@@ -43,6 +45,10 @@ impl fmt::Display for Failure {
             Self::EdgePushes { position } => write!(
                 f,
                 "at the contact edge, parameter {position:.4} of the meridian, the membrane would have to push"
+            ),
+            Self::SnapsThrough => write!(
+                f,
+                "the press turns back there, more contact goes with less indentation, and the tip would snap through"
             ),
             Self::Solid(failure) => failure.fmt(f),
             Self::Unsettled => write!(f, "the edge of a wrinkled or slack zone did not settle"),

@@ -118,6 +118,7 @@ fn reason(error: &ModelError, press: Option<&Press>) -> &'static str {
         (_, Failure::Newton(Outcome::Singular { .. })) => "press-singular",
         (_, Failure::Newton(_)) => "press-stalled",
         (_, Failure::EdgePushes { .. }) => "plain-edge-pushes",
+        (_, Failure::SnapsThrough) => "press-snaps-through",
         // Membranes alone are judged here.
         (_, Failure::Solid(_)) => "solid",
         (_, Failure::Unsettled) => "press-unsettled",

@@ -14,6 +14,10 @@ const LARGEST_FACTOR: f64 = 4.0;
 /// Contact radius over edge radius, minus one, that counts as rounding.
 const EDGE_ROUNDING: f64 = 1e-10;
 
+/// Growth of the contact parameter beyond a state that may be the last before the press turns back, and how often.
+const TURN_FACTOR: f64 = 1.004;
+const TURN_STEPS: usize = 10;
+
 /// Why a state was not reached.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stop {
@@ -131,7 +135,11 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                         return Err(match stop {
                             Stop::Failed { failure, .. } => Stop::Failed {
                                 reached: at,
-                                failure: self.solver.edge_pushes(self.latest()).unwrap_or(failure),
+                                failure: self
+                                    .solver
+                                    .edge_pushes(self.latest())
+                                    .or_else(|| self.turns_back())
+                                    .unwrap_or(failure),
                             },
                             Stop::BeyondLimit => stop,
                         });
@@ -139,6 +147,24 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 }
             }
         }
+    }
+
+    /// Whether the press turns back just beyond the latest state: as the contact grows on, the plate has to rise.
+    #[inline(never)] // its copies of a solution stay off the caller's stack
+    fn turns_back(&mut self) -> Option<Failure> {
+        let latest = &self.latest().solution;
+        let (height, mut parameter) = (latest.height, latest.parameters[CONTACT_PARAMETER]);
+        self.history.repeat();
+        for _ in 0..TURN_STEPS {
+            parameter *= TURN_FACTOR;
+            let closure = self.closure(PressControl::ContactParameter(parameter));
+            let state = self.history.working();
+            self.solver.settle(state, &closure).ok()?;
+            if state.solution.height > height {
+                return Some(Failure::SnapsThrough);
+            }
+        }
+        None
     }
 
     /// Solves from the state in work; an admissible result becomes the latest.
