@@ -5,11 +5,13 @@
 
 use model_tables::design_file::{Accuracy, DesignFile};
 use model_tables::generate;
+use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::methods::contest::{DESIGNS, STATES};
-use model_tables::press::Press;
+use model_tables::press::{CURVE, Press, SWEEP};
 use model_tables::units::PressureRise;
 use std::hint::black_box;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Time that is spent on one figure.
@@ -37,6 +39,14 @@ fn figure<T>(name: &str, count: usize, mut run: impl FnMut() -> T) {
     );
 }
 
+/// Forces of evenly spaced states down to `deepest`.
+fn sweep<const S: usize>(mut press: Press<Law, S>, deepest: f64) -> Vec<f64> {
+    let states = (1..=STATES).map(|k| deepest * k as f64 / STATES as f64);
+    states
+        .map(|indentation| press.contact_at(indentation).expect("within the limit").force)
+        .collect()
+}
+
 fn main() {
     for contestant in &DESIGNS {
         let design = &contestant.design;
@@ -48,15 +58,43 @@ fn main() {
             Press::new(design, TensionField::Relaxed).expect("as above")
         });
         figure(&format!("{name}: a state of a sweep of {STATES}"), STATES, || {
-            let mut press = rest.clone();
-            for k in 1..=STATES {
-                let indentation = deepest * k as f64 / STATES as f64;
-                black_box(press.contact_at(indentation).expect("within the limit"));
-            }
+            sweep(rest.clone(), deepest)
         });
+        let coarse =
+            Press::<Law, 5>::with_resolution(design, TensionField::Relaxed, SWEEP).expect("as above");
+        figure(
+            &format!("{name}: the same on the mesh for sweeps"),
+            STATES,
+            || sweep(coarse.clone(), deepest),
+        );
+        let forces = sweep(rest.clone(), deepest)
+            .into_iter()
+            .zip(sweep(coarse, deepest));
+        let error = forces.fold(0.0, |most, (full, coarse): (f64, f64)| {
+            (coarse / full - 1.0).abs().max(most)
+        });
+        println!(
+            "{:<58} {error:>12.1e}",
+            format!("{name}: and its largest force error")
+        );
         figure(&format!("{name}: rest state to curve"), 1, || {
-            let mut press = Press::new(design, TensionField::Relaxed).expect("as above");
+            let mut press: Press =
+                Press::with_resolution(design, TensionField::Relaxed, CURVE).expect("as above");
             press.curve(deepest).expect("within the limit")
+        });
+    }
+    for name in ["paper-prestretched", "skin-analogue", "skin-light-touch"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("designs/{name}.toml"));
+        let file = DesignFile::read(&path).expect("a shipped design");
+        let design = file.design();
+        let deepest = 1e-3 * file.max_indentation_mm.expect("shipped with it");
+        let accuracy: Accuracy = file.accuracy.expect("shipped with it");
+        let resolution = file.transducer.as_ref().expect("shipped with it").resolution_pa;
+        figure(&format!("{name}: rest state to fitted tables"), 1, || {
+            let mut press: Press =
+                Press::with_resolution(&design, TensionField::Relaxed, CURVE).expect("a shipped design");
+            let curve = press.curve(deepest).expect("a shipped design");
+            generate::fit(&curve, curve.end(), &accuracy, resolution).expect("a shipped design")
         });
     }
     let text = include_str!("../designs/paper-prestretched.toml");

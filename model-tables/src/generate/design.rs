@@ -237,7 +237,7 @@ fn pressed(
 ) -> Result<(f64, Curve, Contact), GenerateError> {
     let calibration = &design.calibration;
     let deepest = indentation * 1e-3;
-    let mut press = Rung::new(design).map_err(GenerateError::Model)?;
+    let mut press = Rung::for_curve(design).map_err(GenerateError::Model)?;
     let rest_pressure = calibration.pressure_read(press.rest_pressure());
     // What cannot be read is refused before the curve is solved.
     in_range(transducer, State::Rest, rest_pressure)?;
