@@ -61,11 +61,15 @@ pub(super) fn smallest<T>(
     };
     let (usual, cut) = (sizes(&Shape::ALL), sizes(&Shape::CUT));
     let (mut tried, mut closest) = (0, f64::INFINITY);
-    for (sizes, most_bytes, most_instructions) in [
-        (&usual, SMALL, QUICK),
-        (&usual, usize::MAX, u32::MAX),
-        (&cut, usize::MAX, u32::MAX),
+    // Octaves are cut where coefficients do not round; where sums of real ones are too far off it is not tried.
+    for (sizes, most_bytes, most_instructions, within) in [
+        (&usual, SMALL, QUICK, f64::INFINITY),
+        (&usual, usize::MAX, u32::MAX, f64::INFINITY),
+        (&cut, usize::MAX, u32::MAX, HOPEFUL),
     ] {
+        if closest > within {
+            break;
+        }
         for &(bytes, segments, shape) in sizes.iter().take_while(|(bytes, ..)| *bytes <= most_bytes) {
             let mut hopeful = Vec::new();
             for truth in truths {

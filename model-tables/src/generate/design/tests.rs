@@ -185,7 +185,7 @@ fn writes_what_the_chip_includes() {
     let tables = &generated.certified.tables;
     let binary = generated.binary();
     assert_eq!(&binary[..4], b"FTIP");
-    assert_eq!(binary.len(), 4 + 4 + 8 + 9 * 4 + 2 * 4 + tables.bytes());
+    assert_eq!(binary.len(), 4 + 4 + 8 + 10 * 4 + 2 * 4 + tables.bytes());
     let rows = generated.csv().lines().count();
     assert_eq!(rows, 1 + tables.words.len());
 }
