@@ -23,7 +23,8 @@ fn main() {
         Err(reason) => println!("cargo::error={}", reason.replace('\n', " ")),
     }
     if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
-        link_for_the_chip(&out);
+        let root = env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it");
+        link_for_the_chip(Path::new(&root));
     }
 }
 
@@ -50,16 +51,15 @@ fn tables(design: &Path) -> Result<String, String> {
     Ok(generated.rust_source())
 }
 
-fn link_for_the_chip(out: &Path) {
-    // Its memory lies beside each board's file; without a board the sources say what is missing.
-    let memory = if env::var_os("CARGO_FEATURE_BOARD_NUCLEO_L432KC").is_some() {
-        "src/board/nucleo_l432kc.x"
-    } else {
-        "src/board/nucleo_f429zi.x"
-    };
-    println!("cargo::rerun-if-changed={memory}");
-    fs::copy(memory, out.join("memory.x")).expect("every board says what memory it has");
-    println!("cargo::rustc-link-search={}", out.display());
+fn link_for_the_chip(root: &Path) {
+    println!("cargo::rerun-if-changed=memory.x");
+    println!("cargo::rustc-link-search={}", root.display());
+    // The default board's chip is the one of memory.x; another one's sizes lie beside its file, and come first.
+    if env::var_os("CARGO_FEATURE_BOARD_NUCLEO_L432KC").is_some() {
+        let sizes = root.join("src/board/nucleo_l432kc.x");
+        println!("cargo::rerun-if-changed={}", sizes.display());
+        println!("cargo::rustc-link-arg-bins=-T{}", sizes.display());
+    }
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");
     }
