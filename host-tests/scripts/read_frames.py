@@ -20,6 +20,9 @@ TOUCH = ["unknown", "untouched", "touched"]
 COMMANDS = {"tare": 0x81, "undo": 0x82, "save": 0x83, "info": 0x84, "self-test": 0x85, "rate": 0x86, "forget": 0x87}
 OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy", "nothing to undo", "zero unverified",
             "memory failed"]
+CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
+STORED = ["none", "serves", "another design's", "damaged", "unreadable"]
+LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang"]
 LENGTHS = {1: 42, 2: 15, 3: 61, 4: 20}
 
 
@@ -70,9 +73,12 @@ def describe(body):
     if kind == 3:
         firmware = ".".join(str(part) for part in body[14:17])
         cause, design, tables, period, stored, last, resets = struct.unpack_from("<BQIIBBB", body, 17)
-        numbers = struct.unpack_from("<6I", body, 37)
-        return head + (f"hello, firmware {firmware}, reset cause {cause}, design {design:016x}, tables {tables}, a report "
-                       f"each {period} us, stored {stored}, last fault {last}, {resets} resets in a row, {numbers}")
+        where, saved, lost, wild, frames, refused = struct.unpack_from("<6I", body, 37)
+        if cause >= len(CAUSES) or stored >= len(STORED) or last >= len(LAST):
+            raise ValueError("field")
+        return head + (f"hello, firmware {firmware}, reset by {CAUSES[cause]}, design {design:016x}, tables {tables}, a report "
+                       f"each {period} us, stored {STORED[stored]} ({saved}), before: {LAST[last]} {where:#x}, {resets} "
+                       f"resets in a row; {lost} samples lost, {wild} wild, {frames} frames dropped, {refused} refused")
     command, command_sequence, outcome, findings = struct.unpack_from("<BHBH", body, 14)
     names = {code: name for name, code in COMMANDS.items()}
     if command not in names or outcome >= len(OUTCOMES):

@@ -52,10 +52,11 @@ const REQUESTS: [(&str, Request); 4] = [
     ),
 ];
 
-const FRAMES: [&str; 3] = [
+const FRAMES: [&str; 4] = [
     "fault, sequence 65535",
     "answer, sequence 8",
     "reading, sequence 0x0102",
+    "hello, sequence 7",
 ];
 
 #[test]
@@ -127,6 +128,9 @@ fn the_reader_in_python_reads_what_the_firmware_sends() {
             "8 2000000 us, 0 dropped: self-test 772: done, findings 0x12",
             "258 3000500 us, 3 dropped: warning: saturated, touched, 642.000 Pa, 1500000 uN, 2500000 nm, 1-sigma 2.898 \
              Pa, 6000 uN, 9000 nm",
+            "7 1000000 us, 259 dropped: hello, firmware 0.1.0, reset by watchdog, design 0123456789abcdef, tables 1, a \
+             report each 1000 us, stored serves (17), before: late task 0x3, 2 resets in a row; 2 samples lost, 6 wild, \
+             259 frames dropped, 4 refused",
         ]
     );
 }
@@ -137,6 +141,10 @@ fn the_commands_of_the_reader_in_python_are_the_firmwares() {
         (&["--encode", "tare", "258"][..], "tare, sequence 0x0102"),
         (&["--encode", "rate", "1", "0a00"], "rate, sequence 1"),
         (&["--encode", "save", "2", "3cf6ffff"], "save, sequence 2"),
+        (
+            &["--encode", "self-test", "3", "90d00300"],
+            "self-test, sequence 3",
+        ),
     ];
     for (arguments, what) in encoded {
         if let Some(bytes) = reader(arguments, &[]) {
