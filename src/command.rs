@@ -155,7 +155,8 @@ pub struct Request {
 
 /// The bytes of a request, ready for the wire.
 pub fn encode(request: &Request) -> Encoded {
-    let mut body = Encoded::new();
+    let mut body = Encoded::NOTHING;
+    body.begin();
     body.put([PROTOCOL_VERSION, request.command.kind().code()]);
     body.put(request.sequence.to_le_bytes());
     match request.command {

@@ -3,7 +3,7 @@
 //! One sample's way: [`counts`] -> [`transducer`] -> [`stuck`] -> [`pressure`] -> [`temperature`] -> [`tare`] ->
 //! [`filter`] -> [`touch`] -> [`drift`] -> [`fluid`] -> [`contact`] -> [`uncertainty`] -> [`report`], called in that
 //! order by [`pipeline`]; [`telemetry`] and [`command`] put into
-//! words what goes over the [`wire`], [`calibration`] says what is known of this one
+//! words what goes over the [`wire`], where it waits in the [`outbox`]; [`calibration`] says what is known of this one
 //! fingertip, [`design`] of all of its kind, and [`image`] of the kind this build is for. Integers only,
 //! but for the full model's [`solver_states`], which the firmware does not solve; nothing here knows a clock or a bus:
 //! time and samples are arguments.
@@ -20,6 +20,7 @@ pub mod filter;
 pub mod fluid;
 pub mod image;
 pub mod lookup_sweep;
+pub mod outbox;
 pub mod pipeline;
 pub mod pressure;
 pub mod record;

@@ -96,7 +96,8 @@ pub struct Station<D> {
     every: u16,
     passed: u16,
     status: Option<Status>,
-    last: Option<Report>,
+    /// The last reading: what a self-test judges.
+    last: Option<(Nanometres, Warnings)>,
     tare: Option<Pending>,
     save: Option<(Pending, ToStore)>,
     saved: Option<Microseconds>,
@@ -150,7 +151,7 @@ impl<D: Design> Station<D> {
         &mut self,
         now: Microseconds,
         sample: Result<Sample, Fault>,
-        mut say: impl FnMut(Message),
+        mut say: impl FnMut(&Message),
     ) -> Report {
         let report = if self.gave_up {
             Report {
@@ -162,15 +163,19 @@ impl<D: Design> Station<D> {
         };
         if now.0 >= self.next_hello {
             self.next_hello = now.0.saturating_add(HELLO_PERIOD);
-            say(Message::Hello(self.hello(now)));
+            say(&Message::Hello(self.hello(now)));
         }
-        self.last = Some(report);
+        self.last = report
+            .outcome
+            .as_ref()
+            .ok()
+            .map(|reading| (reading.indentation, reading.warnings));
         if self.tare.is_some()
             && let Some(answer) = self.pipeline.take_tare_answer()
             && let Some(pending) = self.tare.take()
         {
             let outcome = answer.map_or_else(Outcome::from, |()| Outcome::Done);
-            say(answered(now, pending, outcome, 0));
+            say(&answered(now, pending, outcome, 0));
         }
         self.passed = self.passed.saturating_add(1);
         let status = Some(report.status());
@@ -178,7 +183,7 @@ impl<D: Design> Station<D> {
         if self.passed >= self.every || status != self.status {
             self.passed = 0;
             self.status = status;
-            say(Message::Report {
+            say(&Message::Report {
                 report,
                 pressure_fraction_bits: D::PRESSURE_FRACTION_BITS as u8,
             });
@@ -192,7 +197,7 @@ impl<D: Design> Station<D> {
         &mut self,
         now: Microseconds,
         request: Request,
-        mut say: impl FnMut(Message),
+        mut say: impl FnMut(&Message),
     ) -> Option<ToStore> {
         let pending = Pending {
             command: request.command.kind(),
@@ -220,7 +225,7 @@ impl<D: Design> Station<D> {
             },
             Command::Forget => return self.store(now, pending, None, say),
             Command::Info => {
-                say(Message::Hello(self.hello(now)));
+                say(&Message::Hello(self.hello(now)));
                 Outcome::Done
             }
             Command::SelfTest { indentation } => {
@@ -233,7 +238,7 @@ impl<D: Design> Station<D> {
                 Outcome::Done
             }
         };
-        say(answered(now, pending, outcome, found));
+        say(&answered(now, pending, outcome, found));
         None
     }
 
@@ -242,13 +247,13 @@ impl<D: Design> Station<D> {
         now: Microseconds,
         pending: Pending,
         calibration: Option<Calibration>,
-        mut say: impl FnMut(Message),
+        mut say: impl FnMut(&Message),
     ) -> Option<ToStore> {
         let soon = self
             .saved
             .is_some_and(|saved| now.0.saturating_sub(saved.0) < SAVE_PAUSE);
         if self.save.is_some() || soon {
-            say(answered(now, pending, Outcome::Busy, 0));
+            say(&answered(now, pending, Outcome::Busy, 0));
             return None;
         }
         let to_store = ToStore(calibration);
@@ -262,7 +267,7 @@ impl<D: Design> Station<D> {
         now: Microseconds,
         result: Result<(), StoreError>,
         sequence: u32,
-        mut say: impl FnMut(Message),
+        mut say: impl FnMut(&Message),
     ) {
         let Some((pending, ToStore(calibration))) = self.save.take() else {
             return;
@@ -277,31 +282,27 @@ impl<D: Design> Station<D> {
             }
             Err(StoreError::Failed | StoreError::WornOut) => Outcome::MemoryFailed,
         };
-        say(answered(now, pending, outcome, 0));
+        say(&answered(now, pending, outcome, 0));
     }
 
     fn self_test(&mut self, indentation: i32) -> u16 {
-        let reading = self.last.and_then(|report| report.outcome.ok());
         let mut found = 0;
         let mut add = |finding: u16, holds: bool| {
             if holds {
                 found |= finding;
             }
         };
-        match reading {
+        match self.last {
             None => add(findings::NO_READING, true),
-            Some(reading) => {
-                let warned = |warning| reading.warnings.contains(warning);
+            Some((read, warnings)) => {
+                let warned = |warning| warnings.contains(warning);
                 add(findings::ZERO_UNVERIFIED, warned(Warnings::ZERO_UNVERIFIED));
                 add(
                     findings::FLUID,
                     warned(Warnings::LEAK_SUSPECTED) || warned(Warnings::BUBBLE_SUSPECTED),
                 );
                 add(findings::CLOCK, warned(Warnings::CLOCK));
-                let soft = indentation > 0
-                    && !self
-                        .pipeline
-                        .compare(reading.indentation, Nanometres(indentation));
+                let soft = indentation > 0 && !self.pipeline.compare(read, Nanometres(indentation));
                 add(findings::SOFT, soft);
             }
         }

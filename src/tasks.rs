@@ -9,21 +9,24 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_sync::blocking_mutex::ThreadModeMutex;
-use embassy_sync::blocking_mutex::raw::ThreadModeRawMutex;
-use embassy_sync::channel::{Channel, TrySendError};
+use embassy_sync::blocking_mutex::raw::{NoopRawMutex, ThreadModeRawMutex};
+use embassy_sync::channel::Channel;
+use embassy_sync::signal::Signal;
 use embassy_time::{Delay, Duration, with_timeout};
 use fingertip::command::{self, Request};
 use fingertip::design::Design;
 use fingertip::image::ImageDesign;
+use fingertip::outbox::Outbox;
 use fingertip::pipeline::Pipeline;
 use fingertip::report::{Microseconds, Report, Status};
 use fingertip::station::{Beginning, Station, ToStore};
 use fingertip::store::{Identity, Store, StoreError};
 use fingertip::supervisor::{Breadcrumb, GOOD_RUN, Roster};
-use fingertip::telemetry::{self, Frame, LastFault, Message};
+use fingertip::telemetry::{Encoded, LastFault, Message};
 use fingertip::transducer::Transducer;
 use fingertip::transducer::keeper::Keeper;
 use fingertip::wire::Deframer;
+use static_cell::{ConstStaticCell, StaticCell};
 
 /// Every how many reports one goes to the log.
 const LOGGED: u32 = 250;
@@ -37,16 +40,34 @@ const MEALS: u64 = 16_000;
 /// From one note of the zero for the next run to the next, microseconds.
 const NOTES: u64 = 1_000_000;
 
-/// A task that waits for something wakes so often to report, and may be late by as much again. The memory is given the
-/// time of an erasure.
+/// Tasks that wait for the host wake so often to report, and may be late by as much again; the one that waits for frames
+/// has nothing to be late with while there are none. The memory is given the time of an erasure.
 const IDLE: Duration = Duration::from_millis(50);
 const ALLOWED: [u64; 3] = [150_000, 150_000, 5_000_000];
 const SEND: usize = 0;
 const LISTEN: usize = 1;
 const REMEMBER: usize = 2;
 
-/// Frames waiting for the line: 8 ms of reports. When full the oldest goes, and is counted.
-static QUEUE: Channel<ThreadModeRawMutex, Frame, 8> = Channel::new();
+/// 8 ms of reports.
+const WAITING: usize = 8;
+
+/// Frames waiting for the line.
+struct Waiting {
+    frames: RefCell<Outbox<'static, WAITING>>,
+    more: Signal<NoopRawMutex, ()>,
+}
+
+/// The frames themselves, and the one on the line.
+static FRAMES: ConstStaticCell<[Encoded; WAITING]> = ConstStaticCell::new([Encoded::NOTHING; WAITING]);
+static SENT: ConstStaticCell<Encoded> = ConstStaticCell::new(Encoded::NOTHING);
+static OUTBOX: StaticCell<Waiting> = StaticCell::new();
+
+impl Waiting {
+    fn put(&self, message: &Message) {
+        self.frames.borrow_mut().put(message);
+        self.more.signal(());
+    }
+}
 
 /// Commands waiting for the next report. When full the newest is refused, and counted.
 static REQUESTS: Channel<ThreadModeRawMutex, Request, 2> = Channel::new();
@@ -102,11 +123,15 @@ async fn main(spawner: Spawner) {
         defmt::Display2Format(&board.reset_cause)
     );
     let clock = board.clock;
-    spawner.spawn(send(board.line, clock).expect("spawned once"));
+    let waiting = OUTBOX.init_with(|| Waiting {
+        frames: RefCell::new(Outbox::new(FRAMES.take().each_mut())),
+        more: Signal::new(),
+    });
+    spawner.spawn(send(board.line, waiting, SENT.take(), clock).expect("spawned once"));
     spawner.spawn(listen(board.ears, clock).expect("spawned once"));
     spawner.spawn(remember(store, clock).expect("spawned once"));
     let transducer = chosen::transducer(board.port);
-    signal(clock, transducer, board.watchdog, &beginning).await
+    signal(clock, transducer, waiting, board.watchdog, &beginning).await
 }
 
 /// Turns samples into reports, and answers commands. Period: one sample, 1 ms of a converter. Deadline: the next one;
@@ -115,12 +140,12 @@ async fn main(spawner: Spawner) {
 async fn signal(
     clock: Clock,
     transducer: impl Transducer,
+    waiting: &'static Waiting,
     mut watchdog: Watchdog,
     beginning: &Beginning,
 ) -> ! {
     let mut station = Station::<ImageDesign>::new(beginning);
     let mut crumb = beginning.start.crumb;
-    let mut outbox = Outbox::default();
     let mut log = Log::default();
     let mut keeper = Keeper::new(transducer, Delay);
     let mut pace = Pace::new();
@@ -134,10 +159,10 @@ async fn signal(
             let lost = missing(last_sample.replace(measured), measured);
             station.counters.samples_lost = station.counters.samples_lost.saturating_add(lost);
         }
-        let report = station.step(now, sample, |message| outbox.put(message));
+        let report = station.step(now, sample, |message| waiting.put(message));
         log.report(&report);
         if let Ok(request) = REQUESTS.try_receive()
-            && let Some(to_store) = station.request(now, request, |message| outbox.put(message))
+            && let Some(to_store) = station.request(now, request, |message| waiting.put(message))
         {
             // The station asks for one at a time.
             let _ = TO_STORE.try_send(to_store);
@@ -147,9 +172,16 @@ async fn signal(
         }
         next_meal = now.0.saturating_add(MEALS);
         if let Ok((result, sequence)) = STORED.try_receive() {
-            station.stored(now, result, sequence, |message| outbox.put(message));
+            station.stored(now, result, sequence, |message| waiting.put(message));
         }
-        station.counters.frames_dropped = outbox.dropped;
+        let (idle, dropped) = {
+            let frames = waiting.frames.borrow();
+            (frames.is_empty(), frames.dropped())
+        };
+        if idle {
+            alive(SEND, clock);
+        }
+        station.counters.frames_dropped = dropped;
         station.counters.commands_refused = REFUSED.load(Ordering::Relaxed);
         match ROSTER.lock(|roster| roster.borrow().late(now)) {
             None => watchdog.pet(),
@@ -173,40 +205,17 @@ fn missing(last: Option<u64>, measured: u64) -> u32 {
     })
 }
 
-/// Numbers the frames and queues them.
-#[derive(Default)]
-struct Outbox {
-    sequence: u16,
-    dropped: u32,
-}
-
-impl Outbox {
-    fn put(&mut self, message: Message) {
-        let frame = Frame {
-            sequence: self.sequence,
-            dropped: self.dropped as u16,
-            message,
-        };
-        self.sequence = self.sequence.wrapping_add(1);
-        if let Err(TrySendError::Full(frame)) = QUEUE.try_send(frame) {
-            let _oldest = QUEUE.try_receive();
-            let _ = QUEUE.try_send(frame);
-            self.dropped = self.dropped.saturating_add(1);
-        }
-    }
-}
-
 /// Sends frames. Period: as they come. Deadline: a period on average (a report takes 0.5 ms on the line); when late,
 /// the queue drops its oldest, and the signal task is none the later for it.
 #[embassy_executor::task]
-async fn send(mut line: Line, clock: Clock) {
+async fn send(mut line: Line, waiting: &'static Waiting, mut frame: &'static mut Encoded, clock: Clock) {
     loop {
-        if let Ok(frame) = with_timeout(IDLE, QUEUE.receive()).await {
-            let encoded = telemetry::encode(&frame);
+        waiting.more.wait().await;
+        while waiting.frames.borrow_mut().take(&mut frame) {
             // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
-            let _ = line.write(encoded.as_slice()).await;
+            let _ = line.write(frame.as_slice()).await;
+            alive(SEND, clock);
         }
-        alive(SEND, clock);
     }
 }
 

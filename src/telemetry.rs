@@ -197,14 +197,21 @@ pub struct Frame {
 
 /// The bytes of a frame, ready for the wire.
 pub fn encode(frame: &Frame) -> Encoded {
-    let mut body = Encoded::new();
+    let mut encoded = Encoded::NOTHING;
+    write(&mut encoded, frame.sequence, frame.dropped, &frame.message);
+    encoded
+}
+
+/// The same, where the bytes are to be sent from.
+pub fn write(body: &mut Encoded, sequence: u16, dropped: u16, message: &Message) {
+    body.begin();
     let mut header = |kind: u8, time: Microseconds| {
         body.put([PROTOCOL_VERSION, kind]);
-        body.put(frame.sequence.to_le_bytes());
+        body.put(sequence.to_le_bytes());
         body.put(time.0.to_le_bytes());
-        body.put(frame.dropped.to_le_bytes());
+        body.put(dropped.to_le_bytes());
     };
-    match &frame.message {
+    match message {
         Message::Report {
             report,
             pressure_fraction_bits,
@@ -227,7 +234,7 @@ pub fn encode(frame: &Frame) -> Encoded {
         },
         Message::Hello(hello) => {
             header(3, hello.time);
-            write_hello(&mut body, hello);
+            write_hello(body, hello);
         }
         Message::Answer(answer) => {
             header(4, answer.time);
@@ -238,7 +245,6 @@ pub fn encode(frame: &Frame) -> Encoded {
         }
     }
     body.finish();
-    body
 }
 
 fn write_hello(body: &mut Encoded, hello: &Hello) {

@@ -86,12 +86,16 @@ impl Encoded {
         self.bytes.get(..self.length).unwrap_or(&[])
     }
 
+    /// No frame yet.
+    pub const NOTHING: Self = Self {
+        bytes: [0; MAXIMUM_FRAME],
+        length: 0,
+    };
+
+    /// A new frame in place of what is there.
     #[inline]
-    pub(crate) fn new() -> Self {
-        Self {
-            bytes: [0; MAXIMUM_FRAME],
-            length: 1,
-        }
+    pub(crate) fn begin(&mut self) {
+        self.length = 1;
     }
 
     #[inline]
@@ -124,8 +128,7 @@ impl Encoded {
                 distance += 1;
             }
         }
-        // Behind it lies nothing but zeros, of which the first closes it.
-        self.length += 1;
+        self.put([0]);
     }
 }
 
@@ -209,7 +212,8 @@ mod tests {
     use proptest::prelude::*;
 
     fn framed(body: &[u8]) -> Encoded {
-        let mut frame = Encoded::new();
+        let mut frame = Encoded::NOTHING;
+        frame.begin();
         for &byte in body {
             frame.put([byte]);
         }

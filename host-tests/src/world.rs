@@ -145,7 +145,7 @@ impl<D: Design> World<D> {
         let said = &mut self.said;
         self.station.step(Microseconds(self.now), sample, |message| {
             if !matches!(message, Message::Report { .. }) {
-                said.push(message);
+                said.push(*message);
             }
         })
     }
@@ -155,7 +155,7 @@ impl<D: Design> World<D> {
         let said = &mut self.said;
         let request = Request { sequence: 0, command };
         self.station
-            .request(Microseconds(self.now), request, |message| said.push(message))
+            .request(Microseconds(self.now), request, |message| said.push(*message))
     }
 
     /// The zero that serves, pascals.

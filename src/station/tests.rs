@@ -62,7 +62,7 @@ impl Bench {
             let said = &mut self.said;
             self.station
                 .step(Microseconds(self.ms * 1000), Ok(sample), |message| {
-                    said.push(message);
+                    said.push(*message);
                 });
         }
     }
@@ -72,7 +72,7 @@ impl Bench {
         let request = Request { sequence: 9, command };
         self.station
             .request(Microseconds(self.ms * 1000), request, |message| {
-                said.push(message);
+                said.push(*message);
             })
     }
 
@@ -80,7 +80,7 @@ impl Bench {
         let said = &mut self.said;
         self.station
             .stored(Microseconds(self.ms * 1000), result, 17, |message| {
-                said.push(message);
+                said.push(*message);
             });
     }
 
