@@ -4,9 +4,10 @@
 
 use crate::report::{Fault, Microseconds};
 
-/// Unchanged for this long it is stuck, microseconds: 200 samples of the slowest part. With noise of two counts,
-/// which every 24-bit part exceeds, that many equal words come by chance once in 10^100.
-pub const LIMIT: u64 = 2_000_000;
+/// Unchanged for this long it is stuck, microseconds: 35 samples of the slowest part. With noise of two counts, which
+/// every 24-bit part exceeds, a word is the one before by chance once in seven times, and 35 times in a row less than
+/// once in 10^24.
+pub const LIMIT: u64 = 500_000;
 
 /// Remembers the last word and since when it stands.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -43,16 +44,16 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn two_seconds_of_the_same_word_are_stuck_and_a_new_word_is_not() {
+    fn half_a_second_of_the_same_word_is_stuck_and_a_new_word_is_not() {
         let mut detector = StuckDetector::NEW;
         let mut at = |ms: u64, word| detector.step(Microseconds(ms * 1000), Some(word));
         assert_eq!(at(0, 7), Ok(()));
-        assert_eq!(at(1_999, 7), Ok(()));
-        assert_eq!(at(2_000, 7), Err(Fault::Stuck));
+        assert_eq!(at(499, 7), Ok(()));
+        assert_eq!(at(500, 7), Err(Fault::Stuck));
         assert_eq!(at(9_000, 7), Err(Fault::Stuck));
         assert_eq!(at(9_007, 8), Ok(()));
-        assert_eq!(at(11_006, 8), Ok(()));
-        assert_eq!(at(11_007, 8), Err(Fault::Stuck));
+        assert_eq!(at(9_506, 8), Ok(()));
+        assert_eq!(at(9_507, 8), Err(Fault::Stuck));
     }
 
     #[test]

@@ -37,6 +37,7 @@ fn outcome(status: u8, pressure: u32, temperature: u32) -> Result<Sample, Fault>
 
 #[test]
 fn a_measurement_transaction_by_transaction() {
+    // The datasheet's worked examples (section 6), which other drivers' tests quote too: 0.875 psi and 25 degC.
     // 14 260 634 counts are (14260634 - 1677722) / (15099494 - 1677722) = 0.9375 of the range: 0.875 psi. 6 291 456 of
     // 16 777 215 counts of 200 K are 75 K: 25 degC.
     let (outcome, waited) = play(0x28, &steps(0x40, 14_260_634, 6_291_456), part);
