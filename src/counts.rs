@@ -19,7 +19,7 @@ pub const BLOCK_LENGTH: usize = 100;
 /// From one block to the next, microseconds.
 pub const PERIOD: u32 = 1000;
 
-/// A block as DMA writes it: the earlier code of two in the lower half of a word. Atomic, because the DMA may write
+/// A block as DMA writes it: the earlier code of two in the lower half of a word, 12 bits each. Atomic, because the DMA may write
 /// while it is read; then [`Ring::still_holds`] says so.
 pub type Block = [AtomicU32; BLOCK_LENGTH / 2];
 
@@ -47,7 +47,10 @@ impl Window {
     /// # Panics
     /// At compile time, for a transducer that the converter cannot read.
     pub const fn of(kind: &TransducerKind) -> Self {
-        let TransducerKind::Ratiometric { output: [low, high] } = kind else {
+        let TransducerKind::Ratiometric {
+            output: [low, high], ..
+        } = kind
+        else {
             panic!("only a ratiometric transducer has a window of codes")
         };
         Self {
@@ -62,54 +65,145 @@ const fn code_of(share: u32) -> u16 {
     (share * FULL_SCALE as u32 / 65536) as u16
 }
 
-/// Both halves of a word.
-const fn both(half: u16) -> u32 {
-    (half as u32) << 16 | half as u32
+/// The codes of a supply between half the reference and all of it. With so much supply, the window of the output
+/// still holds: a share of the supply is less of the reference, but by no more than half.
+const SUPPLY: Window = Window {
+    short: FULL_SCALE / 2,
+    open: FULL_SCALE,
+};
+
+/// Two halves of a word.
+const fn halves_of([low, high]: [u16; 2]) -> u32 {
+    (high as u32) << 16 | low as u32
 }
 
-/// Words added up before the halves of their sum are taken apart: 5 * 4095 stays below 2^16.
-const WORDS: usize = 5;
+/// Words added up before the halves of their sum are taken apart: 10 * 4095 stays below 2^16.
+const WORDS: usize = 10;
 
-/// Adds up a block, two codes at a time.
+/// Bit 15 of the half-words of the earlier and the later codes.
+const EARLIER: u32 = 1 << 15;
+const LATER: u32 = 1 << 31;
+
+/// The windows of the earlier and the later codes of a block's words, as a pass over it wants them. Added to a code, each
+/// sets bit 15 exactly from the window's edge on: codes have 12 bits, so no half reaches the next.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Edges {
+    from_open: u32,
+    above_short: u32,
+}
+
+impl Edges {
+    /// All codes are of the output.
+    pub const fn of_output(window: Window) -> Self {
+        Self::of([window, window])
+    }
+
+    /// Every second code, the later one of two, is of the supply.
+    pub const fn of_output_and_supply(window: Window) -> Self {
+        Self::of([window, SUPPLY])
+    }
+
+    const fn of([earlier, later]: [Window; 2]) -> Self {
+        // The edges are held where the addition makes sense.
+        const fn open(window: Window) -> u16 {
+            let end = FULL_SCALE + 1;
+            0x8000 - if window.open < end { window.open } else { end }
+        }
+        const fn short(window: Window) -> u16 {
+            let end = FULL_SCALE;
+            0x7FFF - if window.short < end { window.short } else { end }
+        }
+        Self {
+            from_open: halves_of([open(earlier), open(later)]),
+            above_short: halves_of([short(earlier), short(later)]),
+        }
+    }
+}
+
+/// What a pass over a block finds, for the earlier and the later codes of its words apart.
+struct Found {
+    totals: [u32; 2],
+    /// [`EARLIER`], [`LATER`]: some of these codes are at or above their window's end, ...
+    open: u32,
+    /// ... or at or below its start.
+    short: u32,
+}
+
+/// Adds up a block, two codes at a time, each against its own window.
+#[inline]
+fn add_up(block: &Block, edges: Edges) -> Found {
+    let (mut totals, mut open, mut inside) = ([0_u32; 2], 0_u32, u32::MAX);
+    for words in block.as_chunks::<WORDS>().0 {
+        let mut halves = 0_u32;
+        let mut take = |word: &AtomicU32| {
+            let codes = word.load(Ordering::Relaxed);
+            halves = halves.wrapping_add(codes);
+            open |= codes.wrapping_add(edges.from_open);
+            inside &= codes.wrapping_add(edges.above_short);
+        };
+        // Written out, as a loop would stay one where the compiler is told to save space.
+        let [a, b, c, d, e, f, g, h, i, j] = words;
+        take(a);
+        take(b);
+        take(c);
+        take(d);
+        take(e);
+        take(f);
+        take(g);
+        take(h);
+        take(i);
+        take(j);
+        totals[0] += halves & 0xFFFF;
+        totals[1] += halves >> 16;
+    }
+    Found {
+        totals,
+        open: open & (EARLIER | LATER),
+        short: !inside & (EARLIER | LATER),
+    }
+}
+
+/// The sum of a block.
 ///
 /// # Errors
 /// [`Fault::SensorOpen`] or [`Fault::SensorShort`] when even one code lies outside the window: a wire that
 /// comes and goes within a block would otherwise pull the average without a trace (one code at the rail by
 /// 1/100 of the range).
 #[inline]
-pub fn sum(block: &Block, window: Window) -> Result<CountSum, Fault> {
-    const CODES_END: u16 = 1 << 12;
-    const SIGN: u32 = both(1 << 15);
-    // Added to a code, each sets bit 15 exactly from the window's edge on: codes have 12 bits, so no half reaches the
-    // next. The edges are held where the addition makes sense.
-    let from_open = both(0x8000 - window.open.min(CODES_END));
-    let above_short = both(0x8000 - (window.short.min(CODES_END - 1) + 1));
-    let (mut total, mut any, mut open, mut inside) = (0_u32, 0_u32, 0_u32, u32::MAX);
-    for words in block.as_chunks::<WORDS>().0 {
-        let mut halves = 0_u32;
-        let mut take = |word: &AtomicU32| {
-            let codes = word.load(Ordering::Relaxed);
-            any |= codes;
-            halves = halves.wrapping_add(codes);
-            open |= codes.wrapping_add(from_open);
-            inside &= codes.wrapping_add(above_short);
-        };
-        // Written out, as a loop would stay one where the compiler is told to save space.
-        let [a, b, c, d, e] = words;
-        take(a);
-        take(b);
-        take(c);
-        take(d);
-        take(e);
-        total += (halves & 0xFFFF) + (halves >> 16);
-    }
-    // Bits that no code has make the rest meaningless; no converter sets them.
-    if any & both(!(CODES_END - 1)) != 0 || open & SIGN != 0 {
+pub fn sum(block: &Block, edges: Edges) -> Result<CountSum, Fault> {
+    let Found { totals, open, short } = add_up(block, edges);
+    if open != 0 {
         Err(Fault::SensorOpen)
-    } else if inside & SIGN != SIGN {
+    } else if short != 0 {
         Err(Fault::SensorShort)
     } else {
-        Ok(CountSum(total))
+        Ok(CountSum(totals[0] + totals[1]))
+    }
+}
+
+/// The sum of a block whose every second code is of the transducer's supply, as it would be if that were the
+/// converter's reference: so it cancels.
+///
+/// # Errors
+/// As [`sum`]; [`Fault::SensorSupply`] when even one code of the supply is not between half the reference and all of
+/// it.
+#[inline]
+pub fn sum_of_supply(block: &Block, edges: Edges) -> Result<CountSum, Fault> {
+    let Found {
+        totals: [output, supply],
+        open,
+        short,
+    } = add_up(block, edges);
+    if (open | short) & LATER != 0 {
+        Err(Fault::SensorSupply)
+    } else if open & EARLIER != 0 || output >= supply {
+        Err(Fault::SensorOpen)
+    } else if short & EARLIER != 0 {
+        Err(Fault::SensorShort)
+    } else {
+        // Below 50 * 4095 * 409 500 < 2^37, and the supply is above 50 * 2047.
+        let scaled = u64::from(output) * u64::from(CountSum::FULL_SCALE) + u64::from(supply / 2);
+        Ok(CountSum((scaled / u64::from(supply)) as u32))
     }
 }
 
@@ -174,6 +268,7 @@ mod tests {
     /// NXP MPX5100: 4 % to 94 % of the supply.
     const MPX5100: TransducerKind = TransducerKind::Ratiometric {
         output: [2621, 61604],
+        supply_measured: false,
     };
 
     fn block(codes: &[u16; BLOCK_LENGTH]) -> Block {
@@ -196,16 +291,16 @@ mod tests {
     fn a_block_at_full_scale_is_the_documented_sum() {
         let everything = Window { short: 0, open: 4096 };
         assert_eq!(
-            sum(&block(&[4095; BLOCK_LENGTH]), everything),
+            sum(&block(&[4095; BLOCK_LENGTH]), Edges::of_output(everything)),
             Ok(CountSum(409_500))
         );
     }
 
     #[test]
     fn one_code_at_a_rail_is_enough_for_a_fault() {
-        let window = Window::of(&MPX5100);
+        let edges = Edges::of_output(Window::of(&MPX5100));
         let mut codes = [2000; BLOCK_LENGTH];
-        assert_eq!(sum(&block(&codes), window), Ok(CountSum(200_000)));
+        assert_eq!(sum(&block(&codes), edges), Ok(CountSum(200_000)));
         for place in 0..BLOCK_LENGTH {
             for (code, expected) in [
                 (81, Err(Fault::SensorShort)),
@@ -214,28 +309,93 @@ mod tests {
                 (3972, Err(Fault::SensorOpen)),
             ] {
                 codes[place] = code;
-                assert_eq!(sum(&block(&codes), window), expected, "{code} at {place}");
+                assert_eq!(sum(&block(&codes), edges), expected, "{code} at {place}");
             }
             codes[place] = 2000;
         }
     }
 
+    #[test]
+    fn a_supply_that_is_off_or_beyond_the_reference_is_a_reason() {
+        let mut codes = [1000; BLOCK_LENGTH];
+        for (supply, expected) in [
+            (0, Err(Fault::SensorSupply)),
+            (2047, Err(Fault::SensorSupply)),
+            (2048, Ok(CountSum(199_951))),
+            (4094, Ok(CountSum(100_024))),
+            (4095, Err(Fault::SensorSupply)),
+        ] {
+            codes
+                .iter_mut()
+                .skip(1)
+                .step_by(2)
+                .for_each(|code| *code = supply);
+            let sum = sum_of_supply(&block(&codes), Edges::of_output_and_supply(Window::of(&MPX5100)));
+            // 1000 / 2048 and 1000 / 4094 of 409 500.
+            assert_eq!(sum, expected, "{supply}");
+        }
+    }
+
     proptest! {
+        /// A supply that moves takes the output with it, and nothing is left of it.
+        #[test]
+        fn a_measured_supply_cancels(share in 0.05_f64..0.95, supply in 0.51_f64..0.99, sag in 0.0_f64..0.01) {
+            let mut codes = [0; BLOCK_LENGTH];
+            for (i, pair) in codes.chunks_exact_mut(2).enumerate() {
+                let supply = 4095.0 * (supply - sag * i as f64 / 50.0);
+                pair[0] = (share * supply).round() as u16;
+                pair[1] = supply.round() as u16;
+            }
+            let edges = Edges::of_output_and_supply(Window::of(&MPX5100));
+                let CountSum(sum) = sum_of_supply(&block(&codes), edges).expect("all is within");
+            // Half a code of each, of at least half the reference.
+            let off = f64::from(sum) / f64::from(CountSum::FULL_SCALE) - share;
+            prop_assert!(off.abs() <= 1.01 / (0.5 * 4095.0), "{off}");
+        }
+
+        #[test]
+        fn a_block_with_supply_has_a_sum_or_a_reason(
+            codes in prop::array::uniform32((0_u16..4096, 0_u16..4096)),
+        ) {
+            let mut values = [2000; BLOCK_LENGTH];
+            values.iter_mut().skip(1).step_by(2).for_each(|supply| *supply = 3000);
+            for (pair, (output, supply)) in values.chunks_exact_mut(2).zip(codes) {
+                pair.copy_from_slice(&[output, supply]);
+            }
+            let window = Window::of(&MPX5100);
+            let of = |half: usize| values.iter().skip(half).step_by(2).copied();
+            let total = |half| of(half).map(u64::from).sum::<u64>();
+            match sum_of_supply(&block(&values), Edges::of_output_and_supply(window)) {
+                Ok(CountSum(sum)) => {
+                    prop_assert!(of(1).all(|code| code > 2047 && code < 4095));
+                    prop_assert!(of(0).all(|code| code > window.short && code < window.open));
+                    prop_assert_eq!(u64::from(sum), (total(0) * 409_500 + total(1) / 2) / total(1));
+                }
+                Err(Fault::SensorSupply) => prop_assert!(of(1).any(|code| code <= 2047 || code >= 4095)),
+                Err(Fault::SensorOpen) => {
+                    prop_assert!(of(0).any(|code| code >= window.open) || total(0) >= total(1));
+                }
+                Err(fault) => {
+                    prop_assert_eq!(fault, Fault::SensorShort);
+                    prop_assert!(of(0).any(|code| code <= window.short));
+                }
+            }
+        }
+
         #[test]
         fn every_block_has_a_sum_or_a_reason(
-            codes in prop::array::uniform32(any::<u16>()),
-            mask in prop_oneof![Just(0xFFFF_u16), Just(0x0FFF)],
+            codes in prop::array::uniform32(0_u16..4096),
             short in 0_u16..5000,
             open in 0_u16..5000,
         ) {
             let window = Window { short, open };
             let mut values = [1000; BLOCK_LENGTH];
             for (value, code) in values[40..72].iter_mut().zip(codes) {
-                *value = code & mask;
+                *value = code;
             }
             let is_open = |code: &u16| *code >= open.min(4096);
             let is_short = |code: &u16| *code <= short.min(4095);
-            match sum(&block(&values), window) {
+            match sum(&block(&values), Edges::of_output(window)) {
                 Ok(CountSum(total)) => {
                     prop_assert_eq!(total, values.iter().map(|&code| u32::from(code)).sum::<u32>());
                     prop_assert!(!values.iter().any(|code| is_open(code) || is_short(code)));

@@ -44,6 +44,7 @@ impl<'a, const FRAMES: usize> Outbox<'a, FRAMES> {
     }
 
     /// Exchanges `frame`, which was sent, for the oldest one; whether there was any.
+    #[allow(clippy::mut_mut)] // frames change hands, not their bytes
     pub fn take(&mut self, frame: &mut &'a mut Encoded) -> bool {
         if self.waiting == 0 {
             return false;

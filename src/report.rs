@@ -23,6 +23,8 @@ pub enum Fault {
     SamplesLost,
     /// The converter gave no samples in time.
     ConverterStalled,
+    /// The transducer's supply, where it is measured, is off, sags by half, or is above the converter's reference.
+    SensorSupply,
     /// The transducer does not answer at its address.
     SensorAbsent,
     /// The bus to the transducer is held, or broke off.
@@ -51,7 +53,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault with its code in telemetry; 0 is not used, so that a cleared word names none.
-    pub const CODES: [(Self, u8); 18] = [
+    pub const CODES: [(Self, u8); 19] = [
         (Self::SensorOpen, 1),
         (Self::SensorShort, 2),
         (Self::Zeroing, 3),
@@ -61,6 +63,7 @@ impl Fault {
         (Self::Stuck, 7),
         (Self::Jump, 8),
         (Self::ResetLoop, 9),
+        (Self::SensorSupply, 10),
         (Self::SensorAbsent, 16),
         (Self::BusFault, 17),
         (Self::WrongSensor, 18),
@@ -81,6 +84,7 @@ impl Fault {
             Self::Settling => "settling",
             Self::SamplesLost => "samples lost",
             Self::ConverterStalled => "converter stalled",
+            Self::SensorSupply => "sensor supply",
             Self::SensorAbsent => "sensor absent",
             Self::BusFault => "bus fault",
             Self::WrongSensor => "wrong sensor",

@@ -40,8 +40,8 @@ const MEALS: u64 = 16_000;
 /// From one note of the zero for the next run to the next, microseconds.
 const NOTES: u64 = 1_000_000;
 
-/// Tasks that wait for the host wake so often to report, and may be late by as much again; the one that waits for frames
-/// has nothing to be late with while there are none. The memory is given the time of an erasure.
+/// Tasks that wait for the host wake so often to report, and may be late by as much again; who sends frames is known by
+/// leaving none. The memory is given the time of an erasure.
 const IDLE: Duration = Duration::from_millis(50);
 const ALLOWED: [u64; 3] = [150_000, 150_000, 5_000_000];
 const SEND: usize = 0;
@@ -127,7 +127,7 @@ async fn main(spawner: Spawner) {
         frames: RefCell::new(Outbox::new(FRAMES.take().each_mut())),
         more: Signal::new(),
     });
-    spawner.spawn(send(board.line, waiting, SENT.take(), clock).expect("spawned once"));
+    spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
     spawner.spawn(listen(board.ears, clock).expect("spawned once"));
     spawner.spawn(remember(store, clock).expect("spawned once"));
     let transducer = chosen::transducer(board.port);
@@ -154,6 +154,10 @@ async fn signal(
         pace.wait().await;
         let sample = keeper.next().await;
         let now = clock.now();
+        if now.0 >= next_meal && waiting.frames.borrow().is_empty() {
+            // All that was put there before was taken.
+            alive(SEND, clock);
+        }
         if let Ok(sample) = sample {
             let measured = now.0.saturating_sub(u64::from(sample.age));
             let lost = missing(last_sample.replace(measured), measured);
@@ -174,14 +178,7 @@ async fn signal(
         if let Ok((result, sequence)) = STORED.try_receive() {
             station.stored(now, result, sequence, |message| waiting.put(message));
         }
-        let (idle, dropped) = {
-            let frames = waiting.frames.borrow();
-            (frames.is_empty(), frames.dropped())
-        };
-        if idle {
-            alive(SEND, clock);
-        }
-        station.counters.frames_dropped = dropped;
+        station.counters.frames_dropped = waiting.frames.borrow().dropped();
         station.counters.commands_refused = REFUSED.load(Ordering::Relaxed);
         match ROSTER.lock(|roster| roster.borrow().late(now)) {
             None => watchdog.pet(),
@@ -208,13 +205,12 @@ fn missing(last: Option<u64>, measured: u64) -> u32 {
 /// Sends frames. Period: as they come. Deadline: a period on average (a report takes 0.5 ms on the line); when late,
 /// the queue drops its oldest, and the signal task is none the later for it.
 #[embassy_executor::task]
-async fn send(mut line: Line, waiting: &'static Waiting, mut frame: &'static mut Encoded, clock: Clock) {
+async fn send(mut line: Line, waiting: &'static Waiting, mut frame: &'static mut Encoded) {
     loop {
         waiting.more.wait().await;
         while waiting.frames.borrow_mut().take(&mut frame) {
             // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
             let _ = line.write(frame.as_slice()).await;
-            alive(SEND, clock);
         }
     }
 }

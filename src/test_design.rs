@@ -29,6 +29,7 @@ impl Design for Linear {
             noise: 5_000,
             kind: TransducerKind::Ratiometric {
                 output: [2621, 61604],
+                supply_measured: false,
             },
         },
     };

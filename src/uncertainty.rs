@@ -21,7 +21,15 @@ impl Uncertainty {
     pub const fn of(constants: &DesignConstants, fraction_bits: u32, far: i32) -> Self {
         let transducer = &constants.transducer;
         let averaged = match transducer.kind {
-            TransducerKind::Ratiometric { .. } => BLOCK_LENGTH as i64,
+            TransducerKind::Ratiometric {
+                supply_measured: false,
+                ..
+            } => BLOCK_LENGTH as i64,
+            // Half the codes, and as much noise again from the supply's half.
+            TransducerKind::Ratiometric {
+                supply_measured: true,
+                ..
+            } => BLOCK_LENGTH as i64 / 4,
             _ => 1,
         };
         let (noise, resolution) = (transducer.noise as i64, transducer.resolution as i64);

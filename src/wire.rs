@@ -17,6 +17,8 @@ pub const MAXIMUM_BODY: usize = 80;
 
 const CRC_BYTES: usize = 2;
 
+const CHECK_AND_END: usize = CRC_BYTES + 1;
+
 /// Longest frame on the wire: the code byte of COBS (one for anything below 255), body, CRC and the zero.
 pub const MAXIMUM_FRAME: usize = 1 + MAXIMUM_BODY + CRC_BYTES + 1;
 
@@ -113,22 +115,48 @@ impl Encoded {
 
     /// Makes the body a frame.
     ///
-    /// Below 254 bytes COBS is a chain through the zeros, each replaced by the distance to the next: done in place,
-    /// in a quarter of the instructions of the general encoder, against which it is tested.
+    /// Below 254 bytes COBS is a chain through the zeros, each replaced by the distance to the next: done in place and in
+    /// one pass with the check, in a quarter of the instructions of the general encoder, against which it is tested.
     pub(crate) fn finish(&mut self) {
-        let check = CHECK.checksum(self.bytes.get(1..self.length).unwrap_or(&[]));
-        self.put(check.to_le_bytes());
-        let mut distance = 1_u8;
-        let frame = self.bytes.get_mut(..self.length).unwrap_or(&mut []);
-        for byte in frame.iter_mut().rev() {
-            if *byte == 0 {
-                *byte = distance;
-                distance = 1;
-            } else {
-                distance += 1;
-            }
+        let Some((frame, [low, high, end, ..])) = self.bytes.split_at_mut_checked(self.length) else {
+            return;
+        };
+        let Some((first, body)) = frame.split_first_mut() else {
+            return;
+        };
+        let mut chain = Chain {
+            open: first,
+            distance: 1,
+        };
+        let mut check = CHECK.digest();
+        for byte in body {
+            check.update(&[*byte]);
+            chain.take(byte);
         }
-        self.put([0]);
+        [*low, *high] = check.finalize().to_le_bytes();
+        chain.take(low);
+        chain.take(high);
+        *chain.open = chain.distance;
+        *end = 0;
+        self.length += CHECK_AND_END;
+    }
+}
+
+/// The chain of COBS so far: the code byte that waits for its distance, and what that is by now.
+struct Chain<'a> {
+    open: &'a mut u8,
+    distance: u8,
+}
+
+impl<'a> Chain<'a> {
+    #[inline]
+    fn take(&mut self, byte: &'a mut u8) {
+        if *byte == 0 {
+            *core::mem::replace(&mut self.open, byte) = self.distance;
+            self.distance = 1;
+        } else {
+            self.distance += 1;
+        }
     }
 }
 

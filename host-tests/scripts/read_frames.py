@@ -13,7 +13,7 @@ VERSION = 2
 WARNINGS = ["saturated", "zero unverified", "below zero", "leak suspected", "bubble suspected",
             "calibration refused", "zero aged", "temperature", "clock"]
 FAULTS = {1: "sensor open", 2: "sensor short", 3: "zeroing", 4: "settling", 5: "samples lost", 6: "converter stalled",
-          7: "stuck", 8: "jump", 9: "reset loop", 16: "sensor absent", 17: "bus fault", 18: "wrong sensor",
+          7: "stuck", 8: "jump", 9: "reset loop", 10: "sensor supply", 16: "sensor absent", 17: "bus fault", 18: "wrong sensor",
           19: "sensor calibration", 20: "sensor busy", 21: "sensor memory", 22: "sensor saturated",
           23: "sensor reset", 24: "sensor implausible"}
 TOUCH = ["unknown", "untouched", "touched"]

@@ -1,9 +1,12 @@
 //! NOR flash whose power fails when it is told to: programming only clears bits, erasing sets them, and what is under
 //! way when power goes is left half done.
 
+use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
+use fingertip::calibration::Calibration;
+use fingertip::store::{Identity, Store};
 
 /// Steps that one erasure is divided into: power may fail between and within them.
 pub const ERASE_STEPS: u64 = 16;
@@ -210,4 +213,18 @@ impl<const SLOT: usize> NorFlash for SimulatedFlash<SLOT> {
         }
         Ok(())
     }
+}
+
+/// The bytes of two slots that one calibration was saved in.
+///
+/// # Panics
+/// Never: nothing fails that memory.
+pub fn saved<const SLOT: usize>(identity: Identity, calibration: Calibration) -> Vec<u8> {
+    let (mut store, _) = block_on(Store::open(
+        SimulatedFlash::<SLOT>::erased(1),
+        SLOT as u32,
+        identity,
+    ));
+    block_on(store.save(Some(calibration))).expect("the memory is sound");
+    store.into_flash().bytes
 }

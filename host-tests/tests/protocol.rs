@@ -1,7 +1,9 @@
 //! The protocol's page, the reader in Python and the firmware agree, byte for byte.
 
 use fingertip::command::{self, Command, Request};
-use fingertip::telemetry;
+use fingertip::report::{Fault, Measurement, Microseconds, Report, Warnings};
+use fingertip::telemetry::{self, Frame, Hello, LastFault, Message, ResetCause, Stored};
+use fingertip::touch::Touch;
 use host_tests::workspace;
 use std::fs;
 use std::io::Write;
@@ -74,7 +76,7 @@ fn the_pages_examples_are_what_the_firmware_sends_and_takes() {
 #[test]
 fn the_page_names_every_code() {
     let page = fs::read_to_string(workspace().join("src/PROTOCOL.md")).expect("the page is there");
-    for (fault, code) in fingertip::report::Fault::CODES {
+    for (fault, code) in Fault::CODES {
         assert!(page.contains(&format!("| {code} | {fault}")), "{code} {fault}");
     }
     for (kind, code) in command::CommandKind::CODES {
@@ -84,7 +86,7 @@ fn the_page_names_every_code() {
         assert!(page.contains(&format!("| {code:#04x} | {words} |")), "{words}");
     }
     for bit in 0..9_u16 {
-        let warning = fingertip::report::Warnings::from_bits(1 << bit).expect("it is known");
+        let warning = Warnings::from_bits(1 << bit).expect("it is known");
         assert!(page.contains(&format!("| {bit} | {warning} |")), "{warning}");
     }
 }
@@ -150,5 +152,86 @@ fn the_commands_of_the_reader_in_python_are_the_firmwares() {
         if let Some(bytes) = reader(arguments, &[]) {
             assert_eq!(bytes, example(what), "{what}");
         }
+    }
+}
+
+/// A frame of this message, numbered 0.
+fn framed(message: Message) -> Vec<u8> {
+    let frame = Frame {
+        sequence: 0,
+        dropped: 0,
+        message,
+    };
+    telemetry::encode(&frame).as_slice().to_vec()
+}
+
+fn report(outcome: Result<Measurement, Fault>) -> Vec<u8> {
+    framed(Message::Report {
+        report: Report {
+            time: Microseconds(0),
+            outcome,
+        },
+        pressure_fraction_bits: 0,
+    })
+}
+
+#[test]
+fn the_reader_in_python_has_a_word_for_every_code() {
+    let mut said: Vec<(Vec<u8>, String)> = vec![];
+    for (fault, _) in Fault::CODES {
+        said.push((report(Err(fault)), format!("fault: {fault}")));
+    }
+    let reading = Measurement::default();
+    for bit in 0..16 {
+        if let Some(warnings) = Warnings::from_bits(1 << bit) {
+            let warned = Measurement { warnings, ..reading };
+            said.push((report(Ok(warned)), format!("warning: {warnings}, unknown")));
+        }
+    }
+    for (touch, _) in Touch::CODES {
+        let word = format!("ok, {touch:?},").to_lowercase();
+        said.push((report(Ok(Measurement { touch, ..reading })), word));
+    }
+    for (reset_cause, _) in ResetCause::CODES {
+        let hello = Hello {
+            reset_cause,
+            ..Hello::default()
+        };
+        said.push((framed(Message::Hello(hello)), format!("reset by {reset_cause},")));
+    }
+    for ((stored, _), word) in
+        Stored::CODES
+            .into_iter()
+            .zip(["none", "serves", "other", "damaged", "unreadable"])
+    {
+        let hello = Hello {
+            stored,
+            ..Hello::default()
+        };
+        said.push((
+            framed(Message::Hello(hello)),
+            format!("stored {word}").replace("other", "another"),
+        ));
+    }
+    for ((last_fault, _), word) in
+        LastFault::CODES
+            .into_iter()
+            .zip(["nothing", "late", "panic", "hard fault", "hang"])
+    {
+        let hello = Hello {
+            last_fault,
+            ..Hello::default()
+        };
+        said.push((framed(Message::Hello(hello)), format!("before: {word}")));
+    }
+    let stream: Vec<u8> = said.iter().flat_map(|(bytes, _)| bytes.clone()).collect();
+    let Some(lines) = reader(&[], &stream) else {
+        eprintln!("no python3: not tested");
+        return;
+    };
+    let lines = String::from_utf8(lines).expect("it is text");
+    assert_eq!(lines.lines().count(), said.len(), "{lines}");
+    for (line, (_, words)) in lines.lines().zip(&said) {
+        assert!(line.contains(words), "\"{line}\" does not say \"{words}\"");
     }
 }

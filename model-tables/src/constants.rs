@@ -70,6 +70,8 @@ pub enum TransducerKind {
     Ratiometric {
         /// Output at the two ends of the range, in `1 / 65536` of the supply, increasing.
         output: [u32; 2],
+        /// Whether that supply is another than the converter's reference, and measured beside the output.
+        supply_measured: bool,
     },
     /// Honeywell ABP2 on I2C.
     Abp2 {

@@ -107,6 +107,8 @@ pub enum TransducerKindSection {
     Ratiometric {
         /// Output at the two ends of the range, fractions of the supply.
         output_fraction_at_range: [f64; 2],
+        /// What the transducer is supplied with.
+        supply: Supply,
     },
     /// `"abp2"`: Honeywell ABP2.
     Abp2 {
@@ -122,6 +124,16 @@ pub enum TransducerKindSection {
         /// Seven-bit I2C address, 0x76 or 0x77.
         address: u8,
     },
+}
+
+/// `supply` of a ratiometric transducer.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Supply {
+    /// `"reference"`: the converter's own reference, so that it cancels. The default.
+    #[default]
+    Reference,
+    /// `"measured"`: another one, which the board measures beside the output.
+    Measured,
 }
 
 /// Transfer function of a Honeywell ABP2.

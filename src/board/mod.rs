@@ -4,6 +4,12 @@
 mod i2c;
 mod memory;
 
+/// Whether the transducer has a supply of its own, which is measured beside its output.
+#[cfg(transducer = "ratiometric")]
+const SUPPLY_MEASURED: bool = fingertip::transducer::ratiometric::supply_measured(
+    &<fingertip::image::ImageDesign as fingertip::design::Design>::CONSTANTS.transducer,
+);
+
 #[cfg(feature = "board-nucleo-f429zi")]
 mod nucleo_f429zi;
 #[cfg(feature = "board-nucleo-f429zi")]

@@ -4,14 +4,18 @@
 //! |---|---|---|
 //! | clock | HSE, 8 MHz, bypass | the ST-LINK's MCO drives it by default (UM1974 6.8.1); a crystal is not fitted |
 //! | transducer, analogue | PA3, `ADC123_IN3` | A0 of the Zio and Arduino header (UM1974 table 19) |
+//! | its supply, where it is measured | PC0, `ADC123_IN10` | A1 of that header |
 //! | transducer, bus | PB8, PB9, I2C1 | D15 and D14 of that header, with pull-ups at the transducer |
 //! | serial port | PD8, PD9, USART3 | the ST-LINK's virtual COM port by default (UM1974 6.9) |
 //! | calibration | flash from `0x0810_0000`, two sectors of 16 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
 //!
-//! The transducer's output must reach A0 in the ratio of its supply to the board's 3.3 V, which is the
-//! converter's reference (for a 5 V part: through a divider from the same 5 V), at no more than 10 kilo-ohm. A
-//! pull-up of about 1 megohm to 3.3 V makes a broken wire read as open.
+//! The transducer's output reaches A0 at no more than 10 kilo-ohm, as a share of the board's 3.3 V, which are the
+//! converter's reference and supply the transducer too. A transducer with another supply (`supply = "measured"`: 5 V,
+//! say) gives its output to A0 and its supply to A1, through two dividers of one ratio that leave 1.7 to 3.2 V of the
+//! supply. A pull-up of about 1 megohm to 3.3 V makes a broken wire read as open.
 
+#[cfg(transducer = "ratiometric")]
+use super::SUPPLY_MEASURED;
 #[cfg(not(transducer = "ratiometric"))]
 use super::i2c::{I2cBus, Wires};
 use super::memory::Patient;
@@ -272,7 +276,8 @@ static RING: [Block; 2] = [const { [const { AtomicU32::new(0) }; BLOCK_LENGTH / 
 /// ADC1 on PA3, free-running at 4 MHz, its DMA (stream 0 of DMA2, channel 0) filling [`RING`] without an interrupt: the
 /// clock, of the same oscillator, says when a block is there.
 ///
-/// 28 cycles of sampling (7 us, enough for 10 kilo-ohm) and 12 of conversion are 10 us; 100 of them 1 ms to the cycle.
+/// 28 cycles of sampling (7 us, enough for 10 kilo-ohm) and 12 of conversion are 10 us; 100 of them 1 ms to the cycle. Where
+/// the supply is measured, every second one is of PC0.
 #[cfg(transducer = "ratiometric")]
 pub(crate) struct Converter {
     ticker: Ticker,
@@ -281,6 +286,8 @@ pub(crate) struct Converter {
 #[cfg(transducer = "ratiometric")]
 impl Converter {
     const CHANNEL: u8 = 3;
+    const SUPPLY: u8 = 10;
+    const SUPPLY_PIN: usize = 0;
 
     /// The ticks come this long after the end of a block, microseconds.
     const MARGIN: u64 = 20;
@@ -294,8 +301,18 @@ impl Converter {
         let adc = pac::ADC1;
         adc.smpr2()
             .modify(|w| w.set_smp(usize::from(Self::CHANNEL), SampleTime::CYCLES28));
-        adc.sqr1().modify(|w| w.set_l(0));
+        adc.sqr1().modify(|w| w.set_l(u8::from(SUPPLY_MEASURED)));
         adc.sqr3().modify(|w| w.set_sq(0, Self::CHANNEL));
+        if SUPPLY_MEASURED {
+            pac::GPIOC
+                .moder()
+                .modify(|w| w.set_moder(Self::SUPPLY_PIN, pac::gpio::vals::Moder::ANALOG));
+            // The upper channels have a register of their own, from 10 on.
+            adc.smpr1()
+                .modify(|w| w.set_smp(usize::from(Self::SUPPLY) - 10, SampleTime::CYCLES28));
+            adc.sqr3().modify(|w| w.set_sq(1, Self::SUPPLY));
+            adc.cr1().modify(|w| w.set_scan(true));
+        }
         Self {
             ticker: Ticker::every(Duration::from_micros(u64::from(PERIOD))),
         }

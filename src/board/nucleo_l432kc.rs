@@ -4,17 +4,21 @@
 //! |---|---|---|
 //! | clock | HSI16 | no crystal is fitted but the 32 kHz one; 1 % off at most (DS11451 table 49) is enough for the serial port |
 //! | transducer, analogue | PA0, `ADC1_IN5` | A0 of the Nano header (UM1956 table 9) |
+//! | its supply, where it is measured | PA1, `ADC1_IN6` | A1 of that header |
 //! | transducer, bus | PB6, PB7, I2C1 | D5 and D4 of that header, with pull-ups at the transducer; A5 and A4 (PA5, PA6) are wired to them by default (SB16, SB18) and stay inputs |
 //! | serial port | PA2, PA15, USART2 | the ST-LINK's virtual COM port by default (UM1956 6.8) |
 //! | calibration | the last two pages of flash, 2 KB each | erasing one stalls the code for 25 ms at most (DS11451 table 58): samples are lost, which is said |
 //!
-//! The transducer's output must reach A0 in the ratio of its supply to the board's 3.3 V, which is the
-//! converter's reference, at no more than 10 kilo-ohm. A pull-up of about 1 megohm to 3.3 V makes a broken wire read as
-//! open.
+//! The transducer's output reaches A0 at no more than 10 kilo-ohm, as a share of the board's 3.3 V, which are the
+//! converter's reference and supply the transducer too. A transducer with another supply (`supply = "measured"`: 5 V,
+//! say) gives its output to A0 and its supply to A1, through two dividers of one ratio that leave 1.7 to 3.2 V of the
+//! supply. A pull-up of about 1 megohm to 3.3 V makes a broken wire read as open.
 //!
 //! 24 MHz is the slowest from which the converter's and the serial port's clock divide, and below the 26 MHz of the lower
 //! core voltage. Between samples the core sleeps; the converter needs the clocks, so it does not stop.
 
+#[cfg(transducer = "ratiometric")]
+use super::SUPPLY_MEASURED;
 #[cfg(not(transducer = "ratiometric"))]
 use super::i2c::{I2cBus, Wires};
 use super::memory::Patient;
@@ -229,7 +233,7 @@ static RING: [Block; 2] = [const { [const { AtomicU32::new(0) }; BLOCK_LENGTH / 
 /// clock, of the same oscillator, says when a block is there.
 ///
 /// 47.5 cycles of sampling (7.9 us, enough for 10 kilo-ohm) and 12.5 of conversion are 10 us; 100 of them 1 ms to the
-/// cycle.
+/// cycle. Where the supply is measured, every second one is of PA1.
 #[cfg(transducer = "ratiometric")]
 pub(crate) struct Converter {
     ticker: Ticker,
@@ -239,6 +243,8 @@ pub(crate) struct Converter {
 impl Converter {
     const CHANNEL: u8 = 5;
     const PIN: usize = 0;
+    const SUPPLY: u8 = 6;
+    const SUPPLY_PIN: usize = 1;
 
     /// The ticks come this long after the end of a block, microseconds.
     const MARGIN: u64 = 20;
@@ -255,9 +261,17 @@ impl Converter {
         adc.smpr(0)
             .modify(|w| w.set_smp(usize::from(Self::CHANNEL), SampleTime::CYCLES47_5));
         adc.sqr1().modify(|w| {
-            w.set_l(0);
+            w.set_l(u8::from(SUPPLY_MEASURED));
             w.set_sq(0, Self::CHANNEL);
         });
+        if SUPPLY_MEASURED {
+            pac::GPIOA
+                .moder()
+                .modify(|w| w.set_moder(Self::SUPPLY_PIN, pac::gpio::vals::Moder::ANALOG));
+            adc.smpr(0)
+                .modify(|w| w.set_smp(usize::from(Self::SUPPLY), SampleTime::CYCLES47_5));
+            adc.sqr1().modify(|w| w.set_sq(1, Self::SUPPLY));
+        }
         adc.cfgr().modify(|w| {
             w.set_cont(true);
             w.set_dmaen(true);

@@ -53,7 +53,10 @@ impl<T: Transducer, D: DelayNs> Keeper<T, D> {
         let outcome = self.attempt().await;
         match outcome {
             // A line at its rail is what the transducer says, and no failure to hear it; lost samples are past.
-            Ok(_) | Err(Fault::SensorOpen | Fault::SensorShort | Fault::SamplesLost) => self.faults = 0,
+            Ok(_)
+            | Err(Fault::SensorOpen | Fault::SensorShort | Fault::SensorSupply | Fault::SamplesLost) => {
+                self.faults = 0;
+            }
             Err(_) => {
                 self.faults = self.faults.saturating_add(1);
                 self.started &= self.faults < 2;

@@ -1,8 +1,9 @@
 //! A transducer whose voltage is a share of its supply, read by the chip's own converter: the sum of a block of codes
-//! -> gauge pressure. Where the supply is also the converter's reference, it cancels.
+//! -> gauge pressure. Where the supply is also the converter's reference, it cancels; where it is another, the board
+//! measures it too, in every second code, and it cancels by a division.
 
 use super::{Millipascals, Sample, Transducer};
-use crate::counts::{self, Block, CountSum, PERIOD, Ring, Window};
+use crate::counts::{self, Block, CountSum, Edges, PERIOD, Ring, Window};
 use crate::pressure::saturate;
 use crate::report::Fault;
 use model_tables::constants;
@@ -14,7 +15,8 @@ pub trait Converter {
     /// One conversion, microseconds: [`counts::BLOCK_LENGTH`] of them are a [`PERIOD`].
     const CONVERSION: u32;
 
-    /// Starts it at the front of the ring, also from any state it is stuck in.
+    /// Starts it at the front of the ring, also from any state it is stuck in. Where the supply is measured, the first
+    /// code of two is the output's and the second the supply's.
     fn restart(&mut self);
 
     /// Waits until a block has just been filled: once a [`PERIOD`], at once when that is past.
@@ -28,12 +30,24 @@ pub trait Converter {
     fn ring(&self) -> &[Block; 2];
 }
 
+/// Whether a design's transducer has a supply of its own, which the board measures beside the output.
+pub const fn supply_measured(transducer: &constants::Transducer) -> bool {
+    matches!(
+        transducer.kind,
+        TransducerKind::Ratiometric {
+            supply_measured: true,
+            ..
+        }
+    )
+}
+
 /// The transducer on a converter.
 #[derive(Debug)]
 pub struct Ratiometric<C> {
     converter: C,
     ring: Ring,
-    window: Window,
+    edges: Edges,
+    supply_measured: bool,
     conversion: Conversion,
 }
 
@@ -43,10 +57,17 @@ impl<C: Converter> Ratiometric<C> {
     /// # Panics
     /// If the design has another kind of transducer.
     pub fn new(transducer: &constants::Transducer, converter: C) -> Self {
+        let supply_measured = supply_measured(transducer);
+        let window = Window::of(&transducer.kind);
         Self {
             converter,
             ring: Ring::default(),
-            window: Window::of(&transducer.kind),
+            edges: if supply_measured {
+                Edges::of_output_and_supply(window)
+            } else {
+                Edges::of_output(window)
+            },
+            supply_measured,
             conversion: Conversion::of(transducer),
         }
     }
@@ -66,7 +87,12 @@ impl<C: Converter> Transducer for Ratiometric<C> {
             return Err(Fault::SamplesLost);
         };
         let complete = self.ring.look(position)?;
-        let sum = counts::sum(&self.converter.ring()[complete.half], self.window);
+        let block = &self.converter.ring()[complete.half];
+        let sum = if self.supply_measured {
+            counts::sum_of_supply(block, self.edges)
+        } else {
+            counts::sum(block, self.edges)
+        };
         let now = self.converter.position();
         if now.is_some_and(|now| self.ring.still_holds(now)) {
             Ok(self.conversion.sample(sum?, complete.since * C::CONVERSION))
@@ -99,7 +125,10 @@ impl Conversion {
     /// # Panics
     /// At compile time, for a transducer that the converter cannot read, or figures out of all reason.
     pub const fn of(transducer: &constants::Transducer) -> Self {
-        let TransducerKind::Ratiometric { output: [low, high] } = transducer.kind else {
+        let TransducerKind::Ratiometric {
+            output: [low, high], ..
+        } = transducer.kind
+        else {
             panic!("the converter reads ratiometric transducers only")
         };
         let [start, end] = transducer.range;
@@ -179,6 +208,7 @@ mod tests {
             noise: 10_000,
             kind: TransducerKind::Ratiometric {
                 output: [2621, 61604],
+                supply_measured: false,
             },
         }
     }
@@ -190,7 +220,7 @@ mod tests {
 
     /// The line through both ends in real numbers, millipascals.
     fn line(sum: u32, transducer: &constants::Transducer) -> f64 {
-        let TransducerKind::Ratiometric { output } = transducer.kind else {
+        let TransducerKind::Ratiometric { output, .. } = transducer.kind else {
             unreachable!()
         };
         let share = f64::from(sum) / f64::from(CountSum::FULL_SCALE);
@@ -293,14 +323,40 @@ mod tests {
 
     /// Both blocks at half the supply.
     fn kept() -> (Keeper<Ratiometric<HandRing>, Stopwatch>, Hand) {
+        kept_with(false, [2047, 2048])
+    }
+
+    /// Every two codes of both blocks.
+    fn kept_with(
+        supply_measured: bool,
+        [first, second]: [u32; 2],
+    ) -> (Keeper<Ratiometric<HandRing>, Stopwatch>, Hand) {
         let hand = Hand::default();
-        let block = || core::array::from_fn(|_| AtomicU32::new(2048 << 16 | 2047));
+        let block = || core::array::from_fn(|_| AtomicU32::new(second << 16 | first));
         let converter = HandRing {
             hand: hand.clone(),
             ring: [block(), block()],
         };
-        let transducer = Ratiometric::new(&mpx5100([0, 100_000]), converter);
+        let mut transducer = mpx5100([0, 100_000]);
+        transducer.kind = TransducerKind::Ratiometric {
+            output: [2621, 61604],
+            supply_measured,
+        };
+        let transducer = Ratiometric::new(&transducer, converter);
         (Keeper::new(transducer, Stopwatch::default()), hand)
+    }
+
+    #[test]
+    fn a_measured_supply_is_divided_by() {
+        // Half of a supply of 3/4 of the reference.
+        let (mut keeper, _) = kept_with(true, [1536, 3072]);
+        let sample = block_on(keeper.next()).expect("nothing is wrong");
+        assert!(sample.pressure.0.abs_diff(51_111_000) < 2000, "{sample:?}");
+        let (mut keeper, hand) = kept_with(true, [0, 0]);
+        for _ in 0..5 {
+            assert_eq!(block_on(keeper.next()), Err(Fault::SensorSupply));
+        }
+        assert_eq!(hand.0.borrow().restarts, 1);
     }
 
     #[test]

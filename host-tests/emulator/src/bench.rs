@@ -102,7 +102,7 @@ pub fn run<L: Listener>(
         .collect::<Result<_, _>>()?;
     let counter = CallCounter::new(counted);
     let elf = rigless::image::Image::new(image.path(), image.bytes().to_vec(), None).map_err(emulator)?;
-    let board = Box::new(Nucleo::new(plant.transducer().part).map_err(emulator)?);
+    let board = Box::new(Nucleo::new(&plant.transducer()).map_err(emulator)?);
     let mut session = Session::new(board, 0, VirtualNanos(LISTEN)).map_err(emulator)?;
     for address in counter.addresses() {
         session.watch(Watch::Instruction(address));
@@ -116,7 +116,11 @@ pub fn run<L: Listener>(
         last_stop: 0.0,
         end: VirtualNanos((duration * 1e9) as u64),
     };
-    let images = [elf];
+    let mut images = vec![elf];
+    for (address, bytes) in image.beside() {
+        let beside = rigless::image::Image::new(image.path(), bytes.clone(), Some(*address));
+        images.push(beside.map_err(emulator)?);
+    }
     let finished = rigless::emulator::run(session, &Start::new(&images), driver).map_err(emulator)?;
     let (time, instructions) = finished
         .stop

@@ -2,7 +2,7 @@
 //! bus, its serial wire to the host.
 
 use crate::sensor::Sensor;
-use crate::transducer::{Output, Part};
+use crate::transducer::{Output, Transducer};
 use rigless::chip::Timeline;
 use rigless::chip::uart::Peer;
 use rigless::cpu::armv7m::windows;
@@ -40,6 +40,8 @@ const HALF_CODE_MICROVOLTS: f64 = REFERENCE_MICROVOLTS as f64 / 4095.0 / 2.0;
 /// The transducer's pin: A0 of the Arduino header, PA3, channel 3 of ADC1.
 const TRANSDUCER_CONVERTER: usize = 0;
 const TRANSDUCER_CHANNEL: u8 = 3;
+/// Its supply's: A1, PC0.
+const SUPPLY_CHANNEL: u8 = 10;
 /// The bus of D14 and D15: I2C1, and the one part on it.
 const BUS: usize = 0;
 const ON_THE_BUS: usize = 0;
@@ -51,20 +53,21 @@ const HOST_PORT: &str = "USART3";
 pub(crate) struct Nucleo {
     mcu: Stm32f427,
     transducer: Channel,
+    supply: Channel,
     host_port: usize,
 }
 
 impl Nucleo {
     /// The board as it is powered on, with a transducer, and a host on its serial wire.
-    pub(crate) fn new(part: Part) -> Result<Self, Error> {
+    pub(crate) fn new(transducer: &Transducer) -> Result<Self, Error> {
         let mut mcu = Stm32f427::new()?;
         mcu.rcc.attach_crystals(CRYSTAL, NO_CRYSTAL);
         mcu.set_supply(SUPPLY);
         for converter in &mut mcu.adc {
             converter.set_reference(REFERENCE_MICROVOLTS);
         }
-        if let Part::Dps310(address) = part {
-            mcu.i2c[BUS].attach(Sensor::new(address));
+        if let Some(sensor) = Sensor::new(transducer) {
+            mcu.i2c[BUS].attach(sensor);
         }
         let host_port = SERIAL_PORTS
             .iter()
@@ -74,6 +77,7 @@ impl Nucleo {
         Ok(Self {
             mcu,
             transducer: Channel::new(TRANSDUCER_CHANNEL).expect("a pin's channel"),
+            supply: Channel::new(SUPPLY_CHANNEL).expect("a pin's channel"),
             host_port,
         })
     }
@@ -81,9 +85,11 @@ impl Nucleo {
     /// What the transducer does from now on.
     pub(crate) fn set_transducer(&mut self, output: Output) {
         match output {
-            Output::Share(share) => {
-                let microvolts = share * f64::from(REFERENCE_MICROVOLTS) + HALF_CODE_MICROVOLTS;
-                self.mcu.adc[TRANSDUCER_CONVERTER].set_input(self.transducer, microvolts as u32);
+            Output::Share(output, supply) => {
+                for (channel, share) in [(self.transducer, output), (self.supply, supply)] {
+                    let microvolts = share * f64::from(REFERENCE_MICROVOLTS) + HALF_CODE_MICROVOLTS;
+                    self.mcu.adc[TRANSDUCER_CONVERTER].set_input(channel, microvolts as u32);
+                }
             }
             Output::Pressure(pascals, wiring) => {
                 if let Some(sensor) = self.mcu.i2c[BUS].chip_mut::<Sensor>(ON_THE_BUS) {

@@ -1,9 +1,9 @@
 //! A design file to a plant: the full model, solved afresh.
 
 use crate::plant::Plant;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, WireFault};
 use crate::transducer::{Part, Transducer, Wiring};
-use model_tables::design_file::{DesignFile, DesignFileError, TransducerKindSection};
+use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
 use model_tables::press::{CurveFailure, ModelError};
 use model_tables::rung::Rung;
 use std::fmt;
@@ -26,8 +26,6 @@ pub enum FingertipDesignError {
     File(DesignFileError),
     /// The file lacks a section that a press needs.
     Lacks(PathBuf, &'static str),
-    /// There is no model of the transducer.
-    NoModel(PathBuf),
     /// The scenario has a fault that the transducer cannot have.
     NoSuchFault(PathBuf, Wiring),
     /// The model has no rest state.
@@ -41,11 +39,6 @@ impl fmt::Display for FingertipDesignError {
         match self {
             Self::File(error) => error.fmt(f),
             Self::Lacks(path, section) => write!(f, "{}: [{section}] is missing", path.display()),
-            Self::NoModel(path) => write!(
-                f,
-                "{}: transducer.kind must be \"ratiometric\" or \"dps310\": of the others there is no emulated part",
-                path.display()
-            ),
             Self::NoSuchFault(path, wiring) => write!(
                 f,
                 "{}: the scenario's wire.is = {wiring:?} cannot happen to its transducer: choose another scenario, or \
@@ -59,6 +52,16 @@ impl fmt::Display for FingertipDesignError {
 }
 
 impl std::error::Error for FingertipDesignError {}
+
+/// The one address that an MS5837 has.
+const MS5837: u8 = 0x76;
+
+fn on_the_bus(part: Part) -> (Part, [f64; 2], Supply) {
+    (part, [0.0; 2], Supply::Reference)
+}
+
+/// A measured supply: 5 V through a divider that leaves 3 V, of 3.3 V.
+const MEASURED_SUPPLY: f64 = 3.0 / 3.3;
 
 /// The workspace.
 pub fn workspace() -> PathBuf {
@@ -83,20 +86,31 @@ impl FingertipDesign {
         let lacks = |section| FingertipDesignError::Lacks(path.clone(), section);
         let max_indentation = file.max_indentation_mm.ok_or_else(|| lacks("press"))? * 1e-3;
         let section = file.transducer.ok_or_else(|| lacks("transducer"))?;
-        let (part, output_at_range) = match section.kind {
+        let (part, output_at_range, supply) = match section.kind {
             TransducerKindSection::Ratiometric {
                 output_fraction_at_range,
-            } => (Part::Analogue, output_fraction_at_range),
-            TransducerKindSection::Dps310 { address } => (Part::Dps310(address), [0.0; 2]),
-            TransducerKindSection::Abp2 { .. } | TransducerKindSection::Ms5837 => {
-                return Err(FingertipDesignError::NoModel(path));
-            }
+                supply,
+            } => (Part::Analogue, output_fraction_at_range, supply),
+            TransducerKindSection::Dps310 { address } => on_the_bus(Part::Dps310(address)),
+            TransducerKindSection::Abp2 { address, transfer } => on_the_bus(Part::Abp2(
+                address,
+                // 10 % and 90 %, or 30 % and 70 %, of 2^24.
+                match transfer {
+                    Transfer::A => [1_677_722, 15_099_494],
+                    Transfer::B => [5_033_165, 11_744_051],
+                },
+            )),
+            TransducerKindSection::Ms5837 => on_the_bus(Part::Ms5837(MS5837)),
         };
         let transducer = Transducer {
             range: section.range_kpa.map(|kilopascals| kilopascals * 1e3),
             output_at_range,
             noise: section.noise_pa,
             part,
+            supply: match supply {
+                Supply::Reference => 1.0,
+                Supply::Measured => MEASURED_SUPPLY,
+            },
         };
         Ok(Self {
             path,
@@ -122,8 +136,8 @@ impl FingertipDesign {
     /// # Errors
     /// [`FingertipDesignError::NoSuchFault`], [`FingertipDesignError::Rest`] and [`FingertipDesignError::Press`].
     pub fn plant(&self, scenario: Scenario) -> Result<Plant, FingertipDesignError> {
-        let part = self.transducer.part;
-        if let Some(fault) = scenario.wire.iter().find(|fault| !fault.is.concerns(part)) {
+        let concerns = |fault: &&WireFault| !fault.is.concerns(&self.transducer);
+        if let Some(fault) = scenario.wire.iter().find(concerns) {
             return Err(FingertipDesignError::NoSuchFault(self.path.clone(), fault.is));
         }
         let mut press = Rung::new(&self.file).map_err(FingertipDesignError::Rest)?;

@@ -20,6 +20,7 @@ const CORE_COUPLED: std::ops::Range<u64> = 0x1000_0000..0x1001_0000;
 pub struct Image {
     path: PathBuf,
     elf: Vec<u8>,
+    beside: Vec<(u64, Vec<u8>)>,
 }
 
 /// Why there is no image, or not what was looked for in it.
@@ -147,6 +148,7 @@ impl Image {
         let image = Self {
             path: path.to_owned(),
             elf,
+            beside: vec![],
         };
         image.file()?;
         Ok(image)
@@ -160,6 +162,18 @@ impl Image {
     /// The ELF file.
     pub fn bytes(&self) -> &[u8] {
         &self.elf
+    }
+
+    /// The same with these bytes in flash beside it, from an address on.
+    #[must_use]
+    pub fn with_flash(mut self, address: u64, bytes: Vec<u8>) -> Self {
+        self.beside.push((address, bytes));
+        self
+    }
+
+    /// What lies in flash beside it: addresses and bytes.
+    pub fn beside(&self) -> &[(u64, Vec<u8>)] {
+        &self.beside
     }
 
     /// What it takes of flash and RAM.

@@ -7,12 +7,14 @@
 //! [`output`] files.
 #![forbid(unsafe_code)]
 
+mod abp2;
 pub mod accuracy;
 pub mod bench;
 mod board;
 pub mod chart;
 pub mod fingertip_design;
 pub mod image;
+mod ms5837;
 pub mod noise;
 pub mod output;
 pub mod plant;

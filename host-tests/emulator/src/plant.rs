@@ -18,6 +18,8 @@ pub struct Plant {
     noise: Noise,
     /// Shares of reading of force and indentation that the tables may be off.
     tables_allowed: [f64; 2],
+    /// A share of the largest indentation and its pressure rise: most of the time the plate stands still.
+    last: (f64, f64),
 }
 
 impl Plant {
@@ -38,6 +40,7 @@ impl Plant {
             scenario,
             noise,
             tables_allowed: [0.0; 2],
+            last: (0.0, 0.0),
         }
     }
 
@@ -85,13 +88,27 @@ impl Plant {
     pub fn output(&mut self, time: f64) -> Output {
         // Drawn in every case, so that a fault leaves the noise after it as it would have been.
         let noise = self.transducer.noise * self.noise.deviate();
-        let pressure = self.rest_pressure + self.truth(time).pressure_rise + noise;
+        let share = self.scenario.indentation_share(time);
+        if share.to_bits() != self.last.0.to_bits() {
+            self.last = (share, self.truth(time).pressure_rise);
+        }
+        let pressure = self.rest_pressure + self.last.1 + noise;
         let wiring = self.scenario.wiring(time);
         match (self.transducer.part, wiring) {
-            (Part::Dps310(_), wiring) => Output::Pressure(AIR + pressure, wiring),
-            (Part::Analogue, Wiring::Open) => Output::Share(1.0),
-            (Part::Analogue, Wiring::Short) => Output::Share(0.0),
-            (Part::Analogue, _) => Output::Share(self.transducer.output(pressure)),
+            (Part::Analogue, wiring) => {
+                let supply = match wiring {
+                    Wiring::Sag => 0.9 * self.transducer.supply,
+                    Wiring::Unsupplied => 0.0,
+                    _ => self.transducer.supply,
+                };
+                let output = match wiring {
+                    Wiring::Open => 1.0,
+                    Wiring::Short => 0.0,
+                    _ => supply * self.transducer.output(pressure),
+                };
+                Output::Share(output, supply)
+            }
+            (_, wiring) => Output::Pressure(AIR + pressure, wiring),
         }
     }
 }
@@ -121,6 +138,7 @@ pub(crate) mod tests {
             output_at_range: [0.1, 0.9],
             noise: 10.0,
             part: Part::Analogue,
+            supply: 1.0,
         };
         Plant::new(curve, 2e3, max_indentation, transducer, scenario)
     }
@@ -158,7 +176,7 @@ pub(crate) mod tests {
 
     fn share(plant: &mut Plant, time: f64) -> f64 {
         match plant.output(time) {
-            Output::Share(share) => share,
+            Output::Share(share, _) => share,
             Output::Pressure(..) => unreachable!("the transducer is analogue"),
         }
     }

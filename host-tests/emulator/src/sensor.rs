@@ -1,28 +1,42 @@
-//! A DPS310 on the board's bus, as the emulator's authors model it, and what can happen to it there.
+//! A part on the board's bus, and what can happen to it there: a DPS310 as the emulator's authors model it, an ABP2 or an
+//! MS5837-02BA by their datasheets.
 
-use crate::transducer::Wiring;
+use crate::abp2::Abp2;
+use crate::ms5837::Ms5837;
+use crate::transducer::{AIR, Part, Transducer, Wiring};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rigless::chip::Timeline;
 use rigless::chip::dps310::{Dps310, Sdo};
 use rigless::chip::i2c::Peer;
 use rigless::snapshot::Store;
+use rigless::time::VirtualNanos;
 
-/// Registers of the part.
+/// Registers of the DPS310.
 const MEAS_CFG: u8 = 0x08;
 const RESET: u8 = 0x0C;
 const SOFT_RESET: u8 = 0x09;
 /// Both ready flags of `MEAS_CFG`.
 const READY: u8 = 0x30;
-/// A delayed part shows its flags at the third look.
+/// A delayed DPS310 shows its flags at the third look.
 const LOOKS: u8 = 2;
+/// Any other part is late by this.
+const LATE: VirtualNanos = VirtualNanos(500_000);
 /// An intermittent bus does not acknowledge one start in this many.
 const ONE_IN: u64 = 7;
+
+/// The part itself.
+#[derive(Debug)]
+enum Chip {
+    Dps310(Box<Dps310>),
+    Abp2(Abp2),
+    Ms5837(Ms5837),
+}
 
 /// The part behind its wires.
 #[derive(Debug)]
 pub(crate) struct Sensor {
-    chip: Dps310,
+    chip: Chip,
     address: u8,
     wiring: Wiring,
     /// The part is to be reset at the next start.
@@ -37,15 +51,26 @@ pub(crate) struct Sensor {
 }
 
 impl Sensor {
-    /// The part at an address, powered up.
-    pub(crate) fn new(address: u8) -> Self {
-        let sdo = if address == Sdo::Low.address() {
-            Sdo::Low
-        } else {
-            Sdo::High
+    /// The part of a transducer, powered up; nothing if it is on no bus.
+    pub(crate) fn new(transducer: &Transducer) -> Option<Self> {
+        let (chip, address) = match transducer.part {
+            Part::Analogue => return None,
+            Part::Dps310(address) => {
+                let sdo = if address == Sdo::Low.address() {
+                    Sdo::Low
+                } else {
+                    Sdo::High
+                };
+                (Chip::Dps310(Box::new(Dps310::new(sdo))), address)
+            }
+            Part::Abp2(address, counts) => {
+                let part = Abp2::new(counts.map(f64::from), transducer.range);
+                (Chip::Abp2(part), address)
+            }
+            Part::Ms5837(address) => (Chip::Ms5837(Ms5837::new()), address),
         };
-        Self {
-            chip: Dps310::new(sdo),
+        Some(Self {
+            chip,
             address,
             wiring: Wiring::Sound,
             resets: false,
@@ -54,23 +79,48 @@ impl Sensor {
             hidden: 0,
             starts: 0,
             garbage: ChaCha8Rng::seed_from_u64(0),
-        }
+        })
     }
 
     /// The pressure on the part, pascals absolute, and what is wrong with its wires. A stuck part feels nothing.
     pub(crate) fn set(&mut self, pascals: f64, wiring: Wiring) {
-        if wiring != Wiring::Stuck {
-            self.chip.set_pressure(pascals.round().max(0.0) as u32);
+        let late = match wiring {
+            Wiring::Slow => None,
+            Wiring::Delayed => Some(LATE),
+            _ => Some(VirtualNanos(0)),
+        };
+        let feels = wiring != Wiring::Stuck;
+        match &mut self.chip {
+            Chip::Dps310(chip) if feels => chip.set_pressure(pascals.round().max(0.0) as u32),
+            Chip::Dps310(_) => {}
+            Chip::Abp2(chip) => {
+                chip.late = late;
+                if feels {
+                    chip.pascals = pascals - AIR;
+                }
+            }
+            Chip::Ms5837(chip) => {
+                chip.late = late;
+                if feels {
+                    chip.pascals = pascals;
+                }
+            }
         }
         self.resets |= wiring == Wiring::Reset && self.wiring != Wiring::Reset;
         self.wiring = wiring;
     }
 
     fn reset(&mut self, context: &mut Timeline<'_, '_>) {
-        self.chip.start(self.address, false, context);
-        self.chip.write(RESET, context);
-        self.chip.write(SOFT_RESET, context);
-        self.chip.stop(context);
+        match &mut self.chip {
+            Chip::Dps310(chip) => {
+                chip.start(self.address, false, context);
+                chip.write(RESET, context);
+                chip.write(SOFT_RESET, context);
+                chip.stop(context);
+            }
+            Chip::Abp2(chip) => chip.reset(),
+            Chip::Ms5837(chip) => chip.reset(),
+        }
     }
 }
 
@@ -87,9 +137,17 @@ impl Peer for Sensor {
         let heard = match self.wiring {
             Wiring::Off => false,
             Wiring::Intermittent => !self.starts.is_multiple_of(ONE_IN),
-            _ => true,
+            _ => address == self.address,
         };
-        heard && self.chip.start(address, read, context)
+        if !heard {
+            return false;
+        }
+        match &mut self.chip {
+            Chip::Dps310(chip) => return chip.start(address, read, context),
+            Chip::Abp2(chip) => chip.start(read, context),
+            Chip::Ms5837(chip) => chip.start(read, context),
+        }
+        true
     }
 
     fn write(&mut self, byte: u8, context: &mut Timeline<'_, '_>) -> bool {
@@ -101,19 +159,28 @@ impl Peer for Sensor {
             }
             self.register = self.register.wrapping_add(1);
         }
-        self.chip.write(byte, context)
+        match &mut self.chip {
+            Chip::Dps310(chip) => return chip.write(byte, context),
+            Chip::Abp2(chip) => chip.write(byte),
+            Chip::Ms5837(chip) => chip.write(byte, context),
+        }
+        true
     }
 
     fn read(&mut self, last: bool, context: &mut Timeline<'_, '_>) -> u8 {
         let register = self.register;
         self.register = register.wrapping_add(1);
-        let byte = self.chip.read(last, context);
+        let (byte, flags) = match &mut self.chip {
+            Chip::Dps310(chip) => (chip.read(last, context), register == MEAS_CFG),
+            Chip::Abp2(chip) => (chip.read(), false),
+            Chip::Ms5837(chip) => (chip.read(), false),
+        };
         match self.wiring {
             Wiring::Garbage => self.garbage.next_u32() as u8,
             // A line that nobody drives.
             Wiring::Wrong => 0xFF,
-            Wiring::Slow if register == MEAS_CFG => byte & !READY,
-            Wiring::Delayed if register == MEAS_CFG && self.hidden > 0 => {
+            Wiring::Slow if flags => byte & !READY,
+            Wiring::Delayed if flags && self.hidden > 0 => {
                 self.hidden -= 1;
                 byte & !READY
             }
@@ -122,6 +189,10 @@ impl Peer for Sensor {
     }
 
     fn stop(&mut self, context: &mut Timeline<'_, '_>) {
-        self.chip.stop(context);
+        match &mut self.chip {
+            Chip::Dps310(chip) => chip.stop(context),
+            Chip::Abp2(chip) => chip.stop(context),
+            Chip::Ms5837(_) => {}
+        }
     }
 }

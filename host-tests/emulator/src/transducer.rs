@@ -11,6 +11,8 @@ pub struct Transducer {
     pub noise: f64,
     /// What the board reads.
     pub part: Part,
+    /// Its supply at the board's input, as a share of the converter's reference, 0 .. 1; 1 where it is that reference.
+    pub supply: f64,
 }
 
 /// What the board reads of a transducer.
@@ -20,6 +22,10 @@ pub enum Part {
     Analogue,
     /// A DPS310 on the bus, at this address: absolute pressure, so its output is none.
     Dps310(u8),
+    /// An ABP2 on the bus, at this address, with these counts at the ends of its range.
+    Abp2(u8, [u32; 2]),
+    /// An MS5837-02BA on the bus, at this address.
+    Ms5837(u8),
 }
 
 /// The air around the board, pascals.
@@ -28,8 +34,8 @@ pub const AIR: f64 = 101_325.0;
 /// What the transducer does to the board at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
-    /// A voltage, as a share of the converter's reference, 0 .. 1.
-    Share(f64),
+    /// A voltage and the transducer's supply, as shares of the converter's reference, 0 .. 1.
+    Share(f64, f64),
     /// A pressure on a part on the bus, pascals absolute, and what is wrong with it.
     Pressure(f64, Wiring),
 }
@@ -45,6 +51,10 @@ pub enum Wiring {
     Open,
     /// Ground.
     Short,
+    /// Its supply, where it is not the converter's reference, is a tenth lower.
+    Sag,
+    /// It has no supply.
+    Unsupplied,
     /// Of a part on the bus: it does not answer.
     Off,
     /// Its readings stay what they were.
@@ -64,18 +74,20 @@ pub enum Wiring {
 }
 
 impl Wiring {
-    /// Whether it can happen to a part.
-    pub fn concerns(self, part: Part) -> bool {
+    /// Whether it can happen to a transducer.
+    pub fn concerns(self, transducer: &Transducer) -> bool {
+        let analogue = transducer.part == Part::Analogue;
         match self {
             Self::Sound => true,
-            Self::Open | Self::Short => part == Part::Analogue,
-            _ => part != Part::Analogue,
+            Self::Open | Self::Short => analogue,
+            Self::Sag | Self::Unsupplied => analogue && transducer.supply < 1.0,
+            _ => !analogue,
         }
     }
 }
 
 impl Transducer {
-    /// The output at a gauge pressure in pascals, a share of the reference. It ends at the rails.
+    /// The output at a gauge pressure in pascals, a share of the supply. It ends at the rails.
     pub fn output(&self, pressure: f64) -> f64 {
         let ([low, high], [at_low, at_high]) = (self.range, self.output_at_range);
         (at_low + (pressure - low) / (high - low) * (at_high - at_low)).clamp(0.0, 1.0)
@@ -96,6 +108,7 @@ mod tests {
         output_at_range: [0.1, 0.9],
         noise: 10.0,
         part: Part::Analogue,
+        supply: 1.0,
     };
 
     #[test]

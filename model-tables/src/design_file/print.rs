@@ -1,6 +1,6 @@
 //! The canonical text of a design: the same design always gives the same bytes.
 
-use super::{DesignFile, ModelSection, RestSection, TransducerKindSection, Transfer};
+use super::{DesignFile, ModelSection, RestSection, Supply, TransducerKindSection, Transfer};
 use crate::material::Law;
 use std::fmt::{self, Write};
 
@@ -62,11 +62,17 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
         match transducer.kind {
             TransducerKindSection::Ratiometric {
                 output_fraction_at_range: [low, high],
+                supply,
             } => {
                 writeln!(
                     out,
                     "kind = \"ratiometric\"\noutput_fraction_at_range = [{low:?}, {high:?}]"
                 )?;
+                // A default that came later is not printed: the hashes of older designs stay.
+                match supply {
+                    Supply::Reference => {}
+                    Supply::Measured => writeln!(out, "supply = \"measured\"")?,
+                }
             }
             TransducerKindSection::Abp2 { address, transfer } => {
                 let transfer = match transfer {

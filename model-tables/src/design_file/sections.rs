@@ -4,7 +4,7 @@ use super::calibration::Calibration;
 use super::error::Problem;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::{
-    Accuracy, DesignFile, MembraneSection, ModelSection, RestSection, TransducerKindSection,
+    Accuracy, DesignFile, MembraneSection, ModelSection, RestSection, Supply, TransducerKindSection,
     TransducerSection, Transfer,
 };
 use crate::material::Law;
@@ -295,6 +295,11 @@ fn transducer(mut section: Section<'_>) -> Result<TransducerSection, Fault> {
                     Bounds::within(0.0, 1.0, "of the supply"),
                 )?
                 .unwrap_or([0.1, 0.9]),
+            supply: match section.text("supply", SUPPLIES)? {
+                None | Some("reference") => Supply::Reference,
+                Some("measured") => Supply::Measured,
+                Some(_) => return Err(section.refuse("supply", SUPPLIES)),
+            },
         },
         "abp2" => TransducerKindSection::Abp2 {
             address: address(&mut section, 0x08, 0x77)?.unwrap_or(0x28),
@@ -337,6 +342,7 @@ fn transducer(mut section: Section<'_>) -> Result<TransducerSection, Fault> {
     })
 }
 
+const SUPPLIES: &str = "\"reference\" (of the converter) or \"measured\" (beside the output)";
 const TRANSFERS: &str = "\"A\" (10 % to 90 % of the counts) or \"B\" (30 % to 70 %)";
 
 fn address(section: &mut Section<'_>, low: u8, high: u8) -> Result<Option<u8>, Fault> {

@@ -59,7 +59,8 @@ fn reads_every_section_and_fills_in_the_defaults() {
     assert_eq!(
         transducer.kind,
         TransducerKindSection::Ratiometric {
-            output_fraction_at_range: [0.1, 0.9]
+            output_fraction_at_range: [0.1, 0.9],
+            supply: Supply::Reference,
         }
     );
     assert_eq!(file.actuator_diameter_mm, None);
@@ -124,6 +125,13 @@ fn takes_each_kind_of_transducer() {
             .kind
     };
     assert_eq!(
+        with("kind = \"ratiometric\"\nsupply = \"measured\""),
+        TransducerKindSection::Ratiometric {
+            output_fraction_at_range: [0.1, 0.9],
+            supply: Supply::Measured,
+        }
+    );
+    assert_eq!(
         with("kind = \"abp2\""),
         TransducerKindSection::Abp2 {
             address: 0x28,
@@ -148,6 +156,7 @@ fn takes_each_kind_of_transducer() {
 fn reading_what_was_printed_gives_the_same_design() {
     let kinds = [
         "kind = \"ratiometric\"\noutput_fraction_at_range = [0.04, 0.94]",
+        "kind = \"ratiometric\"\nsupply = \"measured\"",
         "kind = \"abp2\"\ntransfer = \"B\"",
         "kind = \"ms5837-02ba\"",
         "kind = \"dps310\"",
@@ -283,6 +292,11 @@ const IMPOSSIBLE: &[(&str, &str, &str)] = &[
         "resolution_pa",
         "output_fraction_at_range = [0.1, 1.1]\nresolution_pa",
         "transducer.output_fraction_at_range",
+    ),
+    (
+        "resolution_pa",
+        "supply = \"battery\"\nresolution_pa",
+        "transducer.supply",
     ),
     ("\"ratiometric\"", "\"bmp280\"", "transducer.kind"),
     ("\"ratiometric\"", "\"dps310\"", "transducer.range_kpa"),

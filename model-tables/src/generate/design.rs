@@ -5,7 +5,8 @@ use crate::adapt::Resolution;
 use crate::constants::{Transducer, TransducerKind};
 use crate::curve::{Contact, Curve};
 use crate::design_file::{
-    DataCurve, DesignFile, DesignFileError, ModelSection, TransducerKindSection, TransducerSection, Transfer,
+    DataCurve, DesignFile, DesignFileError, ModelSection, Supply, TransducerKindSection, TransducerSection,
+    Transfer,
 };
 use crate::membrane::TensionField;
 use crate::press::{CurveFailure, FULL, ModelError, Press};
@@ -345,8 +346,10 @@ fn kind(section: TransducerKindSection) -> TransducerKind {
     match section {
         TransducerKindSection::Ratiometric {
             output_fraction_at_range,
+            supply,
         } => TransducerKind::Ratiometric {
             output: output_fraction_at_range.map(|fraction| libm::round(fraction * 65536.0) as u32),
+            supply_measured: supply == Supply::Measured,
         },
         TransducerKindSection::Abp2 { address, transfer } => TransducerKind::Abp2 {
             address,

@@ -3,11 +3,14 @@
 mod bus;
 mod cost;
 mod faults;
+mod hold;
 mod integers;
 mod press;
 mod readme;
 mod service;
 mod solver;
+mod stored;
+mod supply;
 
 use emulator::bench::{self, Outcome};
 use emulator::fingertip_design::{FingertipDesign, default_path};

@@ -1,7 +1,8 @@
 //! The figures of the README that the images give, within a hundredth: flash depends a little on where cargo keeps its
 //! packages, because panics name their files.
 
-use crate::{firmware, small_board};
+use crate::{firmware, press_hold_release, small_board};
+use emulator::accuracy::Accuracy;
 use host_tests::assert_readme_figure;
 
 #[test]
@@ -15,5 +16,23 @@ fn cost_of_the_image() {
         "RAM without the stack on the NUCLEO-L432KC, bytes",
         size.ram as f64,
         0.01,
+    );
+}
+
+#[test]
+fn accuracy_of_the_press() {
+    let run = press_hold_release();
+    let all = Accuracy::of(run.record.rows.iter(), &run.plant);
+    println!("{all:?}");
+    let percent = |share: f64| 100.0 * share;
+    assert_readme_figure(
+        "median error of force, % of reading",
+        percent(all.force_median),
+        0.1,
+    );
+    assert_readme_figure(
+        "median error of indentation, % of reading",
+        percent(all.indentation_median),
+        0.1,
     );
 }

@@ -181,7 +181,7 @@ fn writes_what_the_chip_includes() {
     assert!(source.contains("name: \"skin-analogue\""));
     // 8.269 kPa is the reference state's pressure; 10 % and 90 % of 65536.
     assert!(source.contains("rest_pressure: 8269,"));
-    assert!(source.contains("Ratiometric { output: [6554, 58982] }"));
+    assert!(source.contains("Ratiometric { output: [6554, 58982], supply_measured: false }"));
     let tables = &generated.certified.tables;
     let binary = generated.binary();
     assert_eq!(&binary[..4], b"FTIP");
