@@ -171,6 +171,24 @@ impl Image {
         self
     }
 
+    /// The same with other instructions from an address on; nothing if no section holds it.
+    #[must_use]
+    pub fn with_code(&self, address: u64, instructions: [u16; 2]) -> Option<Self> {
+        let offset = self.file().ok()?.sections().find_map(|section| {
+            let (start, size) = section.file_range()?;
+            let within = address.checked_sub(section.address())?;
+            (section.kind() == object::SectionKind::Text && within + 4 <= size).then_some(start + within)
+        })?;
+        let mut image = self.clone();
+        let place = image
+            .elf
+            .get_mut(usize::try_from(offset).ok()?..)?
+            .first_chunk_mut::<4>()?;
+        let [first, second] = instructions.map(u16::to_le_bytes);
+        *place = [first[0], first[1], second[0], second[1]];
+        Some(image)
+    }
+
     /// What lies in flash beside it: addresses and bytes.
     pub fn beside(&self) -> &[(u64, Vec<u8>)] {
         &self.beside

@@ -2,6 +2,7 @@
 
 mod bus;
 mod cost;
+mod crash;
 mod faults;
 mod hold;
 mod integers;

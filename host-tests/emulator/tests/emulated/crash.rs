@@ -1,0 +1,95 @@
+//! Code that fails on the running image: word of it survives the reset, and reset after reset ends in a board that says
+//! so. The first instruction of the signal path is exchanged in the image.
+
+use crate::{design, firmware};
+use emulator::bench;
+use emulator::record::{Record, Recorder, Row};
+use emulator::scenario::Scenario;
+use fingertip::report::{Fault, Status};
+use fingertip::supervisor::RESET_LIMIT;
+use fingertip::telemetry::{Hello, LastFault, ResetCause};
+
+/// `UDF #0` twice (ARMv7-M ARM A7.7.194, encoding T1).
+const UNDEFINED: [u16; 2] = [0xDE00; 2];
+/// Functions that do nothing but panic: one of them is in every image.
+const PANICS: [(&str, &str); 4] = [
+    ("core::result", "unwrap_failed"),
+    ("core::option", "unwrap_failed"),
+    ("core::slice::index", "slice_index_fail"),
+    ("core::panicking", "panic_fmt"),
+];
+/// All resets are over, seconds.
+const OVER: f64 = 0.2;
+
+/// `B.W` at an address to another (ARMv7-M ARM A7.7.12, encoding T4), within 16 MB.
+fn branch(at: u64, to: u64) -> [u16; 2] {
+    let offset = to.wrapping_sub(at).wrapping_sub(4) as u32;
+    let sign = offset >> 24 & 1;
+    let j = |bit: u32| 1 ^ (offset >> bit & 1) ^ sign;
+    [
+        (0xF000 | sign << 10 | offset >> 12 & 0x3FF) as u16,
+        (0x9000 | j(23) << 13 | j(22) << 11 | offset >> 1 & 0x7FF) as u16,
+    ]
+}
+
+fn entry() -> u64 {
+    firmware().function("Pipeline", "step").expect("it is there")
+}
+
+/// Runs the image with these instructions where the signal path begins: what it says when it has given up.
+fn hello_with(instructions: [u16; 2]) -> Hello {
+    let image = firmware()
+        .with_code(entry(), instructions)
+        .expect("it is in a section");
+    let scenario = Scenario::named("press-hold-release").expect("it is shipped");
+    let plant = design()
+        .plant(scenario)
+        .expect("the default design can be pressed");
+    let recorder = Recorder::new(|_: &Row| {});
+    let outcome = bench::run(&image, plant, 1.0, &[], recorder).expect("the image runs");
+    assert_eq!(
+        outcome.resets.len(),
+        usize::from(RESET_LIMIT) + 1,
+        "{:?}",
+        outcome.resets
+    );
+    let record: Record = outcome.listener.into_record();
+    assert!(record.rows.iter().all(|row| row.reported.is_none()));
+    let after = record.rows.iter().filter(|row| row.time > OVER);
+    assert!(after.clone().count() > 700, "{} reports", record.rows.len());
+    for row in after {
+        assert_eq!(row.status, Status::Fault(Fault::ResetLoop), "{row:?}");
+    }
+    let hello = *record.hellos.last().expect("it greets");
+    assert_eq!(
+        (hello.reset_cause, hello.resets_in_a_row),
+        (ResetCause::Software, RESET_LIMIT + 1)
+    );
+    hello
+}
+
+#[test]
+fn a_panic_after_each_start_is_told_of_and_ends_in_a_board_that_measures_nothing() {
+    let panic = PANICS
+        .iter()
+        .find_map(|(owner, name)| firmware().function(owner, name).ok());
+    let hello = hello_with(branch(entry(), panic.expect("a panic is in the image")));
+    assert_eq!(hello.last_fault, LastFault::Panic);
+}
+
+#[test]
+fn a_hard_fault_after_each_start_leaves_its_address_and_ends_likewise() {
+    let hello = hello_with(UNDEFINED);
+    assert_eq!(
+        (hello.last_fault, u64::from(hello.last_fault_detail)),
+        (LastFault::HardFault, entry())
+    );
+}
+
+#[test]
+fn a_branch_is_encoded_as_the_manual_has_it() {
+    // By hand: to itself, to the next instruction, a megabyte back.
+    assert_eq!(branch(0x0800_0100, 0x0800_0100), [0xF7FF, 0xBFFE]);
+    assert_eq!(branch(0x0800_0100, 0x0800_0104), [0xF000, 0xB800]);
+    assert_eq!(branch(0x0810_0000, 0x0800_0004), [0xF700, 0xB800]);
+}
