@@ -40,6 +40,8 @@ pub enum Failure {
     InsideOut,
     /// The equations are singular.
     Singular,
+    /// The law softens at strains that the wall reaches, `W' + 2 (I1 - 3) W'' <= 0`, and Newton's method did not converge.
+    Softened,
     /// Newton's method did not converge.
     Stalled {
         /// Largest unbalanced force, in moduli times outer radius times wall thickness.
@@ -52,6 +54,10 @@ impl fmt::Display for Failure {
         match self {
             Self::InsideOut => write!(f, "the wall folded onto itself"),
             Self::Singular => write!(f, "the equations became singular"),
+            Self::Softened => write!(
+                f,
+                "the material law softens at strains that the wall reaches: choose constants that hold there, or press less"
+            ),
             Self::Stalled { residual } => {
                 write!(f, "Newton's method did not converge, residual {residual:.1e}")
             }

@@ -135,7 +135,7 @@ fn an_unpressed_dome_is_at_rest() {
     assert!(state.force == 0.0 && state.pressure == 0.0 && state.contact_radius == 0.0);
     // Half an ellipsoid: (2/3) pi a^2 b of the inner semi-axes.
     let volume = 2.0 / 3.0 * std::f64::consts::PI * 8.0 * 8.0 * 6.0 * 1e-9;
-    assert!((press.rest().volume / volume - 1.0).abs() < 1e-7);
+    assert!((press.rest().volume / volume - 1.0).abs() < 3e-7);
     assert!((press.rest().pole_stretch - 1.0).abs() < 1e-12);
 }
 
@@ -401,6 +401,21 @@ fn a_rest_pressure_out_of_reach_is_refused() {
     ));
 }
 
+/// A Yeoh law with `C3 < 0` holds only inside the strain it was fitted to. Where the wall reaches more there is no state, and the
+/// refusal says why.
+#[test]
+fn a_law_that_softens_is_refused_by_name() {
+    let softening = Law::Yeoh {
+        c1: 120e3,
+        c2: 0.0,
+        c3: -40e3,
+    };
+    let mut press = Press::new(&dome(9.0, 7.0, 1.0, softening), COARSE).expect("a rest state");
+    assert!(press.contact_at(0.5e-3).is_ok());
+    let error = press.contact_at(3e-3).expect_err("beyond the law");
+    assert!(error.to_string().contains("the material law softens"), "{error}");
+}
+
 /// Any order of asking gives the same states.
 #[test]
 fn the_order_of_asking_does_not_matter() {
@@ -455,4 +470,65 @@ fn auto_lets_no_more_error_through_than_allowed() {
         }
         assert_eq!(wall.take(1e-9).rung, LADDER.len() - 1);
     }
+}
+
+/// Fibres through the wall lean where the contact ends: an independent solution has them up to 12 degrees off the normal of the
+/// deformed wall at 2 mm. Seven of these the undeformed wall has already, whose fibres are the ellipses' common parameter and not its
+/// normals; the rest is shear of the straight fibre from inside to outside, and there is more of it in the middle of the wall.
+#[test]
+fn fibres_lean_where_the_contact_ends() {
+    let elements = Elements {
+        through: 2,
+        along: 60,
+    };
+    let Law::MooneyRivlin { c1, c2 } = AGILUS30 else {
+        panic!("Agilus30 is a Mooney-Rivlin law");
+    };
+    let modulus = 2.0 * (c1 + c2);
+    let law = Law::MooneyRivlin {
+        c1: c1 / modulus,
+        c2: c2 / modulus,
+    };
+    let mut wall = Wall::new(7.0 / 9.0, 1.0 / 9.0, law, elements);
+    let rest = wall.undeformed();
+    let mut state = rest.clone();
+    let fluid = Fluid {
+        by_volume: 1.0,
+        volume: wall.volume(&rest),
+        by_pressure: 0.0,
+        pressure: 0.0,
+    };
+    for step in 1..=20 {
+        let plate = (7.0 - 0.1 * f64::from(step)) / 9.0;
+        wall.settle(&mut state, plate, &fluid).expect("a state");
+    }
+    let layers = wall.mesh.layers();
+    // Of the fibre between two layers against the normal of the middle of the wall, degrees.
+    let lean = |state: &State, station: usize, inner: usize, outer: usize| {
+        let between = |from: usize, to: usize| {
+            let (a, b) = (state.nodes[from], state.nodes[to]);
+            [b[0] - a[0], b[1] - a[1]]
+        };
+        let node = |station, layer| wall.mesh.node(station, layer);
+        let along = between(node(station - 1, layers / 2), node(station + 1, layers / 2));
+        let fibre = between(node(station, inner), node(station, outer));
+        (fibre[0] * along[0] + fibre[1] * along[1])
+            .atan2(fibre[1] * along[0] - fibre[0] * along[1])
+            .to_degrees()
+    };
+    let straight = |state: &State, station| lean(state, station, 0, layers - 1);
+    // Without the rim's corner.
+    let most = (1..wall.mesh.stations())
+        .take_while(|&station| wall.mesh.parameters[station] < 1.2)
+        .max_by(|&a, &b| straight(&state, a).total_cmp(&straight(&state, b)))
+        .expect("there are stations");
+    let (now, before) = (straight(&state, most), straight(&rest, most));
+    assert!((11.5..13.5).contains(&now), "{now}");
+    assert!((7.0..7.6).contains(&before), "{before}");
+    // At the contact's edge, which is at a radius of 6.02 mm.
+    let outer = state.nodes[wall.mesh.node(most, layers - 1)][0] * 9.0;
+    assert!((outer - 6.02).abs() < 0.25, "{outer}");
+    let middle = lean(&state, most, layers / 2 - 1, layers / 2 + 1)
+        - lean(&rest, most, layers / 2 - 1, layers / 2 + 1);
+    assert!(middle > 1.1 * (now - before), "{middle} {now} {before}");
 }

@@ -2,10 +2,11 @@
 //!
 //! In-plane gradient `F` (2 x 2), hoop stretch `f = r/R`, `D = det F`, `S = |F|^2`, `J = D f`; the invariants are
 //! `I1 = S + f^2` and `I2 = D^2 + f^2 S` (as `J = 1`). The density is `W(I1, I2) + p (J - 1)`, with the pressure `p`
-//! linear in each element and discontinuous between them.
+//! linear in each element and discontinuous between them. Where the law softens the density has a term `k/2 (J - 1)^2` besides
+//! ([`volume_stiffness`]).
 
 use super::mesh::{NODES, PLACES, POINTS, PRESSURES, Point};
-use crate::material::Law;
+use crate::material::{Hyperelastic as _, Law};
 
 /// Unknowns of an element: radii, heights, pressures.
 pub const UNKNOWNS: usize = 2 * NODES + PRESSURES;
@@ -52,10 +53,32 @@ fn energy_density(law: &Law, i1: f64, i2: f64) -> f64 {
     }
 }
 
+/// Volume stiffness `k`, in shear moduli, of a law that softens.
+const VOLUME_STIFFNESS: f64 = 1.0 / 3.0;
+
+/// Stiffness `k` against what the three pressure terms of an element leave free of its volume. `W - 2 W' (J - 1)` falls with a change of
+/// volume, as `-mu (J - 1)^2 / 6`: coarse elements are a little soft by it, which balances what makes them stiff, but with a law
+/// that softens (`C2 < 0` or `C3 < 0`) one element through the wall finds states that are none. `mu/3` just makes up for it; where the
+/// volume is kept it does nothing.
+fn volume_stiffness(law: &Law) -> f64 {
+    match *law {
+        Law::Yeoh { c2, c3, .. } if c2 < 0.0 || c3 < 0.0 => VOLUME_STIFFNESS * law.shear_modulus(),
+        _ => 0.0,
+    }
+}
+
 /// The pressure of an undeformed wall free of stress.
 pub fn pressure_at_rest(law: &Law) -> f64 {
     let w = by_invariants(law, 3.0);
     -(2.0 * w.first + 4.0 * w.second)
+}
+
+/// Whether the law softens at a Gauss point: where in simple shear by `e = I1 - 3` the stress no longer grows,
+/// `W' + 2 e W'' <= 0`.
+pub fn softens(law: &Law, [f11, f12, f, f21, f22]: Deformation) -> bool {
+    let i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + f * f;
+    let w = by_invariants(law, i1);
+    w.first + w.second + 2.0 * (i1 - 3.0) * w.first_first <= 0.0
 }
 
 /// Deformation at a Gauss point: `F11, F12, f, F21, F22`.
@@ -98,6 +121,8 @@ pub fn stress(law: &Law, [f11, f12, f, f21, f22]: Deformation, pressure: f64) ->
     let determinant = f11 * f22 - f12 * f21;
     let squares = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22;
     let w = by_invariants(law, squares + f * f);
+    let volume_stiffness = volume_stiffness(law);
+    let pressure = pressure + volume_stiffness * (determinant * f - 1.0);
     // Derivatives of the density by S, D and f.
     let by_s = w.first + w.second * f * f;
     let by_d = 2.0 * w.second * determinant + pressure * f;
@@ -122,6 +147,13 @@ pub fn stress(law: &Law, [f11, f12, f, f21, f22]: Deformation, pressure: f64) ->
         }
         if i != 2 {
             stiffness[i][i] += 2.0 * by_s;
+        }
+    }
+    if volume_stiffness > 0.0 {
+        for i in 0..5 {
+            for j in 0..5 {
+                stiffness[i][j] += volume_stiffness * by_volume[i] * by_volume[j];
+            }
         }
     }
     // The determinant's own second derivatives.
@@ -254,7 +286,10 @@ pub fn energy(law: &Law, points: &[Point; POINTS], positions: &Positions) -> f64
             let [f11, f12, f, f21, f22] = deformation(point, positions);
             let determinant = f11 * f22 - f12 * f21;
             let squares = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22;
-            point.weight * energy_density(law, squares + f * f, determinant * determinant + f * f * squares)
+            let volume = determinant * f - 1.0;
+            point.weight
+                * (energy_density(law, squares + f * f, determinant * determinant + f * f * squares)
+                    + 0.5 * volume_stiffness(law) * volume * volume)
         })
         .sum()
 }
@@ -264,13 +299,18 @@ mod tests {
     use super::*;
     use crate::solid::mesh::{Elements, Mesh};
 
-    const LAWS: [Law; 3] = [
+    const LAWS: [Law; 4] = [
         Law::NeoHookean { c1: 0.5 },
         Law::MooneyRivlin { c1: 0.3, c2: 0.2 },
         Law::Yeoh {
             c1: 0.5,
             c2: 0.2,
             c3: 0.1,
+        },
+        Law::Yeoh {
+            c1: 0.5,
+            c2: -0.05,
+            c3: 0.01,
         },
     ];
 

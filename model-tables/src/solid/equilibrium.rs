@@ -7,15 +7,12 @@ use super::element::{self, Element, UNKNOWNS};
 use super::fluid;
 use super::front::{Fronts, SIDES};
 use super::mesh::{Elements, Mesh, NODES, PRESSURES};
-use super::plate::{self, Penalty};
+use super::plate;
 use crate::material::Law;
 
 /// Contact stiffness times wall thickness, over the shear modulus: a contact pressure of a tenth of the modulus penetrates
 /// 5e-4 of the wall. Seven times as stiff changes the force by less than 0.1 % and takes a third more iterations.
 const CONTACT_STIFFNESS: f64 = 200.0;
-/// Width of the contact's smooth beginning over the wall thickness. Wider than most penetrations it would make Newton's
-/// method halve its way down a parabola; without any, points may come and go in a circle.
-const CONTACT_WIDTH: f64 = 2e-5;
 /// Largest unbalanced force of a node, and with it the largest excess of an element's volume, over the plate's force.
 const RELATIVE_TOLERANCE: f64 = 1e-8;
 /// The same in moduli times radius times thickness (volume: square radii times thickness), where there is hardly a force.
@@ -101,8 +98,10 @@ pub struct Wall {
     pub mesh: Mesh,
     /// Its law, in shear moduli.
     pub law: Law,
-    penalty: Penalty,
-    areas: Vec<[f64; plate::POINTS]>,
+    /// Contact pressure over penetration.
+    contact_stiffness: f64,
+    /// Undeformed radii and heights of each column's outer edge.
+    outer: Vec<[[f64; 3]; 2]>,
     fronts: Fronts,
     element: Element,
     /// Derivative of the volume by the inner nodes.
@@ -119,12 +118,8 @@ impl Wall {
     pub fn new(height: f64, thickness: f64, law: Law, elements: Elements) -> Self {
         let mesh = Mesh::new(height, thickness, elements);
         let station = 2 * mesh.layers();
-        let outer = mesh.layers() - 1;
-        let areas = (0..elements.along)
-            .map(|column| {
-                let edge = edge(&mesh, &mesh.nodes, column, outer);
-                plate::areas(&edge[0], &edge[1])
-            })
+        let outer = (0..elements.along)
+            .map(|column| edge(&mesh, &mesh.nodes, column, mesh.layers() - 1))
             .collect();
         let step = State {
             nodes: vec![[0.0; 2]; mesh.nodes.len()],
@@ -132,11 +127,8 @@ impl Wall {
             fluid: 0.0,
         };
         Self {
-            penalty: Penalty {
-                stiffness: CONTACT_STIFFNESS / thickness,
-                width: CONTACT_WIDTH * thickness,
-            },
-            areas,
+            contact_stiffness: CONTACT_STIFFNESS / thickness,
+            outer,
             fronts: Fronts::new(station, station + PRESSURES * elements.through, elements.along),
             element: Element::default(),
             volume_by_node: vec![[0.0; 2]; mesh.stations()],
@@ -181,6 +173,17 @@ impl Wall {
             .sum()
     }
 
+    /// Whether the law softens anywhere in a state.
+    pub fn softens(&self, state: &State) -> bool {
+        let through = self.mesh.elements.through;
+        self.mesh.points.iter().enumerate().any(|(e, points)| {
+            let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
+            points
+                .iter()
+                .any(|point| element::softens(&self.law, element::deformation(point, &positions)))
+        })
+    }
+
     /// Solves for the state in balance with a plate at a height and the fluid's equation, starting from `state`.
     ///
     /// # Errors
@@ -216,8 +219,8 @@ impl Wall {
         let Self {
             mesh,
             law,
-            penalty,
-            areas,
+            contact_stiffness,
+            outer,
             fronts,
             element,
             volume_by_node,
@@ -273,7 +276,7 @@ impl Wall {
                 }
             }
             let [_, z] = edge(mesh, &state.nodes, column, layers - 1);
-            let action = plate::action(*penalty, &areas[column], &z, plate);
+            let action = plate::action(*contact_stiffness, &outer[column], &z, plate);
             balance.force += action.force;
             balance.contact_energy += action.energy;
             for i in 0..3 {

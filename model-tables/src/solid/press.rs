@@ -318,7 +318,11 @@ impl Press {
                 Err(failure) => {
                     largest_step = 0.5 * (next - at).abs();
                     if largest_step < SMALLEST_STEP * self.height {
-                        return Err(Stop::Failed { reached: at, failure });
+                        let softened = self.wall.softens(&self.trail.nearest(at).state);
+                        return Err(Stop::Failed {
+                            reached: at,
+                            failure: if softened { Failure::Softened } else { failure },
+                        });
                     }
                 }
             }

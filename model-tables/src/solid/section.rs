@@ -64,14 +64,6 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The column at a share of the parameter's range, and the place in it.
-fn column_at(wall: &Wall, share: f64) -> (usize, f64) {
-    let along = wall.mesh.elements.along;
-    let scaled = share * along as f64;
-    let column = (scaled as usize).min(along - 1);
-    (column, 2.0 * (scaled - column as f64) - 1.0)
-}
-
 /// Where the outer surface leaves the plate.
 pub fn contact_edge(wall: &Wall, state: &State, plate: f64) -> ContactEdge {
     let along = wall.mesh.elements.along;
@@ -82,7 +74,7 @@ pub fn contact_edge(wall: &Wall, state: &State, plate: f64) -> ContactEdge {
         let depth = |x: f64| dot(&shape(x), &z) - plate;
         let found = |x: f64| ContactEdge {
             radius: dot(&shape(x), &r),
-            parameter: FRAC_PI_2 * (column as f64 + 0.5 * (x + 1.0)) / along as f64,
+            parameter: wall.mesh.parameter(column, x),
         };
         let place = |i: usize| -1.0 + 2.0 * i as f64 / SAMPLES as f64;
         for i in (0..SAMPLES).rev() {
@@ -133,10 +125,10 @@ pub fn pole_stretch(wall: &Wall, state: &State) -> f64 {
 /// The station at a share of the parameter's range, 0 = pole, 1 = rim.
 pub fn station(wall: &Wall, state: &State, share: f64, contact: f64) -> Station {
     let mesh = &wall.mesh;
-    let (column, x) = column_at(wall, share);
+    let parameter = FRAC_PI_2 * share;
+    let (column, x) = mesh.column_at(parameter);
     let (n, dn) = (shape(x), slope(x));
     let through = mesh.elements.through;
-    let parameter = FRAC_PI_2 * share;
     // Middle of the wall: a layer of nodes.
     let [r, z] = edge(mesh, &state.nodes, column, through);
     let [big_r, big_z] = edge(mesh, &mesh.nodes, column, through);
