@@ -25,14 +25,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Elements along the meridian; a membrane has its own.
-    pub fn along(self) -> usize {
-        match self {
-            Self::Membrane => 0,
-            Self::Solid(elements) => elements.along,
-        }
-    }
-
     /// Whether it can answer for a design. A membrane has no unstretched state, and it slides on the base as it is inflated.
     pub fn applies(self, design: &Design) -> bool {
         self != Self::Membrane || matches!(design.rest, RestBy::PoleStretch(_))

@@ -135,15 +135,58 @@ fn auto_says_what_it_took() {
         assert!(output.status.success());
         String::from_utf8(output.stderr).expect("text")
     };
-    let thin = auto("thin", "thickness_mm = 0.1\n", "[rest]\npole_stretch = 1.5\n");
+    let thin = auto(
+        "thin",
+        "thickness_mm = 0.1\n",
+        "[rest]\npole_stretch = 1.5\n[accuracy]\nforce_percent_of_reading = 2.0\n\
+         indentation_percent_of_reading = 2.0\nfrom_percent_of_full_scale = 1.0\n",
+    );
     assert!(thin.contains("note: auto takes the membrane: "), "{thin}");
     let printed = auto("unstretched", "thickness_mm = 1\n", "");
+    assert!(printed.contains("note: auto takes the solid "), "{printed}");
     assert!(
-        printed.contains("note: auto takes the solid 1 x 24: "),
+        printed.contains(": by the solid 2 x 60 at most 0.") && printed.contains(" % off, 1.00 % allowed"),
         "{printed}"
     );
-    assert!(
-        printed.contains("% from the solid 2 x 60, 1.00 % allowed in all"),
-        "{printed}"
-    );
+}
+
+#[test]
+fn ladder_writes_every_number_the_map_and_the_page() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ladder");
+    let _ = fs::remove_dir_all(&out);
+    let folder = out.to_str().expect("text");
+    let rows = rows(&["ladder", "--designs", "1", "--out", folder]);
+    // Five accuracies, five rungs, one wall.
+    assert_eq!(rows.len(), 25);
+    let walls: u32 = rows
+        .iter()
+        .map(|row| row[2].parse::<u32>().expect("a count"))
+        .sum();
+    assert_eq!(walls, 5);
+    let page = fs::read_to_string(out.join("ladder.md")).expect("the page");
+    assert!(page.starts_with("# Which model a wall needs\n"), "{page}");
+    let csv = fs::read_to_string(out.join("ladder.csv")).expect("the numbers");
+    assert!(csv.lines().count() > 4, "{csv}");
+    assert!(out.join("ladder.svg").exists());
+}
+
+/// The page beside the sources: the rule let nothing through beyond what was allowed.
+#[test]
+fn the_page_of_the_ladder_has_two_hundred_walls_and_none_beyond_what_was_allowed() {
+    let page = include_str!("../LADDER.md");
+    assert!(page.contains("`cargo designer ladder --designs 200 --out DIR`"));
+    let (_, table) = page.split_once("let through, % |").expect("the table");
+    let mut checked = 0;
+    for line in table.lines().skip(2).filter(|line| line.starts_with('|')) {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let (allowed, through) = (number(cells[1]), number(cells[cells.len() - 2]));
+        assert!(through <= allowed, "{line}");
+        let walls: u32 = cells[2..cells.len() - 2]
+            .iter()
+            .map(|cell| cell.parse::<u32>().expect("a count"))
+            .sum();
+        assert!(walls > 190, "{line}");
+        checked += 1;
+    }
+    assert_eq!(checked, 5);
 }

@@ -16,7 +16,7 @@ pub const ASKED: [f64; 5] = [0.1, 0.05, 0.02, 0.01, 0.005];
 /// Deepest indentation over the undeformed height.
 const DEPTH: f64 = 0.35;
 /// The part of the deepest reading below which errors count in absolute terms.
-const FROM: f64 = 0.01;
+pub const FROM: f64 = 0.01;
 
 /// A wall whose semi-axes are the outer surface's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -172,7 +172,7 @@ impl Measured {
     /// What the rule takes for an accuracy.
     pub fn take(&self, error: f64) -> Taken {
         let wanted = self.case.wanted(error);
-        let mut below: Vec<(usize, Kind, &[Contact])> = Vec::new();
+        let mut below: Vec<(usize, &[Contact])> = Vec::new();
         let mut taken = LADDER.len() - 1;
         for (place, evidence) in self.rungs.iter().enumerate() {
             let Some(Evidence {
@@ -182,14 +182,13 @@ impl Measured {
             else {
                 continue;
             };
-            let (kind, own_error) = LADDER[place];
-            let rungs = below.iter().map(|&(_, kind, contacts)| (kind, contacts));
-            let judged = wanted.judge(rungs, (kind, contacts), own_error);
+            below.push((place, contacts));
+            let rungs = below.iter().map(|&(_, contacts)| contacts);
+            let judged = wanted.judge(rungs, contacts, LADDER[place].1);
             if let Some(near) = judged {
                 taken = below[near].0;
                 break;
             }
-            below.push((place, kind, contacts));
         }
         Taken {
             rung: taken,

@@ -12,6 +12,8 @@ use crate::rung::choice::LADDER;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+mod page;
+
 const COLUMNS: &[&str] = &["allowed_percent", "model", "designs", "largest_error_percent"];
 const COLORS: [&str; LADDER.len()] = [VERMILION, ORANGE, GREEN, BLUE, BLACK];
 const MARKERS: [Marker; LADDER.len()] = [
@@ -68,10 +70,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let contents = [
         ("ladder.csv", csv(&measured).into_bytes()),
         ("ladder.svg", svg(&judged).into_bytes()),
+        (
+            "ladder.md",
+            page::markdown(&judged, measured.len() - judged.len()).into_bytes(),
+        ),
     ];
     write_all(&arguments.out, &contents)?;
     let mut notes = vec![format!(
-        "wrote ladder.csv and ladder.svg to {}",
+        "wrote ladder.csv, ladder.svg and ladder.md to {}",
         arguments.out.display()
     )];
     if judged.len() < measured.len() {

@@ -41,11 +41,11 @@ pub(super) fn of(file: &Path, design_file: &DesignFile) -> Result<Model, Refusal
             let wanted = Wanted::of(design_file);
             let taken = choice::choose(&design, &wanted).map_err(|error| Refusal::about(file, &error))?;
             let evidence = match taken.judged {
-                Some((judge, distance)) => format!("{:.2} % from the {judge}", 100.0 * distance),
-                None => "the last rung of the ladder".to_owned(),
+                Some((judge, error)) => format!("by the {judge} at most {:.2} % off", 100.0 * error),
+                None => "no finer one has every state".to_owned(),
             };
             let note = format!(
-                "auto takes the {}: {evidence}, {:.2} % allowed in all",
+                "auto takes the {}: {evidence}, {:.2} % allowed",
                 taken.kind,
                 100.0 * wanted.error
             );

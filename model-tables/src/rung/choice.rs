@@ -1,10 +1,10 @@
 //! Which model a design needs.
 //!
-//! `kind = "auto"` climbs a ladder, cheapest rung first: the membrane in the middle of the wall, then solids of more and more
-//! elements. **The rule:** each rung that is solved judges those below it that have fewer elements along, the cheapest first.
-//! One is taken when its force and its pressure rise differ from the judge's by no more than what
-//! [`Accuracy`](crate::design_file::Accuracy) allows of the force less the judge's own error ([`LADDER`]), at eight
-//! indentations up to the deepest one. If none is, the last rung answers. `designer ladder` holds the rule to a refined solid over random designs.
+//! `kind = "auto"` solves every rung of a ladder up to the solid of 2 x 60 elements, at eight indentations up to the deepest. **The rule:**
+//! the first rung, from the cheapest, is taken whose force and pressure rise differ from that solid's by no more than what
+//! [`Accuracy`](crate::design_file::Accuracy) allows of the force, less the solid's own error ([`LADDER`]); the solid itself if only that
+//! is allowed. If even that is not, a refined solid judges them all. Coarse solids judge nobody: their errors are of one kind, and two
+//! of them agreed with each other where both were wrong. `designer ladder` holds the rule to the refined solid over random walls.
 
 use super::{Kind, Rung};
 use crate::curve::Contact;
@@ -14,13 +14,12 @@ use crate::press::ModelError;
 use crate::solid;
 use crate::solid::mesh::Elements;
 
-/// The ladder that `auto` climbs, each rung with the error it counts with as a judge: what nine of ten random designs stay below
-/// against a refined solid.
+/// The ladder that `auto` climbs, each rung with the error it counts with as a judge; one without a bound does not judge.
 pub const LADDER: [(Kind, f64); 5] = [
     (Kind::Membrane, f64::INFINITY),
-    (Kind::Solid(solid::press::COARSE), 0.015),
-    (Kind::Solid(solid::press::FULL), 0.015),
-    (Kind::Solid(FINE), 0.002),
+    (Kind::Solid(solid::press::COARSE), f64::INFINITY),
+    (Kind::Solid(solid::press::FULL), f64::INFINITY),
+    (Kind::Solid(FINE), 0.005),
     (Kind::Solid(REFINED), 0.0),
 ];
 /// Enough elements for a few tenths of a percent.
@@ -88,17 +87,14 @@ impl Wanted {
             .fold(0.0, f64::max)
     }
 
-    /// The first of some rungs that is near enough to a judge with an error of its own. Solids with as many elements along as
-    /// the judge share its error, and are not judged.
+    /// The first of some rungs, the judge among them, that is near enough to the judge with its own error.
     pub fn judge<'a>(
         &self,
-        mut rungs: impl Iterator<Item = (Kind, &'a [Contact])>,
-        (judge, truth): (Kind, &[Contact]),
+        mut rungs: impl Iterator<Item = &'a [Contact]>,
+        truth: &[Contact],
         own_error: f64,
     ) -> Option<usize> {
-        rungs.position(|(kind, contacts)| {
-            kind.along() < judge.along() && self.distance(contacts, truth) + own_error <= self.error
-        })
+        rungs.position(|contacts| self.distance(contacts, truth) + own_error <= self.error)
     }
 
     /// A model's contacts at [`PARTS`] of the deepest indentation.
@@ -118,7 +114,7 @@ impl Wanted {
 pub struct Choice {
     /// The model.
     pub kind: Kind,
-    /// The rung that judged it, and how far it is from that, relative; `None` of the last rung.
+    /// The rung that judged it, and how far it may be off, relative; `None` where none could judge.
     pub judged: Option<(Kind, f64)>,
     /// The model at rest, its contacts solved.
     pub rung: Rung,
@@ -132,34 +128,34 @@ pub struct Choice {
 pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
     let mut solved: Vec<(Kind, Rung, Vec<Contact>)> = Vec::new();
     let mut failure = ModelError::RestNotForSolid;
-    for (kind, own_error) in LADDER {
-        if !kind.applies(design) {
+    for (judge, own_error) in LADDER {
+        if !judge.applies(design) {
             continue;
         }
-        let found = Rung::of(kind, design).and_then(|mut rung| {
+        let found = Rung::of(judge, design).and_then(|mut rung| {
             let contacts = wanted.contacts(&mut rung)?;
             Ok((rung, contacts))
         });
-        let (rung, contacts) = match found {
-            Ok(found) => found,
+        let contacts = match found {
+            Ok((rung, contacts)) => {
+                solved.push((judge, rung, contacts.clone()));
+                contacts
+            }
             Err(error) => {
                 failure = error;
                 continue;
             }
         };
-        let below = solved
-            .iter()
-            .map(|(kind, _, contacts)| (*kind, contacts.as_slice()));
-        if let Some(near) = wanted.judge(below, (kind, &contacts), own_error) {
-            let (chosen, rung, below) = solved.swap_remove(near);
-            let distance = wanted.distance(&below, &contacts);
+        let rungs = solved.iter().map(|(_, _, contacts)| contacts.as_slice());
+        if let Some(near) = wanted.judge(rungs, &contacts, own_error) {
+            let (kind, rung, found) = solved.swap_remove(near);
+            let distance = wanted.distance(&found, &contacts);
             return Ok(Choice {
-                kind: chosen,
-                judged: Some((kind, distance)),
+                kind,
+                judged: Some((judge, distance + own_error)),
                 rung,
             });
         }
-        solved.push((kind, rung, contacts));
     }
     match solved.pop() {
         Some((kind, rung, _)) => Ok(Choice {
