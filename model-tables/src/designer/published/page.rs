@@ -205,7 +205,7 @@ fn distance(solid: &Solid) -> String {
             published(pressed.force),
         ];
         row.extend(side(&solid.unstretched, i));
-        row.extend(side(&solid.shipped, i));
+        row.extend(side(&solid.stretched, i));
         row
     });
     format!(
@@ -215,16 +215,14 @@ fn distance(solid: &Solid) -> String {
          discontinuous linear pressure, 80 x 4 elements; mesh and penalty error about 0.1 %) of the printed part: 9 x 7 \
          mm outside, wall 1 mm, Agilus30, not stretched at rest, clamped at the equator, rigid fluid, plate without \
          friction. *Membrane* is its mid-surface, 8.5 x 6.5 mm, with compression relaxed into wrinkles: once all but \
-         unstretched (pole stretch {}, rest pressure {} kPa), once as shipped in `designs/index-fingertip.toml` (mid-surface \
-         {} x {} mm, pole stretch {}, rest pressure {} kPa, which its pressures include). Ratios are membrane over solid.\n\
+         unstretched (pole stretch {}, rest pressure {} kPa), once with the stretch that stands in best for bending (pole \
+         stretch {}, rest pressure {} kPa, which its pressures include). Ratios are membrane over solid.\n\
          \n\
          {}",
         published(solid.unstretched.pole_stretch),
         number(solid.unstretched.rest_pressure * 1e-3),
-        published(solid.shipped_membrane.radial_semi_axis * 1e3),
-        published(solid.shipped_membrane.axial_semi_axis * 1e3),
-        published(solid.shipped.pole_stretch),
-        number(solid.shipped.rest_pressure * 1e-3),
+        published(solid.stretched.pole_stretch),
+        number(solid.stretched.rest_pressure * 1e-3),
         table(
             &[
                 "H, mm",
@@ -234,9 +232,9 @@ fn distance(solid: &Solid) -> String {
                 "ratio",
                 "unstretched F",
                 "ratio",
-                "shipped P",
+                "stretched P",
                 "ratio",
-                "shipped F",
+                "stretched F",
                 "ratio",
             ],
             rows
@@ -245,28 +243,30 @@ fn distance(solid: &Solid) -> String {
 }
 
 fn mistaken(solid: &Solid) -> String {
-    let rows = SOLID.iter().zip(&solid.readings).map(|(pressed, reading)| {
+    let rows = SOLID.iter().zip(&solid.readings).map(|(pressed, readings)| {
         let mut row = vec![
             published(pressed.pressure * 1e-3),
             published(pressed.indentation * 1e3),
             published(pressed.force),
         ];
-        row.extend(match reading {
-            Some(contact) => [
-                number(contact.indentation * 1e3),
-                ratio(contact.indentation / pressed.indentation),
-                number(contact.force),
-                ratio(contact.force / pressed.force),
-            ],
-            None => ["saturated", "-", "saturated", "-"].map(str::to_owned),
-        });
+        for reading in readings {
+            row.extend(match reading {
+                Some(contact) => [
+                    number(contact.indentation * 1e3),
+                    ratio(contact.indentation / pressed.indentation),
+                    number(contact.force),
+                    ratio(contact.force / pressed.force),
+                ],
+                None => ["saturated", "-", "saturated", "-"].map(str::to_owned),
+            });
+        }
         row
     });
     format!(
-        "### What the shipped design would read off the solid's pressure\n\
+        "### What the firmware would read off the solid's pressure\n\
          \n\
-         The firmware knows only the pressure rise. If the fingertip were the solid dome, the membrane of \
-         `designs/index-fingertip.toml`, uncalibrated, would take its rises for these contacts (its tables end at {} mm):\n\
+         It knows only the pressure rise. *Membrane* would be tables of the stretched membrane above, *shipped* are those of \
+         `designs/index-fingertip.toml`, whose model is this crate's own solid (both end at {} mm):\n\
          \n\
          {}",
         published(solid.deepest * 1e3),
@@ -275,9 +275,13 @@ fn mistaken(solid: &Solid) -> String {
                 "rise, kPa",
                 "H, mm",
                 "F, N",
-                "read as H, mm",
+                "membrane H, mm",
                 "ratio",
-                "read as F, N",
+                "membrane F, N",
+                "ratio",
+                "shipped H, mm",
+                "ratio",
+                "shipped F, N",
                 "ratio",
             ],
             rows
@@ -288,26 +292,26 @@ fn mistaken(solid: &Solid) -> String {
 fn consequences(solid: &Solid) -> String {
     let touch = SOLID[1];
     let effective = libm::sqrt(touch.force / (PI * touch.pressure));
-    let (deep, shipped) = (SOLID[7], &solid.shipped);
+    let (deep, stretched) = (SOLID[7], &solid.stretched);
     format!(
         "### So\n\
          \n\
          - A light touch is carried by bending. At {} mm the solid's force over its pressure means a contact radius of {} \
-         mm; its real contact has {} mm. There the force is not the pressure times the contact area. That the shipped \
-         design reads such touches nearly right it owes to the choice of its stretch, not to its physics.\n\
+         mm; its real contact has {} mm. There the force is not the pressure times the contact area. That the stretched \
+         membrane reads such touches nearly right it owes to the choice of its stretch, not to its physics.\n\
          - A little stretch at rest stands in for bending, at one depth or another; it is no model of it. Its rest \
          pressure is real only if the fingertip is really filled to that stretch.\n\
          - Compliance of tubing and bubbles matters as much: {} mm^3/kPa turn the solid's {} N at 2 mm into {} N, and the \
-         shipped membrane's {} N into {} N.\n\
-         - An unstretched printed dome therefore needs a calibration on the bench. Where the wall is thin or well \
-         stretched the membrane is right.\n",
+         stretched membrane's {} N into {} N.\n\
+         - An unstretched printed dome is therefore solved as a solid (`model.kind`), and a part still needs a calibration on \
+         the bench. Where the wall is thin or well stretched the membrane is right: `designer ladder` maps where.\n",
         published(touch.indentation * 1e3),
         significant(effective * 1e3, 3),
         published(SOLID_CONTACT_RADIUS * 1e3),
         published(COMPLIANCE * 1e12),
         published(deep.force),
         published(SOLID_COMPLIANT_FORCE),
-        number(shipped.states[7].1),
-        number(shipped.compliant_force),
+        number(stretched.states[7].1),
+        number(stretched.compliant_force),
     )
 }

@@ -7,6 +7,7 @@ use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
 use crate::membrane::TensionField;
 use crate::press::{ModelError, Press};
+use crate::rung::Rung;
 
 /// A pressed dome of solid finite elements.
 #[derive(Clone, Copy)]
@@ -64,6 +65,9 @@ const AGILUS30: Law = Law::MooneyRivlin {
 /// Pole stretch that leaves the membrane all but unstretched at rest.
 pub(super) const UNSTRETCHED: f64 = 1.002;
 
+/// Pole stretch that stands in for bending nearest to a light touch.
+pub(super) const STRETCHED: f64 = 1.02;
+
 /// The membrane at the indentations of the solid.
 pub(super) struct Beside {
     /// Pole stretch at rest.
@@ -80,12 +84,11 @@ pub(super) struct Beside {
 pub(super) struct Solid {
     /// The membrane all but unstretched at rest.
     pub(super) unstretched: Beside,
-    /// The shipped index fingertip.
-    pub(super) shipped: Beside,
-    /// Its mid-surface and wall.
-    pub(super) shipped_membrane: Membrane,
-    /// What the shipped design reads off the solid's pressure; `None` beyond its deepest indentation.
-    pub(super) readings: Vec<Option<Contact>>,
+    /// The membrane with the stretch that stands in best for bending.
+    pub(super) stretched: Beside,
+    /// What that membrane, and the shipped index fingertip, read off the solid's pressure; `None` beyond the deepest
+    /// indentation.
+    pub(super) readings: Vec<[Option<Contact>; 2]>,
     /// That indentation, metres.
     pub(super) deepest: f64,
 }
@@ -97,31 +100,37 @@ impl Solid {
             "index-fingertip.toml",
             include_str!("../../../designs/index-fingertip.toml"),
         )?;
-        let design = file.design();
-        let unstretched = Design {
+        let membrane = |stretch| Design {
             membrane: MID_SURFACE,
             law: AGILUS30,
-            rest: RestBy::PoleStretch(UNSTRETCHED),
+            rest: RestBy::PoleStretch(stretch),
             compliance: 0.0,
         };
+        let (unstretched, stretched) = (membrane(UNSTRETCHED), membrane(STRETCHED));
         let deepest = file.max_indentation_mm.ok_or_else(|| {
             Refusal("the index fingertip has no press.max_indentation_mm; add it".to_owned())
         })? * 1e-3;
-        let curve = Press::new(&design, TensionField::Relaxed)
-            .map_err(failed)?
-            .curve(deepest)
-            .map_err(|error| Refusal(format!("the index fingertip: {error}")))?;
+        let curves = [
+            Press::new(&stretched, TensionField::Relaxed)
+                .map_err(failed)?
+                .curve(deepest),
+            Rung::new(&file).map_err(failed)?.curve(deepest),
+        ];
+        let [before, after] =
+            curves.map(|curve| curve.map_err(|error| Refusal(format!("the index fingertip: {error}"))));
+        let curves = [before?, after?];
         let readings = SOLID
             .iter()
             .map(|solid| {
-                let within = solid.pressure <= curve.end().pressure_rise;
-                within.then(|| curve.at_pressure_rise(solid.pressure))
+                curves.each_ref().map(|curve| {
+                    let within = solid.pressure <= curve.end().pressure_rise;
+                    within.then(|| curve.at_pressure_rise(solid.pressure))
+                })
             })
             .collect();
         Ok(Self {
             unstretched: beside(&unstretched)?,
-            shipped: beside(&design)?,
-            shipped_membrane: design.membrane,
+            stretched: beside(&stretched)?,
             readings,
             deepest,
         })
