@@ -15,9 +15,11 @@ mod ladder;
 mod linear;
 mod materials;
 mod model;
+mod output;
 mod profile;
 mod progress;
 mod published;
+mod report;
 mod rest;
 mod rows;
 mod size;
@@ -67,6 +69,11 @@ enum Command {
         after_help = "Example:\n  cargo designer table model-tables/designs/index-fingertip.toml --out target/tables"
     )]
     Table(table::Arguments),
+    /// Everything about a design on one page: HTML that needs no network
+    #[command(
+        after_help = "Example:\n  cargo designer report model-tables/designs/index-fingertip.toml --out target/report"
+    )]
+    Report(report::Arguments),
     /// Speed against accuracy of every method, and the ladder of models: SVG and CSV
     #[command(after_help = "Example:\n  cargo designer chart paper --out target/chart")]
     Chart(chart::Arguments),
@@ -74,6 +81,7 @@ enum Command {
     #[command(after_help = "Example:\n  cargo designer atlas --stride 4 --out target/atlas")]
     Atlas(atlas::Arguments),
     /// The models over random walls: error against time, and what `model.kind = "auto"` takes: SVG and CSV
+    #[command(after_help = "Example:\n  cargo designer ladder --designs 50 --out target/ladder")]
     Ladder(ladder::Arguments),
     /// What the chip would say at pressure rises, bit for bit
     #[command(
@@ -105,6 +113,7 @@ enum Command {
         shell: clap_complete::Shell,
     },
     /// The source paper's numbers beside what its stated inputs give
+    #[command(after_help = "Example:\n  cargo designer published --out model-tables/PUBLISHED.md")]
     Published(published::Arguments),
 }
 
@@ -161,6 +170,7 @@ pub fn main() -> ExitCode {
         }
         Err(error) => return refuse(&usage(&error)),
     };
+    output::clear_away_on_interrupt();
     let format = arguments.format.unwrap_or(if std::io::stdout().is_terminal() {
         Format::Table
     } else {
@@ -184,6 +194,7 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::Solve(arguments) => solve::run(arguments),
         Command::Profile(arguments) => profile::run(arguments),
         Command::Table(arguments) => table::run(arguments),
+        Command::Report(arguments) => report::run(arguments),
         Command::Chart(arguments) => chart::run(arguments),
         Command::Atlas(arguments) => atlas::run(arguments),
         Command::Ladder(arguments) => ladder::run(arguments),

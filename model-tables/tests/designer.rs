@@ -525,3 +525,51 @@ fn atlas_maps_every_method_and_ours_is_never_silently_wrong() {
         assert!(["exact", "no-state"].contains(&row[2].as_str()), "{row:?}");
     }
 }
+
+#[test]
+fn the_help_of_every_subcommand_ends_with_an_example() {
+    let list = String::from_utf8(designer(&["--help"]).stdout).expect("text");
+    let names: Vec<&str> = list
+        .lines()
+        .skip_while(|line| *line != "Commands:")
+        .skip(1)
+        .take_while(|line| line.starts_with("  "))
+        .filter_map(|line| line.split_whitespace().next())
+        // The monitor's help is its own program's.
+        .filter(|name| !["help", "monitor"].contains(name))
+        .collect();
+    assert!(names.len() >= 16, "{names:?}");
+    for name in names {
+        let help = String::from_utf8(designer(&[name, "--help"]).stdout).expect("text");
+        assert!(
+            help.contains(&format!("cargo designer {name}")),
+            "{name}:\n{help}"
+        );
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_nothing_behind() {
+    let out = scratch("interrupted").join("out");
+    let target = format!("{}/targets/human-fingertip.toml", env!("CARGO_MANIFEST_DIR"));
+    let mut child = Command::new(env!("CARGO_BIN_EXE_designer"))
+        .args(["size", &target, "--out"])
+        .arg(&out)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("the binary runs");
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let id = child.id().to_string();
+    let sent = Command::new("kill")
+        .args(["-INT", &id])
+        .status()
+        .expect("kill is there");
+    assert!(sent.success());
+    let status = child.wait().expect("it ends");
+    // By its own hand, or by the signal's where that came before it was ready.
+    let by_signal = std::os::unix::process::ExitStatusExt::signal(&status) == Some(2);
+    assert!(status.code() == Some(130) || by_signal, "{status}");
+    assert!(!out.exists());
+}

@@ -4,8 +4,9 @@ mod cost;
 mod map;
 mod survey;
 
+use super::output::write_all;
+use super::progress::Progress;
 use super::rows::{Cell, Rows};
-use super::table::write_all;
 use super::{Answer, Refusal};
 use std::path::PathBuf;
 use survey::{MAPS, METHODS, Survey, VERDICTS};
@@ -26,13 +27,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let stride = arguments.stride as usize;
     let mut contents: Vec<(String, Vec<u8>)> = Vec::new();
     let mut rows = Rows::new(COLUMNS);
+    let progress = Progress::new("maps");
     for (number, chart) in MAPS.iter().enumerate() {
         let survey = Survey::new(chart, stride, |done, all| {
-            if done % 20 == 0 || done == all {
-                eprint!("\rmap {} of {}: {done} of {all} cells", number + 1, MAPS.len());
-            }
+            progress.set((number as f64 + done as f64 / all as f64) / MAPS.len() as f64);
         });
-        eprintln!();
         for (method, of_method) in METHODS.iter().zip(survey.counts()) {
             for (verdict, count) in VERDICTS.iter().zip(of_method) {
                 if count > 0 {
@@ -48,6 +47,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         contents.push((format!("{}.svg", chart.name), map::svg(&survey).into_bytes()));
         contents.push((format!("{}.csv", chart.name), survey.csv().into_bytes()));
     }
+    progress.finish();
     eprintln!("the cost of a state");
     let costs = cost::measure(stride)?;
     contents.push(("cost.svg".to_owned(), cost::svg(&costs).into_bytes()));

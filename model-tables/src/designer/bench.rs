@@ -67,30 +67,37 @@ pub(super) fn warn_of_strain<L: Hyperelastic, const S: usize>(
     depth: f64,
 ) {
     const POINTS: usize = 61;
-    let Some(preset) = Preset::of(&design.material) else {
+    let Ok(meridian) = press.profile(depth, POINTS) else {
         return;
     };
-    let (Some(most), Ok(meridian)) = (preset.largest_invariant(), press.profile(depth, POINTS)) else {
-        return;
-    };
-    let reached = meridian
-        .map(|point| {
-            let (a, b) = (
-                point.meridional_stretch * point.meridional_stretch,
-                point.hoop_stretch * point.hoop_stretch,
-            );
+    let stretches = meridian.map(|point| [point.meridional_stretch, point.hoop_stretch]);
+    if let Some(reason) = beyond_strain(design, stretches, depth) {
+        warn(file, &reason);
+    }
+}
+
+/// What to say when the stretches along and around at `depth` metres leave the range of strain that the material was fitted in.
+pub(super) fn beyond_strain(
+    design: &DesignFile,
+    stretches: impl Iterator<Item = [f64; 2]>,
+    depth: f64,
+) -> Option<String> {
+    let preset = Preset::of(&design.material)?;
+    let most = preset.largest_invariant()?;
+    let reached = stretches
+        .map(|stretches| {
+            let [a, b] = stretches.map(|stretch| stretch * stretch);
             a + b + 1.0 / (a * b) - 3.0
         })
         .fold(0.0, f64::max);
-    if reached > most {
-        let reason = format!(
+    (reached > most).then(|| {
+        format!(
             "at indentation {} mm the stretches reach I1 - 3 = {reached:.2}, beyond {most:.2} up to which the constants of \
              {} were fitted; stretch or press less, or fit the law further",
             depth * 1e3,
             preset.title
-        );
-        warn(file, &reason);
-    }
+        )
+    })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::published::paper::{FORCES, INDENTATIONS};
 use super::published::solid::SOLID;
 use super::rows::{Cell, Rows, significant};
-use super::{Answer, Refusal, fit as command, table};
+use super::{Answer, Refusal, fit as command, output};
 use crate::design_file::DesignFile;
 use crate::fit::data::{Choice, Data};
 use crate::fit::parameter::Parameter;
@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         };
         let target = Target::parse(HUMAN, "human-fingertip.toml")?;
         let page = page(&domes, &papers, &paper_data, &target);
-        table::write_all(folder, &[(name, page.into_bytes())])?;
+        output::write_all(folder, &[(name, page.into_bytes())])?;
         notes.push(format!("wrote {}", out.display()));
     }
     let mut rows = Rows::new(COLUMNS);

@@ -3,8 +3,8 @@
 mod ladder;
 mod speed;
 
+use super::output::write_all;
 use super::rows::{Cell, Rows};
-use super::table::write_all;
 use super::{Answer, Refusal};
 use crate::membrane::TensionField;
 use crate::methods::contest::{self, Contestant, DESIGNS, Sweep};

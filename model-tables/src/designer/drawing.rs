@@ -49,6 +49,19 @@ impl Drawing {
         }
     }
 
+    /// A drawing that stands in a page: as wide as its place, on the page's ground and in its type, with words for those who do
+    /// not see it.
+    pub(super) fn inline([width, height]: [f64; 2], title: &str, description: &str) -> Self {
+        Self {
+            text: format!(
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" role=\"img\">\n\
+                 <title>{}</title>\n<desc>{}</desc>\n",
+                escape(title),
+                escape(description)
+            ),
+        }
+    }
+
     /// The file.
     pub(super) fn finish(self) -> String {
         self.text + "</svg>\n"
@@ -84,6 +97,15 @@ impl Drawing {
     pub(super) fn area(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], color: &str) {
         self.push(&format!(
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{color}\"/>"
+        ));
+    }
+
+    /// A filled polygon.
+    pub(super) fn polygon(&mut self, points: &[[f64; 2]], color: &str) {
+        let list: Vec<String> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
+        self.push(&format!(
+            "<polygon points=\"{}\" fill=\"{color}\"/>",
+            list.join(" ")
         ));
     }
 
@@ -131,7 +153,7 @@ impl Drawing {
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let words = words.replace('&', "&amp;").replace('<', "&lt;");
+        let words = escape(words);
         self.push(&format!(
             "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" text-anchor=\"{anchor}\" \
              fill=\"{color}\" stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{words}</text>"
@@ -145,6 +167,11 @@ impl Drawing {
              text-anchor=\"middle\" fill=\"{BLACK}\">{words}</text>"
         ));
     }
+}
+
+/// Words as text of an SVG.
+fn escape(words: &str) -> String {
+    words.replace('&', "&amp;").replace('<', "&lt;")
 }
 
 /// A logarithmic axis: decades over pixels.

@@ -6,7 +6,7 @@ mod report;
 mod write;
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, bench, finite, read, table};
+use super::{Answer, Refusal, bench, finite, output, read};
 use crate::fit::data::{Choice, Data, Direction};
 use crate::fit::parameter::Parameter;
 use crate::fit::{self, Fit, Held};
@@ -117,7 +117,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             ("fit.svg", chart::draw(&file, &data, &fit).into_bytes()),
             ("residuals.csv", write::residuals(&data, &fit).into_bytes()),
         ];
-        table::write_all(out, &contents)?;
+        output::write_all(out, &contents)?;
         notes.push(format!(
             "wrote {}, fit.md, fit.svg and residuals.csv to {}",
             stem,

@@ -3,8 +3,9 @@
 use super::drawing::{
     Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, Panel, VERMILION, power,
 };
+use super::output::write_all;
+use super::progress::Progress;
 use super::rows::{Cell, Rows};
-use super::table::write_all;
 use super::{Answer, Refusal};
 use crate::campaign::walls::{self, ASKED, Measured};
 use crate::design::RestBy;
@@ -44,11 +45,13 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let mut measured = Vec::new();
+    let progress = Progress::new("random walls");
+    // One after another: what is measured is time.
     for index in 0..arguments.designs {
         measured.push(walls::draw(index).measure());
-        eprint!("\r{} of {} walls", index + 1, arguments.designs);
+        progress.set((index + 1) as f64 / arguments.designs as f64);
     }
-    eprintln!();
+    progress.finish();
     let judged: Vec<&Measured> = measured.iter().filter(|wall| wall.has_truth()).collect();
     let mut rows = Rows::new(COLUMNS);
     for asked in ASKED {

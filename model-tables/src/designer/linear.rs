@@ -1,4 +1,4 @@
-//! Panels with linear axes from zero, beside the logarithmic ones of [`super::drawing`].
+//! Panels with linear axes and round ticks, beside the logarithmic ones of [`super::drawing`].
 
 use super::drawing::{Anchor, BLACK, Drawing, GREY};
 use super::rows::significant;
@@ -7,22 +7,28 @@ const GRID: &str = "#e4e4e4";
 /// Ticks of an axis, about.
 const TICKS: f64 = 5.0;
 
-/// A linear axis from zero.
+/// A linear axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
+    /// Its first value, a whole number of steps.
+    start: f64,
     /// Its last value, a whole number of steps.
     pub(super) end: f64,
     /// Between ticks.
     step: f64,
-    /// Where zero and the end lie.
+    /// Where start and end lie.
     pub(super) pixels: [f64; 2],
 }
 
 impl Axis {
     /// An axis that holds values up to `largest`, with round ticks.
     pub(super) fn from_zero(largest: f64, pixels: [f64; 2]) -> Self {
-        let largest = if largest > 0.0 { largest } else { 1.0 };
-        let rough = largest / TICKS;
+        Self::over([0.0, if largest > 0.0 { largest } else { 1.0 }], pixels)
+    }
+
+    /// An axis that holds the values between two, the first less than the second.
+    pub(super) fn over([least, largest]: [f64; 2], pixels: [f64; 2]) -> Self {
+        let rough = (largest - least) / TICKS;
         let decade = libm::pow(10.0, libm::floor(libm::log10(rough)));
         let step = [1.0, 2.0, 5.0, 10.0]
             .into_iter()
@@ -30,6 +36,7 @@ impl Axis {
             .find(|step| *step >= 0.999 * rough)
             .unwrap_or(10.0 * decade);
         Self {
+            start: step * libm::floor(least / step + 1e-9),
             end: step * libm::ceil(largest / step - 1e-9),
             step,
             pixels,
@@ -38,14 +45,14 @@ impl Axis {
 
     /// Where a value lies; values beyond the ends lie at the ends.
     pub(super) fn at(&self, value: f64) -> f64 {
-        let part = (value / self.end).clamp(0.0, 1.0);
+        let part = ((value - self.start) / (self.end - self.start)).clamp(0.0, 1.0);
         self.pixels[0] + part * (self.pixels[1] - self.pixels[0])
     }
 
     fn ticks(&self) -> impl Iterator<Item = f64> + use<> {
-        let step = self.step;
-        let count = libm::round(self.end / step) as usize;
-        (0..=count).map(move |k| step * k as f64)
+        let (step, first) = (self.step, libm::round(self.start / self.step));
+        let count = libm::round((self.end - self.start) / step) as usize;
+        (0..=count).map(move |k| step * (first + k as f64))
     }
 }
 
@@ -119,6 +126,12 @@ mod tests {
                 "{axis:?}"
             );
         }
+        let axis = Axis::over([-0.3, 2.1], [0.0, 100.0]);
+        assert!(
+            (axis.start + 0.5).abs() < 1e-9 && (axis.end - 2.5).abs() < 1e-9,
+            "{axis:?}"
+        );
+        assert!((axis.at(1.0) - 50.0).abs() < 1e-9);
         assert_eq!(
             (label(0.4), label(50.0), label(0.0)),
             ("0.4".into(), "50".into(), "0".into())

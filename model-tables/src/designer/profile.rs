@@ -41,7 +41,10 @@ Points are equally spaced in the parameter within the contact and within the fre
 contact edge.
 
 Of a solid: the middle of its wall, forces across the whole wall for tensions, nothing under `wrinkled`;
-points are equally spaced throughout.";
+points are equally spaced throughout.
+
+Example:
+  cargo designer profile model-tables/designs/index-fingertip.toml --indentation-mm 0.5 --points 41";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {

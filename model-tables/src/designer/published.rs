@@ -6,7 +6,7 @@ mod readings;
 pub(super) mod solid;
 
 use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, table};
+use super::{Answer, Refusal, output};
 use crate::design_file::DesignFile;
 use paper::Paper;
 use solid::Solid;
@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
-        table::write_all(folder, &[(name, text.into_bytes())])?;
+        output::write_all(folder, &[(name, text.into_bytes())])?;
         notes.push(format!("wrote {}", out.display()));
     }
     let mut rows = Rows::new(COLUMNS);

@@ -4,7 +4,7 @@ mod chart;
 
 use super::progress::Progress;
 use super::rows::{Cell, Rows, significant};
-use super::{Answer, Refusal, bench, table};
+use super::{Answer, Refusal, bench, output};
 use crate::design::RestBy;
 use crate::size::target::Target;
 use crate::size::{self, Sized};
@@ -115,7 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             .iter()
             .map(|(name, content)| (name.as_str(), content.clone()))
             .collect();
-        table::write_all(out, &contents)?;
+        output::write_all(out, &contents)?;
         notes.push(format!(
             "wrote size.svg and {} designs to {}",
             sizing.designs.len(),

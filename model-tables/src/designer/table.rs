@@ -1,11 +1,11 @@
 //! `designer table`: writes the tables of a design.
 
 use super::estimate::refusal;
+use super::output::write_all;
 use super::rows::{Cell, Rows};
 use super::{Answer, Refusal};
 use crate::generate::from_design_file;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &["file", "size_bytes"];
 
@@ -46,40 +46,4 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         certificate.indentation.of_reading.max,
     )];
     Ok(Answer { rows, notes })
-}
-
-/// Writes every file beside its place first, then moves them all in; on failure removes what it wrote.
-pub(super) fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refusal> {
-    let cannot = |path: &Path, error: std::io::Error| {
-        Refusal(format!(
-            "{} cannot be written: {error}; choose another --out",
-            path.display()
-        ))
-    };
-    fs::create_dir_all(folder).map_err(|error| cannot(folder, error))?;
-    let places: Vec<(PathBuf, PathBuf)> = contents
-        .iter()
-        .map(|(name, _)| {
-            let temporary = format!(".{name}.{}", std::process::id());
-            (folder.join(temporary), folder.join(name))
-        })
-        .collect();
-    let written = places
-        .iter()
-        .zip(contents)
-        .try_for_each(|((temporary, _), (_, content))| {
-            fs::write(temporary, content).map_err(|error| cannot(temporary, error))
-        })
-        .and_then(|()| {
-            places.iter().try_for_each(|(temporary, place)| {
-                fs::rename(temporary, place).map_err(|error| cannot(place, error))
-            })
-        });
-    if written.is_err() {
-        for (temporary, _) in &places {
-            // What was moved or never written is not there any more.
-            let _ = fs::remove_file(temporary);
-        }
-    }
-    written
 }

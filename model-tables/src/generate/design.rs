@@ -1,7 +1,6 @@
 //! From a design to its tables: the full model, and every refusal on the way.
 
 use super::{Certified, NoTables, emit, tables};
-use crate::adapt::Resolution;
 use crate::constants::{Transducer, TransducerKind};
 use crate::curve::{Contact, Curve};
 use crate::design_file::{
@@ -9,18 +8,12 @@ use crate::design_file::{
     Transfer,
 };
 use crate::membrane::TensionField;
-use crate::press::{CurveFailure, FULL, ModelError, Press};
+use crate::press::{CurveFailure, FINER, ModelError, Press};
 use crate::rung::Rung;
 use sha2::{Digest as _, Sha256};
 use std::fmt;
 use std::path::Path;
 
-/// A mesh twice as fine as the full model's.
-const FINER: Resolution = Resolution {
-    density: 2.0 * FULL.density,
-    contact_elements: 2 * FULL.contact_elements,
-    ..FULL
-};
 /// States that the curve is compared with on it, about.
 const CHECKED: usize = 12;
 /// How much deeper than the press the curve goes where it can, so that the last input can be a number that the chip handles in

@@ -3,7 +3,7 @@
 use super::super::drawing::{Anchor, BLACK, BLUE, Drawing, GREY, Marker};
 use super::super::linear::{Axis, Panel};
 use super::super::rows::{Cell, Rows, significant};
-use super::super::{Answer, Refusal, bench, table};
+use super::super::{Answer, Refusal, bench, output};
 use super::{Arguments, write};
 use crate::design_file::{Calibration, DataCurve, DesignFile};
 use crate::fit::data::Data;
@@ -124,7 +124,7 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
             ("from-data.md", page.into_bytes()),
             ("from-data.svg", draw(data, &found).into_bytes()),
         ];
-        table::write_all(out, &contents)?;
+        output::write_all(out, &contents)?;
         notes.push(format!(
             "wrote {stem}, from-data.md and from-data.svg to {}",
             out.display()

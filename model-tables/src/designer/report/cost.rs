@@ -1,0 +1,111 @@
+//! Speed against accuracy of the models of one design: what a state costs, and how far it is from the finest model's.
+
+use crate::adapt::Resolution;
+use crate::curve::Contact;
+use crate::design::Design;
+use crate::design_file::DesignFile;
+use crate::material::Law;
+use crate::membrane::TensionField;
+use crate::press::{CURVE, FINER, FULL, ModelError, Press, SWEEP};
+use crate::rung::choice::{LADDER, PARTS, REFINED, Wanted};
+use crate::rung::{Kind, Rung};
+use std::time::Instant;
+
+/// A model of the design, timed.
+pub(super) struct Cost {
+    pub(super) model: String,
+    /// Of one state, warm-started from those before.
+    pub(super) seconds: f64,
+    /// Largest difference of force or pressure rise from the finest model, over the reading; `None` of the finest itself.
+    pub(super) distance: Option<f64>,
+    /// Whether the report's numbers are this model's.
+    pub(super) used: bool,
+}
+
+/// States that were solved, and the seconds a state.
+type Solved = (Vec<Contact>, f64);
+
+/// The models of a design, cheapest first, the finest last; those that find no state are left out.
+pub(super) fn costs(file: &DesignFile, used: Kind, design: &Design, deepest: f64) -> Vec<Cost> {
+    let wanted = Wanted {
+        deepest,
+        ..Wanted::of(file)
+    };
+    let mut solved: Vec<(String, bool, Solved)> = Vec::new();
+    let mut add = |model: String, is_used: bool, found: Result<Solved, ModelError>| {
+        if let Ok(found) = found {
+            solved.push((model, is_used, found));
+        }
+    };
+    match used {
+        Kind::Membrane => {
+            add(
+                "membrane, coarse".into(),
+                false,
+                membrane::<5>(design, SWEEP, deepest),
+            );
+            add(
+                "membrane, for curves".into(),
+                false,
+                membrane::<6>(design, CURVE, deepest),
+            );
+            add("membrane".into(), true, membrane::<6>(design, FULL, deepest));
+            add(
+                "membrane, twice as fine".into(),
+                false,
+                membrane::<6>(design, FINER, deepest),
+            );
+        }
+        Kind::Solid(elements) => {
+            let rungs = LADDER.iter().map(|(kind, _)| *kind);
+            let own = (!LADDER.iter().any(|(kind, _)| *kind == used)).then_some(used);
+            for kind in rungs.filter(|kind| kind.applies(design)).chain(own) {
+                let is_used = kind == Kind::Solid(elements);
+                add(kind.to_string(), is_used, rung(kind, design, deepest));
+            }
+            // The finest last.
+            solved.sort_by_key(|(model, ..)| *model == Kind::Solid(REFINED).to_string());
+        }
+    }
+    let Some((_, _, (truth, _))) = solved.last() else {
+        return Vec::new();
+    };
+    let truth = truth.clone();
+    let last = solved.len() - 1;
+    solved
+        .into_iter()
+        .enumerate()
+        .map(|(i, (model, used, (contacts, seconds)))| Cost {
+            model,
+            seconds,
+            distance: (i < last).then(|| wanted.distance(&contacts, &truth)),
+            used,
+        })
+        .collect()
+}
+
+fn membrane<const S: usize>(
+    design: &Design,
+    resolution: Resolution,
+    deepest: f64,
+) -> Result<Solved, ModelError> {
+    let mut press: Press<Law, S> = Press::with_resolution(design, TensionField::Relaxed, resolution)?;
+    timed(deepest, |indentation| press.contact_at(indentation))
+}
+
+fn rung(kind: Kind, design: &Design, deepest: f64) -> Result<Solved, ModelError> {
+    let mut rung = Rung::of(kind, design)?;
+    timed(deepest, |indentation| rung.contact_at(indentation))
+}
+
+fn timed(
+    deepest: f64,
+    mut contact_at: impl FnMut(f64) -> Result<Contact, ModelError>,
+) -> Result<Solved, ModelError> {
+    let start = Instant::now();
+    let contacts = PARTS
+        .iter()
+        .map(|part| contact_at(part * deepest))
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok((contacts, start.elapsed().as_secs_f64() / PARTS.len() as f64))
+}
