@@ -15,6 +15,7 @@ mod ladder;
 mod linear;
 mod materials;
 mod model;
+mod monitor;
 mod output;
 mod profile;
 mod progress;
@@ -29,6 +30,7 @@ mod table;
 use crate::design_file::{DesignFile, DesignFileError};
 use crate::membrane::TensionField;
 use crate::stability::Margin;
+use clap::builder::PossibleValue;
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 use rows::{Format, Rows};
@@ -112,6 +114,8 @@ enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
+    /// Live readings of a board, from its serial port or the emulated board's socket
+    Monitor(monitor::Arguments),
     /// The source paper's numbers beside what its stated inputs give
     #[command(after_help = "Example:\n  cargo designer published --out model-tables/PUBLISHED.md")]
     Published(published::Arguments),
@@ -170,6 +174,15 @@ pub fn main() -> ExitCode {
         }
         Err(error) => return refuse(&usage(&error)),
     };
+    if let Command::Monitor(monitor) = &arguments.command {
+        let format = arguments.format.as_ref().and_then(ValueEnum::to_possible_value);
+        return match monitor::run(monitor, format.as_ref().map(PossibleValue::get_name)) {
+            Ok(status) if status.success() => ExitCode::SUCCESS,
+            // It has said why.
+            Ok(_) => ExitCode::FAILURE,
+            Err(Refusal(reason)) => refuse(&reason),
+        };
+    }
     output::clear_away_on_interrupt();
     let format = arguments.format.unwrap_or(if std::io::stdout().is_terminal() {
         Format::Table
@@ -206,6 +219,8 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::Materials => Ok(materials::run()),
         Command::Published(arguments) => published::run(arguments),
         Command::Completions { shell } => return completions(*shell),
+        // Handed over before.
+        Command::Monitor(_) => return Ok(Vec::new()),
     }?;
     print(&rows.print(format).map_err(Refusal)?)?;
     Ok(notes)

@@ -23,6 +23,11 @@ const COUNTER_ENABLE: u64 = 1;
 pub trait Listener: Send + 'static {
     /// One byte came; the run ends when this breaks.
     fn hear(&mut self, byte: u8, moment: Moment, plant: &Plant) -> ControlFlow<()>;
+
+    /// Bytes for the board, asked for every millisecond; `time` is virtual, seconds since power-on.
+    fn say(&mut self, _time: f64) -> Vec<u8> {
+        Vec::new()
+    }
 }
 
 /// When a byte came, in seconds of virtual time since power-on.
@@ -255,6 +260,10 @@ impl<L: Listener> Driver<Nucleo> for Bench<L> {
             if self.listener.hear(byte, moment, &self.plant).is_break() {
                 return None;
             }
+        }
+        let words = self.listener.say(seconds(stop.at));
+        if !words.is_empty() {
+            session.board_mut().send(&words);
         }
         (stop.at < self.end).then_some(VirtualNanos(stop.at.0 + LISTEN))
     }

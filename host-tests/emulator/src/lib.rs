@@ -21,4 +21,5 @@ pub mod plant;
 pub mod record;
 pub mod scenario;
 mod sensor;
+pub mod serve;
 pub mod transducer;

@@ -159,6 +159,7 @@ pub(crate) mod tests {
             ],
             wire: vec![],
             event: vec![],
+            repeats: false,
         }
     }
 

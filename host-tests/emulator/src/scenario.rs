@@ -23,6 +23,9 @@ pub struct Scenario {
     /// What happens to the chip and its serial line, in any order.
     #[serde(default)]
     pub event: Vec<Event>,
+    /// Plate and wire begin anew when it is over, for ever; events happen once. No word of the file.
+    #[serde(skip)]
+    pub repeats: bool,
 }
 
 /// Something that happens to the chip or its serial line.
@@ -193,8 +196,18 @@ impl Scenario {
         self.phase.iter().map(|phase| phase.duration_ms * 1e-3).sum()
     }
 
+    /// The place in the story at a time in seconds.
+    fn place(&self, time: f64) -> f64 {
+        if self.repeats {
+            time % self.duration()
+        } else {
+            time
+        }
+    }
+
     /// Indentation at a time in seconds, as a share of the largest, 0 .. 1.
     pub fn indentation_share(&self, time: f64) -> f64 {
+        let time = self.place(time);
         let (mut begins, mut from) = (0.0, 0.0);
         for phase in &self.phase {
             let lasts = phase.duration_ms * 1e-3;
@@ -210,6 +223,7 @@ impl Scenario {
 
     /// The name of the phase at a time in seconds; the last one's after the end.
     pub fn phase_at(&self, time: f64) -> &str {
+        let time = self.place(time);
         let mut ends = 0.0;
         self.phase
             .iter()
@@ -223,7 +237,7 @@ impl Scenario {
 
     /// What is on the transducer's wire at a time in seconds.
     pub fn wiring(&self, time: f64) -> Wiring {
-        let ms = time * 1e3;
+        let ms = self.place(time) * 1e3;
         self.wire
             .iter()
             .find(|fault| ms >= fault.from_ms && fault.until_ms.is_none_or(|until| ms < until))

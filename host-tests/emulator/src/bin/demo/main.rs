@@ -13,6 +13,7 @@ use emulator::image::Image;
 use emulator::output::{self, Output};
 use emulator::record::{Recorder, write_csv};
 use emulator::scenario::Scenario;
+use emulator::serve::Server;
 use options::Options;
 use say::say;
 use std::error::Error;
@@ -36,7 +37,10 @@ fn main() -> ExitCode {
         eprintln!("note: an interrupt will leave files behind ({error})");
     }
     let outcome = match options::parse() {
-        Ok(options) => demo(&options),
+        Ok(options) => match &options.serve {
+            Some(address) => serve(&options, address),
+            None => demo(&options),
+        },
         Err(exit) => return exit,
     };
     match outcome {
@@ -115,5 +119,31 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
         say!("note: {trouble}");
     }
     say!("chart   {}\nnumbers {}", files[0].display(), files[1].display());
+    Ok(())
+}
+
+/// The board behind a socket, for ever.
+fn serve(options: &Options, address: &str) -> Result<(), Box<dyn Error>> {
+    let scenario = Scenario {
+        repeats: true,
+        ..Scenario::named(&options.scenario)?
+    };
+    let design = FingertipDesign::read(&options.design)?;
+    let server = Server::bind(address)
+        .map_err(|error| format!("--serve {address}: {error}; take another HOST:PORT"))?;
+    let address = server.address()?;
+    say!(
+        "building the firmware image for the NUCLEO-F429ZI and {} ...",
+        design.name()
+    );
+    let image = Image::firmware(Some(&design.path))?;
+    say!("solving the full model of {} for the truth ...", design.name());
+    let plant = design.plant(scenario)?;
+    say!(
+        "serving {} at tcp:{address}, until Ctrl-C; watch it with",
+        options.scenario
+    );
+    say!("    cargo designer monitor tcp:{address}");
+    bench::run(&image, plant, f64::INFINITY, &[], server)?;
     Ok(())
 }

@@ -8,7 +8,13 @@ use std::process::ExitCode;
 /// Runs the real firmware image on an emulated STM32 while a plate presses the fingertip, and shows what it
 /// reports beside the truth. No board is needed.
 #[derive(Debug, Parser)]
-#[command(name = "cargo demo", bin_name = "cargo demo", version)]
+#[command(
+    name = "cargo demo",
+    bin_name = "cargo demo",
+    version,
+    after_help = "Examples:\n  cargo demo\n  cargo demo --scenario staircase --design my.toml --out demo\n  \
+                  cargo demo --serve 127.0.0.1:4000    (and in another terminal: cargo designer monitor tcp:127.0.0.1:4000)"
+)]
 struct Arguments {
     /// Design file of the fingertip [default: `FINGERTIP_DESIGN`, or the index fingertip]
     #[arg(long, value_name = "FILE")]
@@ -22,6 +28,9 @@ struct Arguments {
     /// Where the CSV file goes [default: in the folder of --out]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Serve the board's serial wire at this address instead, the scenario again and again, until Ctrl-C
+    #[arg(long, value_name = "HOST:PORT", conflicts_with_all = ["out", "csv"])]
+    serve: Option<String>,
 }
 
 /// What to do.
@@ -35,6 +44,8 @@ pub(crate) struct Options {
     pub(crate) chart: PathBuf,
     /// Where the CSV file goes.
     pub(crate) csv: PathBuf,
+    /// Where the serial wire is served instead.
+    pub(crate) serve: Option<String>,
 }
 
 /// The options given, or the exit code after saying in one line what is wrong with them.
@@ -65,6 +76,7 @@ pub(crate) fn parse() -> Result<Options, ExitCode> {
     Ok(Options {
         design: arguments.design.unwrap_or_else(default_path),
         scenario: arguments.scenario,
+        serve: arguments.serve,
         chart: out.join(format!("{stem}.svg")),
         csv: arguments.csv.unwrap_or_else(|| out.join(format!("{stem}.csv"))),
     })

@@ -1,0 +1,255 @@
+//! The bytes of a board, both ways, and the connection again when it is lost.
+
+use std::fmt;
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{TcpStream, ToSocketAddrs as _};
+use std::str::FromStr;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::Duration;
+
+/// Speed of the board's serial port, bits a second.
+pub const BAUD: u32 = 921_600;
+/// How long a read waits for bytes.
+const PATIENCE: Duration = Duration::from_millis(20);
+/// How long a connection may take.
+const CONNECTING: Duration = Duration::from_secs(2);
+/// From a lost connection to the next try.
+const RETRY: Duration = Duration::from_millis(500);
+
+/// Where a board is.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Address {
+    /// A serial port, such as `/dev/ttyACM0` or `COM3`.
+    Serial {
+        /// Its name.
+        port: String,
+        /// Bits a second.
+        baud: u32,
+    },
+    /// `tcp:HOST:PORT`.
+    Tcp(String),
+}
+
+impl FromStr for Address {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.strip_prefix("tcp:") {
+            Some(address)
+                if address
+                    .rsplit_once(':')
+                    .is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok()) =>
+            {
+                Ok(Self::Tcp(address.to_owned()))
+            }
+            Some(_) => Err(format!(
+                "`{text}` is no address; write tcp:HOST:PORT, such as tcp:127.0.0.1:4000"
+            )),
+            None if text.is_empty() => Err("a serial port has a name, such as /dev/ttyACM0".to_owned()),
+            None => Ok(Self::Serial {
+                port: text.to_owned(),
+                baud: BAUD,
+            }),
+        }
+    }
+}
+
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Serial { port, .. } => f.write_str(port),
+            Self::Tcp(address) => f.write_str(address),
+        }
+    }
+}
+
+/// Both ways of a wire.
+trait Wire: Read + Write + Send {}
+impl<T: Read + Write + Send> Wire for T {}
+
+impl Address {
+    fn open(&self) -> io::Result<Box<dyn Wire>> {
+        match self {
+            Self::Serial { port, baud } => {
+                let port = serialport::new(port, *baud).timeout(PATIENCE).open()?;
+                Ok(Box::new(port))
+            }
+            Self::Tcp(address) => {
+                let mut last = io::Error::new(ErrorKind::NotFound, "the host has no address");
+                for address in address.to_socket_addrs()? {
+                    match TcpStream::connect_timeout(&address, CONNECTING) {
+                        Ok(stream) => {
+                            stream.set_read_timeout(Some(PATIENCE))?;
+                            stream.set_nodelay(true)?;
+                            return Ok(Box::new(stream));
+                        }
+                        Err(error) => last = error,
+                    }
+                }
+                Err(last)
+            }
+        }
+    }
+}
+
+/// What a link has to say.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Event {
+    /// It is connected.
+    Connected,
+    /// Bytes came.
+    Bytes(Vec<u8>),
+    /// It is not connected, and why; it will try again.
+    Lost(String),
+}
+
+/// A connection that comes back. Dropped, it ends.
+#[derive(Debug)]
+pub struct Link {
+    events: Receiver<Event>,
+    outgoing: Sender<Vec<u8>>,
+}
+
+impl Link {
+    /// Connects in the background, again and again.
+    pub fn start(address: Address) -> Self {
+        let (say, events) = channel();
+        let (outgoing, to_send) = channel();
+        thread::spawn(move || keep(&address, &say, &to_send));
+        Self { events, outgoing }
+    }
+
+    /// The next event, if it comes within that time.
+    pub fn next(&self, within: Duration) -> Option<Event> {
+        self.events.recv_timeout(within).ok()
+    }
+
+    /// Sends bytes; those sent while there is no connection are lost, as a board that is off loses them.
+    pub fn send(&self, bytes: &[u8]) {
+        // Its thread ends only after this.
+        let _ = self.outgoing.send(bytes.to_vec());
+    }
+}
+
+/// Keeps the connection until nobody listens.
+fn keep(address: &Address, say: &Sender<Event>, to_send: &Receiver<Vec<u8>>) {
+    loop {
+        let reason = match address.open() {
+            Ok(mut wire) => {
+                while to_send.try_recv().is_ok() {}
+                if say.send(Event::Connected).is_err() {
+                    return;
+                }
+                match carry(wire.as_mut(), say, to_send) {
+                    Ok(()) => return,
+                    Err(error) => error.to_string(),
+                }
+            }
+            Err(error) => error.to_string(),
+        };
+        if say.send(Event::Lost(reason)).is_err() {
+            return;
+        }
+        thread::sleep(RETRY);
+    }
+}
+
+/// Carries bytes until the wire breaks, or nobody listens.
+fn carry(wire: &mut dyn Wire, say: &Sender<Event>, to_send: &Receiver<Vec<u8>>) -> io::Result<()> {
+    let mut buffer = [0; 4096];
+    loop {
+        match wire.read(&mut buffer) {
+            Ok(0) => {
+                return Err(io::Error::new(
+                    ErrorKind::UnexpectedEof,
+                    "the other end closed the connection",
+                ));
+            }
+            Ok(count) => {
+                if say.send(Event::Bytes(buffer[..count].to_vec())).is_err() {
+                    return Ok(());
+                }
+            }
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted
+                ) => {}
+            Err(error) => return Err(error),
+        }
+        loop {
+            match to_send.recv_timeout(Duration::ZERO) {
+                Ok(bytes) => wire.write_all(&bytes)?,
+                Err(RecvTimeoutError::Timeout) => break,
+                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::net::TcpListener;
+
+    #[test]
+    fn an_address_is_a_port_or_a_socket() {
+        assert_eq!(
+            "tcp:127.0.0.1:4000".parse(),
+            Ok(Address::Tcp("127.0.0.1:4000".to_owned()))
+        );
+        assert_eq!(
+            "/dev/ttyACM0".parse(),
+            Ok(Address::Serial {
+                port: "/dev/ttyACM0".to_owned(),
+                baud: BAUD
+            })
+        );
+        for wrong in [
+            "",
+            "tcp:",
+            "tcp:4000",
+            "tcp::4000",
+            "tcp:host:port",
+            "tcp:host:70000",
+        ] {
+            assert!(wrong.parse::<Address>().is_err(), "{wrong}");
+        }
+    }
+
+    const LONG: Duration = Duration::from_secs(10);
+
+    #[test]
+    fn a_link_carries_both_ways_and_comes_back() {
+        let server = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = server.local_addr().expect("bound");
+        let link = Link::start(Address::Tcp(address.to_string()));
+        for round in 0..2_u8 {
+            let (mut peer, _) = server.accept().expect("it connects");
+            assert_eq!(link.next(LONG), Some(Event::Connected));
+            peer.write_all(&[round]).expect("it reads");
+            assert_eq!(link.next(LONG), Some(Event::Bytes(vec![round])));
+            link.send(&[7, round]);
+            let mut got = [0; 2];
+            peer.read_exact(&mut got).expect("it writes");
+            assert_eq!(got, [7, round]);
+            drop(peer);
+            assert!(matches!(link.next(LONG), Some(Event::Lost(_))));
+        }
+    }
+
+    #[test]
+    fn a_link_to_nothing_says_why() {
+        let free = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = free.local_addr().expect("bound");
+        drop(free);
+        let link = Link::start(Address::Tcp(address.to_string()));
+        assert!(matches!(link.next(LONG), Some(Event::Lost(reason)) if !reason.is_empty()));
+        let link = Link::start(Address::Serial {
+            port: "/dev/no-such-port".to_owned(),
+            baud: BAUD,
+        });
+        assert!(matches!(link.next(LONG), Some(Event::Lost(reason)) if !reason.is_empty()));
+    }
+}

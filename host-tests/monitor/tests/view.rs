@@ -1,0 +1,214 @@
+//! The view on a terminal of memory: frames of the firmware's own encoder in, the screen out.
+
+use fingertip::command::{Command, CommandKind, Outcome};
+use fingertip::report::{Fault, Measurement, Microseconds, Report, Sigma, Warnings};
+use fingertip::telemetry::{Answer, Frame, Hello, Message, encode};
+use fingertip::touch::Touch;
+use monitor::readings::{Monitor, STALE};
+use monitor::view::{self, Surroundings};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use std::time::Duration;
+
+/// A measurement of 1.2345 N, without naming units that another crate owns.
+fn measurement(warnings: Warnings) -> Measurement {
+    let mut measurement = Measurement {
+        touch: Touch::Touched,
+        warnings,
+        ..Measurement::default()
+    };
+    measurement.force.0 = 1_234_500;
+    measurement.indentation.0 = 750_000;
+    measurement.pressure_rise.0 = 16_008;
+    let mut sigma = Sigma::default();
+    sigma.force.0 = 1_000;
+    measurement.sigma = sigma;
+    measurement
+}
+
+fn report(milliseconds: u64, outcome: Result<Measurement, Fault>) -> Message {
+    Message::Report {
+        report: Report {
+            time: Microseconds(1000 * milliseconds),
+            outcome,
+        },
+        pressure_fraction_bits: 4,
+    }
+}
+
+/// Hears messages, numbered from `sequence` on, all at one instant.
+fn hear(monitor: &mut Monitor, sequence: u16, now: Duration, messages: &[Message]) {
+    for (i, message) in (0..).zip(messages) {
+        let frame = Frame {
+            sequence: sequence + i,
+            dropped: 0,
+            message: *message,
+        };
+        for &byte in encode(&frame).iter() {
+            monitor.hear(byte, now);
+        }
+    }
+}
+
+fn screen(monitor: &Monitor, now: Duration) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(100, 30)).expect("memory");
+    let surroundings = Surroundings {
+        address: "/dev/ttyACM0".to_owned(),
+        log: None,
+    };
+    terminal
+        .draw(|frame| view::draw(frame, monitor, &surroundings, now))
+        .expect("memory");
+    terminal.backend().to_string()
+}
+
+const NOW: Duration = Duration::from_secs(3);
+
+fn connected() -> Monitor {
+    let mut monitor = Monitor::default();
+    monitor.connected();
+    monitor
+}
+
+#[test]
+fn an_ok_report_is_shown_with_its_units() {
+    let mut monitor = connected();
+    let hello = Message::Hello(Hello {
+        firmware: [0, 1, 0],
+        design_hash: 0x0123_4567_89ab_cdef,
+        ..Hello::default()
+    });
+    hear(
+        &mut monitor,
+        7,
+        NOW,
+        &[hello, report(0, Ok(measurement(Warnings::NONE)))],
+    );
+    let screen = screen(&monitor, NOW);
+    for words in [
+        "1.2345 N ",
+        "1-sigma 0.0010 N",
+        "0.7500 mm",
+        "1000.5 Pa",
+        "touched",
+        " ok",
+        "connected",
+        "firmware 0.1.0  design 0123456789abcdef",
+        "1 reports, 0 missing, 0 broken",
+    ] {
+        assert!(screen.contains(words), "{words} in\n{screen}");
+    }
+}
+
+/// The line of the screen that begins with a name.
+fn line<'a>(screen: &'a str, name: &str) -> &'a str {
+    screen
+        .lines()
+        .find(|line| line.contains(&format!(" {name} ")))
+        .unwrap_or_else(|| panic!("{name} in\n{screen}"))
+}
+
+#[test]
+fn a_force_that_is_not_ok_is_refused_with_its_reason() {
+    let refused: [(Result<Measurement, Fault>, &str); 3] = [
+        (
+            Ok(measurement(Warnings::ZERO_UNVERIFIED)),
+            "warning: zero unverified",
+        ),
+        (Ok(measurement(Warnings::SATURATED)), "warning: saturated"),
+        (Err(Fault::SensorOpen), "fault: sensor open"),
+    ];
+    for (outcome, reason) in refused {
+        let mut monitor = connected();
+        // A good report before it must not shine through.
+        hear(
+            &mut monitor,
+            0,
+            NOW,
+            &[report(0, Ok(measurement(Warnings::NONE))), report(1, outcome)],
+        );
+        let screen = screen(&monitor, NOW);
+        for name in ["force", "indentation"] {
+            let line = line(&screen, name);
+            assert!(
+                line.contains(&format!("not shown: {reason}")) && !line.contains("1.2345"),
+                "{screen}"
+            );
+        }
+        assert!(line(&screen, "status").contains(reason), "{screen}");
+    }
+}
+
+#[test]
+fn a_report_that_is_old_or_of_a_lost_board_is_not_shown() {
+    let mut monitor = connected();
+    hear(
+        &mut monitor,
+        0,
+        NOW,
+        &[report(0, Ok(measurement(Warnings::NONE)))],
+    );
+    assert!(line(&screen(&monitor, NOW + STALE), "force").contains("not shown: no report"));
+    monitor.lost("unplugged");
+    let screen = screen(&monitor, NOW);
+    assert!(
+        line(&screen, "force").contains("not shown: no report"),
+        "{screen}"
+    );
+    assert!(
+        screen.contains("no connection, trying again: unplugged"),
+        "{screen}"
+    );
+}
+
+#[test]
+fn the_history_has_gaps_where_the_force_is_not_ok_and_ends_with_a_reset() {
+    let mut monitor = connected();
+    let ok = Ok(measurement(Warnings::NONE));
+    let messages = [
+        report(0, ok),
+        report(5, ok),
+        report(100, ok),
+        report(110, Err(Fault::Jump)),
+        report(120, ok),
+    ];
+    hear(&mut monitor, 0, NOW, &messages);
+    let history: Vec<Option<f64>> = monitor.history().iter().map(|(_, force)| *force).collect();
+    // The second is too soon after the first to be a point of its own.
+    assert_eq!(history, [Some(1.2345), Some(1.2345), None, Some(1.2345)]);
+    hear(&mut monitor, 5, NOW, &[report(50, ok)]);
+    assert_eq!(monitor.history().len(), 1);
+}
+
+#[test]
+fn what_is_lost_or_broken_is_counted_and_answers_are_told() {
+    let mut monitor = connected();
+    let ok = Ok(measurement(Warnings::NONE));
+    hear(&mut monitor, u16::MAX - 1, NOW, &[report(0, ok), report(1, ok)]);
+    // 65535 was the last: 0 and 1 are missing.
+    hear(&mut monitor, 2, NOW, &[report(4, ok)]);
+    for byte in [9, 9, 9, 0] {
+        monitor.hear(byte, NOW);
+    }
+    let counts = monitor.counts();
+    assert_eq!((counts.reports, counts.missing, counts.broken), (3, 2, 1));
+    let sent = monitor.command(Command::Tare);
+    assert_eq!(
+        fingertip::command::decode(&sent[..sent.len() - 1])
+            .map(|request| (request.sequence, request.command)),
+        Ok((1, Command::Tare))
+    );
+    let answer = Message::Answer(Answer {
+        time: Microseconds(0),
+        command: CommandKind::Tare,
+        command_sequence: 1,
+        outcome: Outcome::Touched,
+        findings: 0,
+    });
+    hear(&mut monitor, 3, NOW, &[answer]);
+    let screen = screen(&monitor, NOW);
+    assert!(
+        screen.contains("tare 1 sent") && screen.contains("tare 1: refused: the fingertip is touched"),
+        "{screen}"
+    );
+}
