@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Reads the board's frames (src/PROTOCOL.md) from a file, a pipe or a serial port set to 921600 baud, and prints one
-line each; `--encode KIND SEQUENCE [HEX]` writes a command. Nothing but the standard library.
+"""Reads the board's frames (src/PROTOCOL.md) from a file, a pipe, a serial port set to 921600 baud or tcp:HOST:PORT, and
+prints one line each; `--encode KIND SEQUENCE [HEX]` writes a command. Nothing but the standard library.
 
     stty -F /dev/ttyACM0 921600 raw && python3 read_frames.py /dev/ttyACM0
     python3 read_frames.py --encode tare 1 > /dev/ttyACM0
 """
 import binascii
+import socket
 import struct
 import sys
 
@@ -86,24 +87,44 @@ def describe(body):
     return head + f"{names[command]} {command_sequence}: {OUTCOMES[outcome]}, findings {findings:#x}"
 
 
+def opened(name):
+    """Bytes from a file, a port or tcp:HOST:PORT."""
+    if name.startswith("tcp:"):
+        host, port = name[4:].rsplit(":", 1)
+        return socket.create_connection((host, int(port))).makefile("rb", buffering=0)
+    return open(name, "rb", buffering=0)
+
+
+def stuffed_frames(source):
+    waiting = b""
+    while read := source.read(4096):
+        *frames, waiting = (waiting + read).split(b"\0")
+        yield from filter(None, frames)
+
+
+def bodies(source):
+    """The bodies that are whole; a stretch that was lost is passed over."""
+    for stuffed in stuffed_frames(source):
+        try:
+            body = body_of(stuffed)
+            describe(body)
+        except ValueError:
+            continue
+        yield body
+
+
 def main(arguments):
     if arguments[:1] == ["--encode"]:
         kind, sequence, *rest = arguments[1:]
         body = struct.pack("<BBH", VERSION, COMMANDS[kind], int(sequence)) + bytes.fromhex("".join(rest))
         sys.stdout.buffer.write(frame(body))
         return
-    with open(arguments[0], "rb", buffering=0) if arguments else sys.stdin.buffer as source:
-        waiting = b""
-        while True:
-            read = source.read(4096)
-            if not read:
-                break
-            *frames, waiting = (waiting + read).split(b"\0")
-            for stuffed in filter(None, frames):
-                try:
-                    print(describe(body_of(stuffed)), flush=True)
-                except ValueError as error:
-                    print(f"no frame: {error}", flush=True)
+    with opened(arguments[0]) if arguments else sys.stdin.buffer as source:
+        for stuffed in stuffed_frames(source):
+            try:
+                print(describe(body_of(stuffed)), flush=True)
+            except ValueError as error:
+                print(f"no frame: {error}", flush=True)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ use fingertip::touch::Touch;
 use host_tests::workspace;
 use std::fs;
 use std::io::Write;
+use std::path::Path;
 use std::process::{Command as Process, Stdio};
 
 /// The bytes of the page's example.
@@ -234,4 +235,37 @@ fn the_reader_in_python_has_a_word_for_every_code() {
     for (line, (_, words)) in lines.lines().zip(&said) {
         assert!(line.contains(words), "\"{line}\" does not say \"{words}\"");
     }
+}
+
+/// The program in the guide, on frames from a file.
+#[test]
+fn the_program_of_the_guide_prints_forces_and_reasons() {
+    let guide = fs::read_to_string(workspace().join("host-tests/guides/telemetry-from-python.md"));
+    let guide = guide.expect("the guide is there");
+    let (_, rest) = guide.split_once("```python force.py\n").expect("a program");
+    let (program, _) = rest.split_once("```").expect("its end");
+    let frames = Path::new(env!("CARGO_TARGET_TMPDIR")).join("frames.bin");
+    let mut stream = vec![0x55, 0];
+    for what in FRAMES {
+        stream.extend(example(what));
+    }
+    fs::write(&frames, stream).expect("the test folder");
+    let output = Process::new("python3")
+        .args(["-c", program])
+        .arg(&frames)
+        .current_dir(workspace())
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output();
+    let Ok(output) = output else {
+        eprintln!("no python3: not tested");
+        return;
+    };
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let said = String::from_utf8(output.stdout).expect("it is text");
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(lines, ["0 us fault: sensor open", "3000500 us warning 0x1"]);
 }
