@@ -121,7 +121,7 @@ fn is_complete(document: &Document<'_>) {
 
 /// The cells of the row of that name.
 fn row(document: &Document<'_>, words: &str) -> Vec<String> {
-    document
+    let cells = document
         .descendants()
         .filter(|node| node.tag_name().name() == "tr")
         .map(|row| {
@@ -130,9 +130,11 @@ fn row(document: &Document<'_>, words: &str) -> Vec<String> {
                 .map(text_of)
                 .collect::<Vec<_>>()
         })
-        .find(|cells| cells[0] == words)
-        .map(|cells| cells[1..].to_vec())
-        .unwrap_or_else(|| panic!("no row {words}"))
+        .find(|cells| cells[0] == words);
+    let Some(cells) = cells else {
+        panic!("no row {words}");
+    };
+    cells[1..].to_vec()
 }
 
 fn value(cell: &str, unit: &str) -> f64 {

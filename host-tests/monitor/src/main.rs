@@ -98,10 +98,9 @@ fn run(arguments: &Arguments) -> Result<(), String> {
             return Err("--format table is a view and needs a terminal; take csv or json".to_owned());
         }
         Some(Format::Table) => None,
-        Some(Format::Csv) => Some(Form::Csv),
         Some(Format::Json) => Some(Form::Json),
         None if terminal => None,
-        None => Some(Form::Csv),
+        Some(Format::Csv) | None => Some(Form::Csv),
     };
     let mut log = arguments
         .csv

@@ -129,12 +129,9 @@ impl Monitor {
 
     /// Takes a byte that came at `now`, since the start; gives the report that it completes.
     pub fn hear(&mut self, byte: u8, now: Duration) -> Option<Reading> {
-        let frame = match self.decoder.push(byte)? {
-            Ok(frame) => frame,
-            Err(_) => {
-                self.counts.broken += 1;
-                return None;
-            }
+        let Ok(frame) = self.decoder.push(byte)? else {
+            self.counts.broken += 1;
+            return None;
         };
         if let Some(before) = self.sequence.replace(frame.sequence) {
             self.counts.missing += u64::from(frame.sequence.wrapping_sub(before).wrapping_sub(1));
