@@ -2,8 +2,7 @@
 //!
 //! In-plane gradient `F` (2 x 2), hoop stretch `f = r/R`, `D = det F`, `S = |F|^2`, `J = D f`; the invariants are
 //! `I1 = S + f^2` and `I2 = D^2 + f^2 S` (as `J = 1`). The density is `W(I1, I2) + p (J - 1)`, with the pressure `p`
-//! linear in each element and discontinuous between them. Where the law softens the density has a term `k/2 (J - 1)^2` besides
-//! ([`volume_stiffness`]).
+//! linear in each element and discontinuous between them. Where the law softens, the density has a term `k/2 (J - 1)^2` besides.
 
 use super::mesh::{NODES, PLACES, POINTS, PRESSURES, Point};
 use crate::material::{Hyperelastic as _, Law};
