@@ -69,11 +69,13 @@ fn the_monitor_shows_the_force_that_presses_and_a_refused_tare() {
     };
     let plant = design().plant(story).expect("the default design can be pressed");
     let held = plant.truth(1.6);
+    // Built before the clock runs.
+    let image = firmware();
     let server = Server::bind("127.0.0.1:0").expect("a port");
     let address = server.address().expect("bound").to_string();
     let ended = server.ended();
     let board = thread::spawn(move || {
-        bench::run(firmware(), plant, f64::INFINITY, &[], server).map(|outcome| outcome.gaps)
+        bench::run(image, plant, f64::INFINITY, &[], server).map(|outcome| outcome.gaps)
     });
     let mut program = Program {
         link: Link::start(Address::Tcp(address)),
