@@ -3,7 +3,7 @@
 //! `FINGERTIP_DESIGN`, relative to the workspace root, chooses the design.
 
 use model_tables::constants::TransducerKind;
-use model_tables::generate::{self, GenerateError};
+use model_tables::generate::{self, GenerateError, Limit};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
@@ -48,6 +48,9 @@ fn tables(design: &Path) -> Result<String, String> {
         TransducerKind::Dps310 { .. } => "dps310",
     };
     println!("cargo::rustc-cfg=transducer=\"{kind}\"");
+    if generated.limits() != [Limit::Accuracy; 2] {
+        println!("cargo::warning={}: {}", design.display(), generated.choice());
+    }
     Ok(generated.rust_source())
 }
 

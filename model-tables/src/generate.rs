@@ -18,15 +18,12 @@ use crate::design_file::Accuracy;
 use truth::Truth;
 
 pub use certify::{Certificate, Errors, Spread};
-pub use design::{GenerateError, Generated, State, from_design, from_design_file};
+pub use design::{GenerateError, Generated, Limit, Solved, State, from_design, from_design_file, solve};
 pub use owned::OwnedTables;
 
 /// Version of the tables' layout and of the generator; counts up when either changes the integers.
 pub const TABLE_VERSION: u32 = 3;
 
-/// Readings that an average is made of at most, and what that gains: their noise falls, and their steps with it.
-const AVERAGED: u32 = 1024;
-const GAIN: f64 = 32.0;
 /// An input count is not finer than this part of what the transducer tells apart: averaging a thousand of its
 /// samples gains a factor of 32, and the count stays four times finer than that.
 const COUNTS_PER_RESOLUTION: f64 = 128.0;
@@ -48,8 +45,8 @@ pub struct Certified {
     pub certificate: Certificate,
     /// Segmentations looked at before these tables were found to be the smallest.
     pub tried: usize,
-    /// Percent of reading of force and indentation, where the transducer tells most, that are half a step of an average of its
-    /// readings. Tables are held to no less than this, whatever the accuracy asks.
+    /// Half of what the transducer tells apart, in percent of reading of force and indentation, where that is least. Tables are
+    /// held to no less than the smaller one, whatever the accuracy asks.
     pub resolvable_percent: [f64; 2],
 }
 
@@ -73,7 +70,7 @@ pub enum NoTables {
     },
 }
 
-/// Percent of reading that half a step of averaged readings is worth at its best point: finer tables are waste.
+/// Percent of reading that half a step of the transducer is worth at its best point: finer tables are waste.
 fn resolvable_percent(curve: &Curve, end: Contact, accuracy: &Accuracy, resolution: f64) -> [f64; 2] {
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let mut best = [f64::INFINITY; 2];
@@ -84,7 +81,7 @@ fn resolvable_percent(curve: &Curve, end: Contact, accuracy: &Accuracy, resoluti
         for output in 0..2 {
             if high[output] >= from * full[output] {
                 let slope = (high[output] - low[output]) / rise;
-                let share = slope * 0.5 * resolution / GAIN / high[output];
+                let share = slope * 0.5 * resolution / high[output];
                 best[output] = best[output].min(100.0 * share);
             }
         }
@@ -132,11 +129,13 @@ pub fn fit(
     Ok(search(curve, end, accuracy, resolution, |_, _| Some(()))?.tables)
 }
 
-/// The accuracy, no finer than what can be resolved.
+/// The accuracy, no finer than what can be resolved of the output that the transducer tells more of: the other's tables share
+/// its segments.
 fn held_to(accuracy: &Accuracy, resolvable: [f64; 2]) -> Accuracy {
+    let floor = resolvable[0].min(resolvable[1]);
     Accuracy {
-        force_percent_of_reading: accuracy.force_percent_of_reading.max(resolvable[0]),
-        indentation_percent_of_reading: accuracy.indentation_percent_of_reading.max(resolvable[1]),
+        force_percent_of_reading: accuracy.force_percent_of_reading.max(floor),
+        indentation_percent_of_reading: accuracy.indentation_percent_of_reading.max(floor),
         ..*accuracy
     }
 }

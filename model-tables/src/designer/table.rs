@@ -6,6 +6,7 @@ use super::rows::{Cell, Rows};
 use super::{Answer, Refusal};
 use crate::generate::from_design_file;
 use std::path::PathBuf;
+use std::time::Instant;
 
 const COLUMNS: &[&str] = &["file", "size_bytes"];
 
@@ -20,7 +21,9 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let file = &arguments.design;
+    let begun = Instant::now();
     let generated = from_design_file(file).map_err(|error| refusal(file, error))?;
+    let seconds = begun.elapsed().as_secs_f64();
     let contents: [(&str, Vec<u8>); 4] = [
         ("tables.rs", generated.rust_source().into_bytes()),
         ("tables.bin", generated.binary()),
@@ -36,14 +39,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         ]);
     }
     let certificate = &generated.certified.certificate;
-    let notes = vec![format!(
-        "{}: {} bytes of tables; over all {} inputs the errors stay within {:.4} % (force) and {:.4} % \
-         (indentation) of reading",
-        generated.design.name,
-        generated.certified.tables.bytes(),
-        certificate.inputs,
-        certificate.force.of_reading.max,
-        certificate.indentation.of_reading.max,
-    )];
+    let name = &generated.design.name;
+    let notes = vec![
+        format!(
+            "{name}: {} bytes of tables; over all {} inputs the errors stay within {:.4} % (force) and {:.4} % \
+             (indentation) of reading",
+            generated.certified.tables.bytes(),
+            certificate.inputs,
+            certificate.force.of_reading.max,
+            certificate.indentation.of_reading.max,
+        ),
+        format!("{name}: {}", generated.choice()),
+        format!("{name}: solved, fitted and certified in {seconds:.1} s"),
+    ];
     Ok(Answer { rows, notes })
 }

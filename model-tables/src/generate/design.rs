@@ -20,6 +20,19 @@ const CHECKED: usize = 12;
 /// fewer instructions: the pressure, which grows faster than the indentation, then goes on by as much at least.
 const BEYOND: f64 = 1.0 + 1.0 / 64.0;
 
+/// What tables of a design are made from.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// Its transducer.
+    pub transducer: TransducerSection,
+    /// Gauge pressure at rest, pascals.
+    pub rest_pressure: f64,
+    /// The press, which may go on a little beyond its end.
+    pub curve: Curve,
+    /// The end that the tables cover.
+    pub end: Contact,
+}
+
 /// Tables of a design, with everything that is written beside them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Generated {
@@ -156,24 +169,13 @@ pub fn from_design_file(path: &Path) -> Result<Generated, GenerateError> {
 /// [`GenerateError`].
 pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
-    let indentation = design.max_indentation_mm.ok_or(missing("press"))?;
-    let transducer = design.transducer.ok_or(missing("transducer"))?;
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
-    let deepest = indentation * 1e-3;
-    let (rest_pressure, curve, end) = match &design.calibration.curve {
-        Some(data) => {
-            let curve = measured(data, deepest)?;
-            let end = curve.end();
-            (data.rest_pressure_kpa * 1e3, curve, end)
-        }
-        None => pressed(&design, &transducer, indentation)?,
-    };
-    in_range(&transducer, State::Rest, rest_pressure)?;
-    in_range(
-        &transducer,
-        State::Pressed { indentation },
-        rest_pressure + end.pressure_rise,
-    )?;
+    let Solved {
+        transducer,
+        rest_pressure,
+        curve,
+        end,
+    } = solve(&design)?;
     let certified =
         tables(&curve, end, &accuracy, transducer.resolution_pa).map_err(GenerateError::NoTables)?;
     let from = accuracy.from_percent_of_full_scale / 100.0;
@@ -188,6 +190,36 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
         end,
         certified,
         model_error,
+    })
+}
+
+/// Solves a design down to `max_indentation_mm`, as its transducer reads it.
+///
+/// # Errors
+/// [`GenerateError`].
+pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
+    let missing = |section| GenerateError::MissingSection { section };
+    let indentation = design.max_indentation_mm.ok_or(missing("press"))?;
+    let transducer = design.transducer.ok_or(missing("transducer"))?;
+    let (rest_pressure, curve, end) = match &design.calibration.curve {
+        Some(data) => {
+            let curve = measured(data, indentation * 1e-3)?;
+            let end = curve.end();
+            (data.rest_pressure_kpa * 1e3, curve, end)
+        }
+        None => pressed(design, &transducer, indentation)?,
+    };
+    in_range(&transducer, State::Rest, rest_pressure)?;
+    in_range(
+        &transducer,
+        State::Pressed { indentation },
+        rest_pressure + end.pressure_rise,
+    )?;
+    Ok(Solved {
+        transducer,
+        rest_pressure,
+        curve,
+        end,
     })
 }
 
@@ -283,7 +315,70 @@ fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Resul
     })
 }
 
+/// What tables are held to.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Limit {
+    /// What `[accuracy]` asks.
+    Accuracy,
+    /// Half of what the transducer tells apart, which is coarser.
+    Transducer,
+}
+
+impl Limit {
+    /// In a word, as the certificate has it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Accuracy => "accuracy",
+            Self::Transducer => "transducer",
+        }
+    }
+}
+
 impl Generated {
+    /// What force and indentation are held to.
+    pub fn limits(&self) -> [Limit; 2] {
+        self.asked_percent().map(|asked| {
+            if self.floor() > asked {
+                Limit::Transducer
+            } else {
+                Limit::Accuracy
+            }
+        })
+    }
+
+    /// Percent of reading below which tables are waste for the transducer.
+    fn floor(&self) -> f64 {
+        let [force, indentation] = self.certified.resolvable_percent;
+        force.min(indentation)
+    }
+
+    /// What `[accuracy]` asks of force and indentation, percent of reading.
+    pub fn asked_percent(&self) -> [f64; 2] {
+        self.design.accuracy.as_ref().map_or([0.0; 2], |accuracy| {
+            [
+                accuracy.force_percent_of_reading,
+                accuracy.indentation_percent_of_reading,
+            ]
+        })
+    }
+
+    /// One line that justifies how fine the tables are: what was asked, and what the transducer can tell.
+    pub fn choice(&self) -> String {
+        let [force, indentation] = self.asked_percent();
+        let tells = format!(
+            "half of transducer.resolution_pa = {} is {:.4} % of reading where it is least",
+            self.transducer.resolution_pa,
+            self.floor()
+        );
+        if self.limits() == [Limit::Accuracy; 2] {
+            format!("held to the {force} % and {indentation} % that [accuracy] asks; {tells}")
+        } else {
+            format!(
+                "[accuracy] asks {force} % and {indentation} %, but {tells}: the tables stop there, as finer ones would be waste"
+            )
+        }
+    }
+
     /// First eight bytes of the design's hash, big-endian: [`crate::constants::DesignConstants::hash`].
     pub fn hash(&self) -> u64 {
         let [a, b, c, d, e, f, g, h, ..] = self.design.hash();

@@ -4,10 +4,10 @@
 //! [`crate::table::Layout`] in their order, four bytes each (powers as how far they go: 2, 4, 6 or 8; constants in a
 //! half word or a whole one: 0 or 1); `u32` segments, words of a segment; then the words, `i32`, segment by segment.
 
+use super::TABLE_VERSION;
 use super::certify::Errors;
-use super::design::{Generated, integer};
+use super::design::{Generated, Limit, integer};
 use super::owned::OwnedTables;
-use super::{AVERAGED, GAIN, TABLE_VERSION};
 use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
@@ -181,7 +181,7 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
          table_version = {}\n\
          inputs_checked = {}\n\
          bytes = {}\n\
-         # Of a lookup on the chip, inlined, both outputs and the saturation flag.\n\
+         # Of a lookup on the chip, inlined, both outputs and the saturation flag: counted from its shape.\n\
          instructions = {}\n\
          rest_pressure_pa = {:.3}\n\
          maximum_pressure_rise_pa = {:?}\n\
@@ -216,12 +216,7 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     }
     writeln!(out, "segments = {}", tables.segments())?;
     writeln!(out, "words_per_segment = {}", tables.layout.words())?;
-    let asked = generated.design.accuracy.as_ref().map_or([0.0; 2], |accuracy| {
-        [
-            accuracy.force_percent_of_reading,
-            accuracy.indentation_percent_of_reading,
-        ]
-    });
+    let asked = generated.asked_percent();
     write_errors("force", "un", asked[0], &certificate.force, out)?;
     write_errors("indentation", "nm", asked[1], &certificate.indentation, out)?;
     write_transducer(generated, out)
@@ -233,27 +228,29 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
     let transducer = &generated.transducer;
     let bits = tables.layout.pressure_fraction_bits;
     let resolvable = generated.certified.resolvable_percent;
+    let held_to = generated.limits().map(Limit::word);
     let touch = tables.lookup(PressureRise::from_pascals(transducer.resolution_pa, bits));
     writeln!(
         out,
-        "\n[transducer] # what it leaves undecided: at first contact, and as a share of the reading where it tells most. With\n\
-         # {AVERAGED} readings averaged it tells the last two; tables finer than those would be waste and are not made.\n\
+        "\n[transducer] # what it leaves undecided: a step of it at first contact, and half a step as a share of the reading where\n\
+         # that is least. Tables finer than the smaller of the latter would be waste and are not made.\n\
          resolution_pa = {:?}\n\
          noise_pa = {:?}\n\
          resolution_moves_force_un = {}\n\
          resolution_moves_indentation_nm = {}\n\
-         resolution_is_force_percent = {:.6}\n\
-         resolution_is_indentation_percent = {:.6}\n\
-         averaged_force_percent = {:.6}\n\
-         averaged_indentation_percent = {:.6}",
+         half_step_is_force_percent = {:.6}\n\
+         half_step_is_indentation_percent = {:.6}\n\
+         # What the tables are held to: \"accuracy\", or \"transducer\" where more was asked than it can tell.\n\
+         force_held_to = \"{}\"\n\
+         indentation_held_to = \"{}\"",
         transducer.resolution_pa,
         transducer.noise_pa,
         touch.force.0,
         touch.indentation.0,
-        resolvable[0] * GAIN,
-        resolvable[1] * GAIN,
         resolvable[0],
         resolvable[1],
+        held_to[0],
+        held_to[1],
     )
 }
 

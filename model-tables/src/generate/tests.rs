@@ -213,17 +213,30 @@ fn a_finer_unit_is_taken_where_the_first_counts_need_it() {
     assert!(certified.tables.layout.pressure_fraction_bits > first);
 }
 
-/// What a transducer of 50 Pa tells of a press of 60 kPa, a thousand readings averaged: the force grows about as the pressure
-/// does, so half a step is about `25 / 32 / 60e3 = 0.0013 %` of it at the end.
+/// What a transducer of 50 Pa tells of a press of 60 kPa: the force grows about as the pressure does, so half a step is about
+/// `25 / 60e3 = 0.042 %` of it at the end.
 #[test]
 fn what_the_transducer_cannot_tell_is_not_made() {
     let curve = PRESSES[1].curve();
     let [force, indentation] = resolvable_percent(&curve, curve.end(), &accuracy(0.1), 50.0);
-    assert!((0.0012..0.0016).contains(&force), "{force}");
+    assert!((0.039..0.05).contains(&force), "{force}");
     assert!(indentation < force, "{indentation}");
     let asked = |percent| held_to(&accuracy(percent), [force, indentation]).force_percent_of_reading;
-    assert_eq!(asked(1e-4).to_bits(), force.to_bits());
+    assert_eq!(asked(1e-4).to_bits(), indentation.to_bits());
     assert_eq!(asked(0.1).to_bits(), 0.1_f64.to_bits());
+}
+
+/// However much is asked of it, a coarse transducer gets tables that stop where it does: no larger ones for asking more.
+#[test]
+fn more_than_the_transducer_tells_is_not_refused() {
+    for (press, resolution) in [(PRESSES[1], 50.0), (PRESSES[2], 50.0), (PRESSES[2], 1e3)] {
+        let certified = made(&press.curve(), 1e-6, resolution).expect("tables");
+        let [force, indentation] = certified.resolvable_percent;
+        for errors in [&certified.certificate.force, &certified.certificate.indentation] {
+            assert_eq!(errors.allowed_percent.to_bits(), force.min(indentation).to_bits());
+            assert!(errors.share_of_allowed() <= 1.0);
+        }
+    }
 }
 
 /// As accurate for a coarse transducer as for a fine one, in a coarser unit.

@@ -253,3 +253,38 @@ fn the_curve_of_a_solid_is_finer_than_the_tables() {
         }
     }
 }
+
+/// A coarse transducer and a fine one under the same accuracy, finer than the coarse one can tell.
+#[test]
+fn the_choice_is_justified_by_what_the_transducer_tells() {
+    let made = |resolution: f64| {
+        let mut design = shipped("skin-analogue");
+        let accuracy = design.accuracy.as_mut().expect("there");
+        accuracy.force_percent_of_reading = 0.05;
+        accuracy.indentation_percent_of_reading = 0.05;
+        design.transducer.as_mut().expect("there").resolution_pa = resolution;
+        from_design(design).expect("tables")
+    };
+    let (coarse, fine) = (made(50.0), made(1.0));
+    assert_eq!(coarse.limits(), [Limit::Transducer; 2]);
+    assert_eq!(fine.limits(), [Limit::Accuracy; 2]);
+    // 25 Pa of the 7.9 kPa that this press rises by are 0.32 %, and the force grows a little faster than the pressure.
+    let [force, indentation] = coarse.certified.resolvable_percent;
+    assert!(
+        (0.32..0.40).contains(&force) && indentation < force,
+        "{force} {indentation}"
+    );
+    assert!(coarse.certified.tables.bytes() < fine.certified.tables.bytes());
+    let choice = coarse.choice();
+    assert!(
+        choice.contains("[accuracy] asks 0.05 % and 0.05 %") && choice.contains("resolution_pa = 50"),
+        "{choice}"
+    );
+    assert!(fine.choice().contains("held to the 0.05 % and 0.05 %"));
+    for (generated, held) in [(&coarse, "transducer"), (&fine, "accuracy")] {
+        let text = generated.certificate();
+        assert!(text.contains(&format!(
+            "\nforce_held_to = \"{held}\"\nindentation_held_to = \"{held}\""
+        )));
+    }
+}
