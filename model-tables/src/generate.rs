@@ -27,6 +27,9 @@ pub const TABLE_VERSION: u32 = 3;
 /// An input count is not finer than this part of what the transducer tells apart: averaging a thousand of its
 /// samples gains a factor of 32, and the count stays four times finer than that.
 const COUNTS_PER_RESOLUTION: f64 = 128.0;
+/// Inputs up to the end of the press at least, however coarse the transducer: with fewer, the segments of first contact hold too
+/// few, and the tables grow.
+const LEAST_INPUTS: f64 = 131_072.0;
 /// Half an input count moves an output by at most this part of its tolerance.
 const UNIT_SHARE: f64 = 0.125;
 /// Sums of the last input stay below this, so that those of the segments below, which may be half as large again, fit a word.
@@ -228,7 +231,8 @@ fn fraction_bits(curve: &Curve, end: Contact, accuracy: &Accuracy, resolution: f
             libm::ldexp((end.force * 1e6).max(end.indentation * 1e9), free as i32) < ROOM
         })
         .unwrap_or(MOST_FRACTION_BITS);
-    let coarsest = bits(wanted.max(resolution / COUNTS_PER_RESOLUTION)).max(roomy);
+    let use_for = (resolution / COUNTS_PER_RESOLUTION).min(end.pressure_rise / LEAST_INPUTS);
+    let coarsest = bits(wanted.max(use_for)).max(roomy);
     // Two more at least, for designs whose highest segment is short: the one below then needs the room.
     [coarsest, bits(wanted).max(coarsest + 3)]
 }
