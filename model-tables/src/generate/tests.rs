@@ -148,8 +148,10 @@ fn two_runs_give_the_same_tables() {
 fn the_unit_is_as_fine_as_the_tolerance_asks_and_the_transducer_has_use_for() {
     let curve = PRESSES[2].curve();
     let bits = |percent, resolution| fraction_bits(&curve, curve.end(), &accuracy(percent), resolution)[0];
-    // 1/128 of the resolution: 1/2 Pa of 64 Pa, 1/16 Pa of 8 Pa.
-    assert_eq!((bits(0.01, 64.0), bits(0.01, 8.0)), (1, 4));
+    // 1/128 of the resolution: 1/64 Pa of 2 Pa. Of 64 Pa that would be 1/2 Pa, but the press has 2^17 counts at least.
+    assert_eq!(bits(0.01, 2.0), 6);
+    let counts = libm::ldexp(curve.end().pressure_rise, bits(0.01, 64.0) as i32);
+    assert!((131_072.0..262_144.0).contains(&counts), "{counts}");
     // Indentation: at most 2.2e-6 * (1 + 0.15 ln(8e5)) = 6.7e-6 m/Pa, full scale 2.2 mm. A quarter of 10 % of 1 % of it is
     // 0.55 um, or 0.08 Pa: over 1/16 Pa.
     assert!(bits(10.0, 1e-3) <= 4);
@@ -196,9 +198,9 @@ fn refuses_outputs_that_do_not_fit_their_word() {
     assert!(matches!(error, Err(NoTables::TooLarge { .. })));
 }
 
-/// A transducer so coarse that the first count alone is far beyond the tolerance.
+/// A transducer so coarse that a count of it is far beyond the tolerance at first contact.
 #[test]
-fn a_finer_unit_is_taken_where_the_first_counts_need_it() {
+fn a_coarse_transducer_leaves_the_first_counts_fine() {
     let press = Press {
         end: 1200.0,
         newtons_per_pascal: 1.5e-4,
@@ -207,10 +209,10 @@ fn a_finer_unit_is_taken_where_the_first_counts_need_it() {
         bend: 40.0,
     };
     let curve = press.curve();
-    let first = fraction_bits(&curve, curve.end(), &accuracy(0.1), 200.0)[0];
     let certified = made(&curve, 0.1, 200.0).expect("tables");
     assert!(certified.certificate.holds());
-    assert!(certified.tables.layout.pressure_fraction_bits > first);
+    let fine = made(&curve, 0.1, 1.0).expect("tables");
+    assert!(certified.tables.bytes() <= fine.tables.bytes());
 }
 
 /// What a transducer of 50 Pa tells of a press of 60 kPa: the force grows about as the pressure does, so half a step is about
