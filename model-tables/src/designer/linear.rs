@@ -1,7 +1,7 @@
 //! Panels with linear axes and round ticks, beside the logarithmic ones of [`super::drawing`].
 
 use super::drawing::{Anchor, BLACK, Drawing, GREY};
-use super::rows::significant;
+use super::rows::plain;
 
 const GRID: &str = "#e4e4e4";
 /// Ticks of an axis, about.
@@ -95,17 +95,9 @@ impl Panel {
     }
 }
 
-/// A tick's number without needless zeros.
+/// A tick's number.
 fn label(tick: f64) -> String {
-    if tick == 0.0 {
-        return "0".to_owned();
-    }
-    let text = significant(tick, 3);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    plain(tick, 3)
 }
 
 #[cfg(test)]

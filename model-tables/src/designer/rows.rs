@@ -152,6 +152,19 @@ pub(super) fn significant(number: f64, digits: i32) -> String {
     }
 }
 
+/// A number with that many significant digits at most: without needless zeros behind its point.
+pub(super) fn plain(number: f64, digits: i32) -> String {
+    if number == 0.0 {
+        return "0".to_owned();
+    }
+    let text = significant(number, digits);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,7 +2,7 @@
 //!
 //! Few digits of each number, so that the page says what a reader can use and is the same on every host.
 
-use super::super::rows::significant;
+use super::super::rows::{plain, significant};
 use super::paper::{self, Paper};
 use super::solid::{Beside, COMPLIANCE, SOLID, SOLID_COMPLIANT_FORCE, SOLID_CONTACT_RADIUS, Solid};
 use core::f64::consts::PI;
@@ -26,12 +26,7 @@ fn ratio(value: f64) -> String {
 
 /// A number as it was published: no digits added.
 fn published(value: f64) -> String {
-    let text = significant(value, DIGITS);
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    plain(value, DIGITS)
 }
 
 fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {

@@ -4,9 +4,10 @@ use super::super::drawing::{
     self, Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION, power, spread,
 };
 use super::super::linear::{Axis, Panel};
+use super::super::rows::plain;
 use super::cost::Cost;
 use super::findings::{Findings, Meridian, Pressed, Station};
-use super::words::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit, plain};
+use super::words::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit};
 
 const SIZE: [f64; 2] = [420.0, 330.0];
 const LEFT: f64 = 64.0;

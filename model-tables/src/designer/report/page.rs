@@ -1,9 +1,10 @@
 //! The page: words and tables around the charts. Everything is in the one file: no script, no font, no picture from elsewhere.
 
+use super::super::rows::plain;
 use super::charts;
 use super::findings::Findings;
 use super::shapes;
-use super::words::{KPA, MILLISECONDS, MM, MM3, NEWTON, PA, PERCENT, STRETCH, Unit, count, plain};
+use super::words::{KPA, MILLISECONDS, MM, MM3, NEWTON, PA, PERCENT, STRETCH, Unit, count};
 use crate::design_file::{Calibration, DesignFile, ModelSection, RestSection, TransducerKindSection};
 use crate::generate::{Errors, Generated, TABLE_VERSION};
 use crate::material::Law;

@@ -1,6 +1,6 @@
 //! Numbers of a report, each with its unit, and the units that SI quantities are given in.
 
-use super::super::rows::significant;
+use super::super::rows::plain;
 use maud::{Markup, html};
 
 /// Digits of a number.
@@ -49,19 +49,6 @@ impl Unit {
 /// A whole number of something.
 pub(super) fn count(number: impl std::fmt::Display, of: &str) -> Markup {
     html! { span.number { (number) } "\u{a0}" span.unit { (of) } }
-}
-
-/// A number without needless zeros behind its point.
-pub(super) fn plain(number: f64, digits: i32) -> String {
-    if number == 0.0 {
-        return "0".to_owned();
-    }
-    let text = significant(number, digits);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
 }
 
 #[cfg(test)]
