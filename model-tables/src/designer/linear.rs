@@ -26,6 +26,16 @@ impl Axis {
         Self::over([0.0, if largest > 0.0 { largest } else { 1.0 }], pixels)
     }
 
+    /// An axis of degrees, from the pole to the base.
+    pub(super) fn quarter_turn(pixels: [f64; 2]) -> Self {
+        Self {
+            start: 0.0,
+            end: 90.0,
+            step: 15.0,
+            pixels,
+        }
+    }
+
     /// An axis that holds the values between two, the first less than the second.
     pub(super) fn over([least, largest]: [f64; 2], pixels: [f64; 2]) -> Self {
         let rough = (largest - least) / TICKS;

@@ -6,7 +6,7 @@ use super::super::drawing::{
 use super::super::linear::{Axis, Panel};
 use super::super::rows::plain;
 use super::cost::Cost;
-use super::findings::{Findings, Meridian, Pressed, Station};
+use super::findings::{Findings, Meridian, Pressed, Said, Station};
 use super::words::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit};
 
 const SIZE: [f64; 2] = [420.0, 330.0];
@@ -63,7 +63,11 @@ fn lines(title: &str, [x, y]: [Named; 2], from_zero: bool, series: &[Series]) ->
     };
     let [low, high] = range(all(1).map(|value| y.1.per_si * value));
     let panel = Panel {
-        x: Axis::from_zero(range(all(0).map(|value| x.1.per_si * value))[1], [LEFT, RIGHT]),
+        x: if x.1.name == DEGREES.name {
+            Axis::quarter_turn([LEFT, RIGHT])
+        } else {
+            Axis::from_zero(range(all(0).map(|value| x.1.per_si * value))[1], [LEFT, RIGHT])
+        },
         y: if from_zero {
             Axis::from_zero(high, [BOTTOM, top])
         } else {
@@ -167,48 +171,36 @@ pub(super) fn contact(found: &Findings) -> String {
     lines("Contact radius against indentation", axes, true, &[series])
 }
 
-/// Force over the pressure rise: what the tables know, and what they say.
+/// What the model gives over the pressure rise and, where there are tables, what they say.
+fn known(found: &Findings, of_model: fn(&Pressed) -> f64, of_tables: fn(&Said) -> f64) -> Vec<Series> {
+    let mut series = model(found, |state| [rise(found, state), of_model(state)]);
+    if found.said.is_empty() {
+        return vec![series];
+    }
+    "model".clone_into(&mut series.label);
+    let said = found.said.iter().step_by(3);
+    let tables = Series {
+        label: "tables on the chip".to_owned(),
+        color: VERMILION,
+        marker: Some(Marker::Circle),
+        line: false,
+        points: said.map(|said| [said.pressure_rise, of_tables(said)]).collect(),
+    };
+    vec![series, tables]
+}
+
+/// Force over the pressure rise.
 pub(super) fn readout(found: &Findings) -> String {
     let axes = [Named("pressure rise", KPA), Named("force", NEWTON)];
-    let mut series = model(found, |state| [rise(found, state), state.force]);
-    let mut all = Vec::new();
-    if !found.said.is_empty() {
-        "model".clone_into(&mut series.label);
-        all.push(Series {
-            label: "tables on the chip".to_owned(),
-            color: VERMILION,
-            marker: Some(Marker::Circle),
-            line: false,
-            points: found
-                .said
-                .iter()
-                .step_by(3)
-                .map(|said| [said.pressure_rise, said.force])
-                .collect(),
-        });
-    }
-    all.insert(0, series);
-    lines("Force against pressure rise", axes, true, &all)
+    let series = known(found, |state| state.force, |said| said.force);
+    lines("Force against pressure rise", axes, true, &series)
 }
 
 /// Indentation over the pressure rise: the other table.
 pub(super) fn depth(found: &Findings) -> String {
     let axes = [Named("pressure rise", KPA), Named("indentation", MM)];
-    let mut series = model(found, |state| [rise(found, state), state.indentation]);
-    "model".clone_into(&mut series.label);
-    let said = Series {
-        label: "tables on the chip".to_owned(),
-        color: VERMILION,
-        marker: Some(Marker::Circle),
-        line: false,
-        points: found
-            .said
-            .iter()
-            .step_by(3)
-            .map(|said| [said.pressure_rise, said.indentation])
-            .collect(),
-    };
-    lines("Indentation against pressure rise", axes, true, &[series, said])
+    let series = known(found, |state| state.indentation, |said| said.indentation);
+    lines("Indentation against pressure rise", axes, true, &series)
 }
 
 /// Errors of the tables against the model over the pressure rise.
