@@ -226,6 +226,23 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
     Ok(notes)
 }
 
+/// Writes a file whole or not at all, for the other commands of this crate.
+///
+/// # Errors
+/// The reason, in one line.
+pub fn write_whole(path: &Path, content: Vec<u8>) -> Result<(), String> {
+    output::write_one(path, content).map_err(|Refusal(reason)| reason)
+}
+
+/// Has an interrupt leave nothing half-written, and refuses a file that could not be written.
+///
+/// # Errors
+/// The reason, in one line.
+pub fn expect_whole(path: &Path) -> Result<(), String> {
+    output::clear_away_on_interrupt();
+    output::expect_room(path).map_err(|Refusal(reason)| reason)
+}
+
 /// Prints a shell's completions; they are no rows.
 fn completions(shell: clap_complete::Shell) -> Result<Vec<String>, Refusal> {
     let mut text = Vec::new();
@@ -235,9 +252,11 @@ fn completions(shell: clap_complete::Shell) -> Result<Vec<String>, Refusal> {
 }
 
 fn print(text: &str) -> Result<(), Refusal> {
-    std::io::stdout()
-        .write_all(text.as_bytes())
-        .map_err(|error| Refusal(format!("standard output: {error}")))
+    match std::io::stdout().write_all(text.as_bytes()) {
+        // Whoever read it has seen enough.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        written => written.map_err(|error| Refusal(format!("standard output: {error}"))),
+    }
 }
 
 /// One line of warning on standard error, about an answer that is given.

@@ -4,6 +4,7 @@ use clap::Parser;
 use model_tables::campaign::draw::Case;
 use model_tables::campaign::judge::{Judged, Verdict};
 use model_tables::campaign::{self, Tally};
+use model_tables::designer;
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use std::error::Error;
@@ -113,11 +114,9 @@ fn main() -> ExitCode {
 
 /// Whether no state was wrong.
 fn run(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
-    // Opened before the work starts.
-    let mut writer = match &arguments.csv {
-        Some(file) => Some(csv::Writer::from_path(file)?),
-        None => None,
-    };
+    if let Some(file) = &arguments.csv {
+        designer::expect_whole(file)?;
+    }
     let started = Instant::now();
     let chosen = |index: &u64| {
         let case = campaign::draw::case(arguments.seed, *index);
@@ -147,14 +146,15 @@ fn run(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
         arguments.design.iter().map(chosen).collect()
     };
     eprintln!();
-    if let Some(writer) = &mut writer {
+    if let Some(file) = &arguments.csv {
+        let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(COLUMNS)?;
         for (case, judged) in &results {
             for judged in judged {
                 writer.write_record(row(case, judged))?;
             }
         }
-        writer.flush()?;
+        designer::write_whole(file, writer.into_inner()?)?;
     }
     let tally = Tally::of(results.iter().flat_map(|(_, judged)| judged));
     println!(

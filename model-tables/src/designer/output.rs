@@ -31,6 +31,37 @@ fn remove(partial: &mut Vec<PathBuf>) {
     }
 }
 
+/// Writes one file, as [`write_all`] does.
+pub(super) fn write_one(path: &Path, content: Vec<u8>) -> Result<(), Refusal> {
+    let (folder, name) = place(path)?;
+    write_all(folder, &[(name, content)])
+}
+
+/// Refuses a file that could not be written, before the work for it starts.
+pub(super) fn expect_room(path: &Path) -> Result<(), Refusal> {
+    let (folder, name) = place(path)?;
+    let probe = format!(".{name}.{}", std::process::id());
+    write_all(folder, &[(&probe, Vec::new())])?;
+    remove(&mut vec![folder.join(probe)]);
+    Ok(())
+}
+
+fn place(path: &Path) -> Result<(&Path, &str), Refusal> {
+    let name = path
+        .file_name()
+        .and_then(std::ffi::OsStr::to_str)
+        .ok_or_else(|| {
+            Refusal(format!(
+                "{} does not name a file; choose another path",
+                path.display()
+            ))
+        })?;
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => Ok((folder, name)),
+        _ => Ok((Path::new("."), name)),
+    }
+}
+
 /// Writes every file beside its place first, then moves them all in; on failure removes what it wrote.
 pub(super) fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refusal> {
     let cannot = |path: &Path, error: std::io::Error| {

@@ -10,8 +10,7 @@ use super::{Answer, Refusal, output};
 use crate::design_file::DesignFile;
 use paper::Paper;
 use solid::Solid;
-use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &["quantity", "published", "here", "ratio"];
 
@@ -27,17 +26,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let mut notes = Vec::new();
     if let Some(out) = &arguments.out {
         let text = page::markdown(&paper, &Solid::solve()?);
-        let name = out.file_name().and_then(OsStr::to_str).ok_or_else(|| {
-            let out = out.display();
-            Refusal(format!(
-                "{out} does not name a file; choose another --out, such as PUBLISHED.md"
-            ))
-        })?;
-        let folder = match out.parent() {
-            Some(parent) if parent != Path::new("") => parent,
-            _ => Path::new("."),
-        };
-        output::write_all(folder, &[(name, text.into_bytes())])?;
+        output::write_one(out, text.into_bytes())?;
         notes.push(format!("wrote {}", out.display()));
     }
     let mut rows = Rows::new(COLUMNS);
