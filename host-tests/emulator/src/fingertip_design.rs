@@ -1,9 +1,11 @@
-//! A design file to a plant: the full model, solved afresh.
+//! A design file to a plant: the full model, solved afresh, or what was measured where the design has tables from data.
 
 use crate::plant::Plant;
 use crate::scenario::{Scenario, WireFault};
 use crate::transducer::{Part, Transducer, Wiring};
+use model_tables::curve::{Contact, Curve};
 use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
+use model_tables::generate::{self, GenerateError};
 use model_tables::press::{CurveFailure, ModelError};
 use model_tables::rung::Rung;
 use std::fmt;
@@ -32,6 +34,8 @@ pub enum FingertipDesignError {
     Rest(ModelError),
     /// The model does not reach the deepest indentation.
     Press(CurveFailure),
+    /// The data of a design from data do not.
+    Data(PathBuf, Box<GenerateError>),
 }
 
 impl fmt::Display for FingertipDesignError {
@@ -47,6 +51,7 @@ impl fmt::Display for FingertipDesignError {
             ),
             Self::Rest(error) => error.fmt(f),
             Self::Press(error) => error.fmt(f),
+            Self::Data(path, error) => write!(f, "{}: {error}", path.display()),
         }
     }
 }
@@ -134,17 +139,14 @@ impl FingertipDesign {
     /// Solves the full model for a press to the deepest indentation and puts it through `scenario`.
     ///
     /// # Errors
-    /// [`FingertipDesignError::NoSuchFault`], [`FingertipDesignError::Rest`] and [`FingertipDesignError::Press`].
+    /// [`FingertipDesignError::NoSuchFault`], [`FingertipDesignError::Rest`] and [`FingertipDesignError::Press`]; of a design from data
+    /// [`FingertipDesignError::Data`].
     pub fn plant(&self, scenario: Scenario) -> Result<Plant, FingertipDesignError> {
         let concerns = |fault: &&WireFault| !fault.is.concerns(&self.transducer);
         if let Some(fault) = scenario.wire.iter().find(concerns) {
             return Err(FingertipDesignError::NoSuchFault(self.path.clone(), fault.is));
         }
-        let mut press = Rung::new(&self.file).map_err(FingertipDesignError::Rest)?;
-        let rest_pressure = press.rest_pressure();
-        let curve = press
-            .curve(self.max_indentation)
-            .map_err(FingertipDesignError::Press)?;
+        let (rest_pressure, curve) = self.press()?;
         let allowed = self.file.accuracy.map_or([0.0; 2], |accuracy| {
             [
                 accuracy.force_percent_of_reading / 100.0,
@@ -159,5 +161,31 @@ impl FingertipDesign {
             scenario,
         )
         .with_tables_allowed(allowed))
+    }
+
+    /// Rest pressure and press as the transducer reads them.
+    ///
+    /// # Errors
+    /// [`FingertipDesignError::Rest`] and [`FingertipDesignError::Press`]; of a design from data
+    /// [`FingertipDesignError::Data`].
+    fn press(&self) -> Result<(f64, Curve), FingertipDesignError> {
+        let calibration = &self.file.calibration;
+        if calibration.curve.is_some() {
+            // No model knows such a device: what was measured is all there is.
+            let measured = generate::solve(&self.file)
+                .map_err(|error| FingertipDesignError::Data(self.path.clone(), Box::new(error)))?;
+            return Ok((measured.rest_pressure, measured.curve));
+        }
+        let mut press = Rung::new(&self.file).map_err(FingertipDesignError::Rest)?;
+        let curve = press
+            .curve(self.max_indentation)
+            .map_err(FingertipDesignError::Press)?;
+        let read = |point: &Contact| Contact {
+            pressure_rise: calibration.pressure_gain * point.pressure_rise,
+            ..*point
+        };
+        let curve = Curve::new(curve.points().iter().map(read).collect())
+            .map_err(|error| FingertipDesignError::Press(CurveFailure::Shape(error)))?;
+        Ok((calibration.pressure_read(press.rest_pressure()), curve))
     }
 }

@@ -6,6 +6,7 @@ mod crash;
 mod faults;
 mod hold;
 mod integers;
+mod measured;
 mod monitor;
 mod press;
 mod readme;

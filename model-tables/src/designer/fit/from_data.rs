@@ -8,7 +8,7 @@ use super::{Arguments, write};
 use crate::design_file::{Calibration, DataCurve, DesignFile};
 use crate::fit::data::Data;
 use crate::fit::spline::{Branch, FromData, from_data};
-use crate::generate;
+use crate::generate::{self, GenerateError};
 use crate::rung::Rung;
 use std::fmt::Write as _;
 
@@ -31,6 +31,8 @@ const KNOTS: usize = 60;
 const CROWDING: f64 = 1.6;
 /// Part of the range that may lie between zero and the first data.
 const EMPTY: f64 = 0.1;
+/// Tables are so many times as exact as the data, or less where no tables are.
+const FINER: [f64; 3] = [5.0, 3.0, 2.0];
 /// Difference between loading and unloading, in percent of full scale, that is worth a warning.
 const HYSTERESIS: f64 = 2.0;
 
@@ -96,22 +98,11 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
             found.force.held_out.rms_percent(),
         );
         let refuse = |reason: String| Refusal::about(&arguments.design, &reason);
-        let text = write::with_calibration(&text, &calibration, &comment)
-            .and_then(|text| write::with_reachable_tables(&text, deepest, found.force.held_out.rms_percent()))
-            .map_err(refuse)?;
+        let text = write::with_calibration(&text, &calibration, &comment).map_err(refuse)?;
         let stem = format!("{}-from-data.toml", file.name);
-        let calibrated = DesignFile::parse(&text, &stem)?;
-        notes.push(match generate::from_design(calibrated) {
-            Ok(generated) => format!(
-                "tables from this curve take {} bytes and end at {} mm",
-                generated.certified.tables.bytes(),
-                digits(1e3 * generated.end.indentation)
-            ),
-            Err(error @ generate::GenerateError::MissingSection { .. }) => {
-                format!("no tables were tried: {error}")
-            }
-            Err(error) => return Err(Refusal::about(&arguments.design, &error)),
-        });
+        let (text, note) = with_tables(&text, &stem, deepest, &found)
+            .map_err(|Refusal(reason)| Refusal::about(&arguments.design, &reason))?;
+        notes.push(note);
         let mut page = format!(
             "# A curve from {} alone\n\n![chart](from-data.svg)\n\n",
             data.name
@@ -131,6 +122,36 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
         ));
     }
     Ok(Answer { rows, notes })
+}
+
+/// The design's text with an accuracy that tables meet, and what to say of them.
+fn with_tables(
+    text: &str,
+    stem: &str,
+    deepest_mm: f64,
+    found: &FromData,
+) -> Result<(String, String), Refusal> {
+    let mut refused = String::new();
+    for finer in FINER {
+        let percent = found.force.held_out.rms_percent() / finer;
+        let text = write::with_reachable_tables(text, deepest_mm, percent).map_err(Refusal)?;
+        match generate::from_design(DesignFile::parse(&text, stem)?) {
+            Ok(generated) => {
+                let note = format!(
+                    "tables from this curve take {} bytes and end at {} mm",
+                    generated.certified.tables.bytes(),
+                    digits(1e3 * generated.end.indentation)
+                );
+                return Ok((text, note));
+            }
+            Err(error @ GenerateError::MissingSection { .. }) => {
+                return Ok((text, format!("no tables were tried: {error}")));
+            }
+            Err(GenerateError::NoTables(error)) => refused = error.to_string(),
+            Err(error) => return Err(Refusal(error.to_string())),
+        }
+    }
+    Err(Refusal(refused))
 }
 
 fn branches(found: &FromData) -> Vec<(&'static str, &Branch, f64)> {

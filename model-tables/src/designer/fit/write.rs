@@ -75,13 +75,10 @@ pub(super) fn with_calibration(
     Ok(document.to_string())
 }
 
-/// Tables finer than this part of what the data are worth are waste.
-const FINER: f64 = 5.0;
 /// No bench is worth tables finer than this, percent.
 const FINEST: f64 = 0.5;
 
-/// The design's text with a press no deeper than its data, and tables that are no finer than the data are worth, whose
-/// error is `percent` of full scale.
+/// The design's text with a press no deeper than its data, and tables that are allowed an error of `percent` of reading at least.
 pub(super) fn with_reachable_tables(text: &str, deepest_mm: f64, percent: f64) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
     let asked = document
@@ -97,7 +94,7 @@ pub(super) fn with_reachable_tables(text: &str, deepest_mm: f64, percent: f64) -
         document["press"]["max_indentation_mm"] = value(within);
     }
     for key in ["force_percent_of_reading", "indentation_percent_of_reading"] {
-        let worth = (libm::ceil(100.0 * percent / FINER) / 100.0).clamp(FINEST, 10.0);
+        let worth = (libm::ceil(100.0 * percent) / 100.0).clamp(FINEST, 10.0);
         if let Some(asked) = document
             .get_mut("accuracy")
             .and_then(|accuracy| accuracy.get_mut(key))
