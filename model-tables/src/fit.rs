@@ -5,17 +5,21 @@
 //! from what is left -> standard errors, correlations, directions that the data do not determine (held, and said) ->
 //! [`check`]s: hysteresis, cross-validation, order in what is left.
 //!
-//! Standard errors are those of noise alone: they hold if the model is right, which [`Fit::systematic`] doubts where what
-//! is left has an order.
+//! Standard errors are those of noise alone, with what it costs that the weights are found in the same data (`widening`): they hold
+//! if the model is right, which [`Fit::systematic`] doubts where what is left has an order.
+
 pub mod check;
 pub mod data;
+mod error;
 mod identify;
 mod model;
 mod noise;
 pub mod parameter;
 mod robust;
+mod search;
 mod solve;
 pub mod spline;
+mod widening;
 
 use crate::design::RestBy;
 use crate::design_file::DesignFile;
@@ -26,19 +30,16 @@ use data::Data;
 use model::{Kind, Model, Target};
 use nalgebra::DMatrix;
 use parameter::{Parameter, Units, Values};
-use solve::{Task, Weighting};
-use std::fmt;
+use search::Found;
+use solve::Task;
 
+pub use error::FitError;
 pub use identify::Unidentified;
 pub use model::Quantity;
 pub use noise::Noise;
 
 /// Data so far from the design, as a factor, are in other units or of another device.
 const OTHER_UNITS: f64 = 40.0;
-/// Stretches over one, and compliances in their unit, that a fit starts from beside the design's.
-const STARTS: ([f64; 6], [f64; 2]) = ([0.004, 0.015, 0.05, 0.15, 0.5, 1.3], [0.1, 1.0]);
-/// Starts that are followed up.
-const FOLLOWED: usize = 2;
 
 /// A parameter of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,46 +119,6 @@ pub struct Fit {
     pub freedom: usize,
 }
 
-/// Why there is no fit. `Display` is one line with the remedy.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FitError {
-    /// The model has no answer for the design.
-    Model(ModelError),
-    /// The data are a large factor away from the design.
-    Units {
-        /// Which of them.
-        quantity: Quantity,
-        /// Data over design.
-        ratio: f64,
-    },
-    /// There are fewer data than parameters.
-    TooFew {
-        /// Data.
-        data: usize,
-        /// Parameters.
-        parameters: usize,
-    },
-    /// The data determine none of the parameters.
-    NothingTold,
-    /// No parameter was chosen.
-    NothingChosen,
-    /// The best value of a parameter is nonsense.
-    Nonsense {
-        /// Which.
-        parameter: Parameter,
-        /// Its value.
-        value: f64,
-    },
-    /// The method found no least squares.
-    Lost,
-}
-
-impl From<ModelError> for FitError {
-    fn from(error: ModelError) -> Self {
-        Self::Model(error)
-    }
-}
-
 /// Calibrates a design: fits the chosen parameters to the data.
 ///
 /// # Errors
@@ -180,7 +141,7 @@ pub fn fit(file: &DesignFile, data: &Data, chosen: &[Parameter]) -> Result<Fit, 
     let model = Model::new(kind, file, data, &free);
     let before = model.predict(&start, data, &targets)?;
     check_units(&targets, &before)?;
-    let found = search(&model, data, &targets, units, &start, free)?;
+    let found = search::search(&model, data, &targets, units, &start, free)?;
     let task = Task {
         model: &model,
         data,
@@ -189,97 +150,6 @@ pub fn fit(file: &DesignFile, data: &Data, chosen: &[Parameter]) -> Result<Fit, 
         units,
     };
     finish(file, &task, &chosen, &start, &before, &found)
-}
-
-/// Where a search ended.
-struct Found {
-    free: Vec<Parameter>,
-    unidentified: Vec<Unidentified>,
-    at_bound: Vec<Parameter>,
-    values: Values,
-    weighting: Weighting,
-}
-
-impl Found {
-    fn held(&self, parameter: Parameter, by_stretch: bool) -> Option<Held> {
-        if self.at_bound.contains(&parameter) {
-            Some(Held::AtBound)
-        } else if self.free.contains(&parameter) {
-            None
-        } else if parameter == Parameter::PoleStretch && !by_stretch {
-            Some(Held::NotOfModel)
-        } else {
-            Some(Held::Unidentified)
-        }
-    }
-}
-
-/// Fits the free parameters, and again without those that the data do not tell or that are not possible.
-fn search(
-    model: &Model,
-    data: &Data,
-    targets: &[Target],
-    units: Units,
-    start: &Values,
-    mut free: Vec<Parameter>,
-) -> Result<Found, FitError> {
-    let mut origin = *start;
-    let mut unidentified = Vec::new();
-    let mut at_bound = Vec::new();
-    let (values, weighting) = loop {
-        if free.is_empty() {
-            return Err(FitError::NothingTold);
-        }
-        if free.len() > targets.len() {
-            return Err(FitError::TooFew {
-                data: targets.len(),
-                parameters: free.len(),
-            });
-        }
-        let task = Task {
-            model,
-            data,
-            targets,
-            free: &free,
-            units,
-        };
-        if unidentified.is_empty()
-            && let Some(found) = dependent(&task, &origin)?
-        {
-            free.retain(|parameter| *parameter != found.held);
-            unidentified.push(found);
-            continue;
-        }
-        let (values, weighting) = best(&task, &origin)?;
-        let predicted = task.predict(&values)?;
-        let jacobian = task.jacobian(&values, &predicted, &weighting.factors())?;
-        if let Some(found) = identify::untold(&jacobian, &free, true) {
-            free.retain(|parameter| *parameter != found.held);
-            unidentified.push(found);
-            continue;
-        }
-        if values.get(Parameter::Compliance) < 0.0 {
-            free.retain(|parameter| *parameter != Parameter::Compliance);
-            at_bound.push(Parameter::Compliance);
-            origin.set(Parameter::Compliance, 0.0);
-            continue;
-        }
-        break (values, weighting);
-    };
-    for &parameter in &free {
-        let value = values.get(parameter);
-        let [low, high] = parameter.bounds();
-        if (value < low * 1.000_01 && low > 0.0) || value > 0.999 * high {
-            return Err(FitError::Nonsense { parameter, value });
-        }
-    }
-    Ok(Found {
-        free,
-        unidentified,
-        at_bound,
-        values,
-        weighting,
-    })
 }
 
 /// Standard errors and checks of what was found.
@@ -320,8 +190,17 @@ fn finish(
         .map(|residual| residual.standardised)
         .collect();
     let slopes = task.slopes(values);
-    let covariance =
-        identify::covariance(&jacobian, &counted).map(|covariance| &slopes * covariance * slopes.transpose());
+    let covariance = identify::covariance(&jacobian, &counted).map(|covariance| {
+        let groups = [Quantity::Force, Quantity::Rise].map(|quantity| widening::Group {
+            members: (0..residuals.len())
+                .filter(|&i| residuals[i].quantity == quantity && !residuals[i].outlier)
+                .collect(),
+            largest: weighting.noise[solve::index(quantity)].largest,
+        });
+        let wider = widening::factors(&jacobian, &weighting.sigma, &predicted, &groups);
+        let wider = DMatrix::from_diagonal(&wider.into());
+        &slopes * (&wider * covariance * &wider) * slopes.transpose()
+    });
     let estimates = chosen
         .iter()
         .map(|&parameter| Estimate {
@@ -432,126 +311,4 @@ fn check_units(targets: &[Target], predicted: &[f64]) -> Result<(), FitError> {
         }
     }
     Ok(())
-}
-
-/// Parameters that act as one, found before anything is fitted.
-fn dependent(task: &Task<'_>, start: &Values) -> Result<Option<Unidentified>, FitError> {
-    let sigma = Weighting::unknown(task.targets).sigma;
-    let factors: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
-    let jacobian = task.jacobian(start, &task.predict(start)?, &factors)?;
-    Ok(identify::untold(&jacobian, task.free, false))
-}
-
-/// The best of the fits from several starts.
-fn best(task: &Task<'_>, start: &Values) -> Result<(Values, Weighting), FitError> {
-    let weighting = Weighting::unknown(task.targets);
-    let cost = |values: &Values, factor: f64| -> Option<f64> {
-        let predicted = task.predict(values).ok()?;
-        let squares = predicted.iter().zip(task.targets).zip(&weighting.sigma);
-        Some(
-            squares
-                .map(|((predicted, target), sigma)| (factor * predicted - target.measured) / sigma)
-                .map(|residual| residual * residual)
-                .sum(),
-        )
-    };
-    let mut starts = vec![(cost(start, 1.0).unwrap_or(f64::INFINITY), *start)];
-    if task.free.contains(&Parameter::PoleStretch) && task.model.kind.is_cheap() {
-        let free_compliance = task.free.contains(&Parameter::Compliance);
-        let (stretches, compliances) = STARTS;
-        let given = start.get(Parameter::PoleStretch) - 1.0;
-        for over_one in [given].into_iter().chain(stretches) {
-            for unit in [0.0].into_iter().chain(compliances) {
-                let mut values = *start;
-                values.set(Parameter::PoleStretch, 1.0 + over_one);
-                if free_compliance {
-                    values.set(Parameter::Compliance, unit * task.units.compliance);
-                } else if unit > 0.0 {
-                    continue;
-                }
-                let factor = if task.free.contains(&Parameter::Material) {
-                    proportion(task, &values, &weighting.sigma)
-                } else {
-                    Some(1.0)
-                };
-                let Some(factor) = factor.filter(|factor| (0.02..50.0).contains(factor)) else {
-                    continue;
-                };
-                let Some(cost) = cost(&values, factor) else {
-                    continue;
-                };
-                // The same curve, so many times as high: the fluid then gives as much at as many times the pressure.
-                values.set(Parameter::Material, factor * values.get(Parameter::Material));
-                values.set(Parameter::Compliance, values.get(Parameter::Compliance) / factor);
-                starts.push((cost, values));
-            }
-        }
-    }
-    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut found: Option<(f64, Values)> = None;
-    for (_, from) in starts.iter().take(FOLLOWED) {
-        let Ok(values) = task.minimise(from, &weighting) else {
-            continue;
-        };
-        if let Some(cost) = cost(&values, 1.0)
-            && found.is_none_or(|(least, _)| cost < least)
-        {
-            found = Some((cost, values));
-        }
-    }
-    let (_, values) = found.ok_or(FitError::Lost)?;
-    Ok(task.settle(&values)?)
-}
-
-/// What a prediction has to be multiplied by to meet the data best.
-fn proportion(task: &Task<'_>, values: &Values, sigma: &[f64]) -> Option<f64> {
-    let predicted = task.predict(values).ok()?;
-    let (mut above, mut below) = (0.0, 0.0);
-    for ((predicted, target), sigma) in predicted.iter().zip(task.targets).zip(sigma) {
-        above += predicted * target.measured / (sigma * sigma);
-        below += predicted * predicted / (sigma * sigma);
-    }
-    Some(above / below)
-}
-
-impl fmt::Display for FitError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Model(error) => error.fmt(f),
-            Self::Units { quantity, ratio } => write!(
-                f,
-                "the {quantity} of the data is {ratio:.3} times what the design gives at the same places: check the units \
-                 (N, kPa, mm) and the design"
-            ),
-            Self::TooFew { data, parameters } => write!(
-                f,
-                "{data} measured numbers cannot determine {parameters} parameters: measure more, or fit fewer"
-            ),
-            Self::NothingTold => write!(
-                f,
-                "the data determine none of the parameters: measure deeper or with less noise, or fit others"
-            ),
-            Self::NothingChosen => write!(f, "no parameter is to be fitted: choose at least one"),
-            Self::Nonsense { parameter, value } => write!(
-                f,
-                "the data ask for {parameter} = {value:.4}, which no such device has: check units and design, fit other \
-                 parameters, or use --from-data"
-            ),
-            Self::Lost => write!(
-                f,
-                "no values of the parameters come near the data: check units and design, or use --from-data"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for FitError {}
-
-impl fmt::Display for Quantity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Force => "force",
-            Self::Rise => "pressure rise",
-        })
-    }
 }

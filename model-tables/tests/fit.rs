@@ -111,7 +111,7 @@ fn standard_errors_cover_the_truth_as_often_as_they_should() {
         .unwrap_or(24);
     let rows = press(&design(TRUTH), &depths(25));
     let file = design("");
-    let (mut within, mut squares) = ([0.0; 3], [0.0; 3]);
+    let (mut within, mut within_two, mut squares) = ([0.0; 3], [0.0; 3], [0.0; 3]);
     for repeat in 0..repeats {
         let text = bench(&rows, 0.01, &mut Random(1000 + repeat));
         let fit = fit::fit(&file, &data(&text), &Parameter::USUAL).expect("a fit");
@@ -119,19 +119,22 @@ fn standard_errors_cover_the_truth_as_often_as_they_should() {
             let (found, error) = value(&fit, parameter);
             let off = (found - truth) / error;
             within[k] += f64::from(u8::from(off.abs() < 1.0)) / repeats as f64;
+            within_two[k] += f64::from(u8::from(off.abs() < 2.0)) / repeats as f64;
             squares[k] += off * off / repeats as f64;
         }
     }
     println!("within one standard error (0.683 expected) over {repeats} repeats: {within:.3?}");
+    println!("within two (0.954 expected): {within_two:.3?}");
     println!("mean square in standard errors (1 expected): {squares:.3?}");
     // Three standard deviations of a binomial share, and of a mean square.
-    let (share, square) = (
-        3.0 * (0.683 * 0.317 / repeats as f64).sqrt(),
-        3.0 * (2.2 / repeats as f64).sqrt(),
-    );
+    let chance = |variance: f64| 3.0 * (variance / repeats as f64).sqrt();
     for k in 0..3 {
-        assert!((within[k] - 0.683).abs() < share, "{within:?}");
-        assert!((squares[k] - 1.05).abs() < square, "{squares:?}");
+        assert!((within[k] - 0.683).abs() < chance(0.683 * 0.317), "{within:?}");
+        assert!(
+            (within_two[k] - 0.954).abs() < chance(0.954 * 0.046),
+            "{within_two:?}"
+        );
+        assert!((squares[k] - 1.02).abs() < chance(2.2), "{squares:?}");
     }
 }
 

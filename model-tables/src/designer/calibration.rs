@@ -11,7 +11,7 @@ use crate::fit::{self, Fit, Quantity};
 use crate::size;
 use crate::size::target::Target;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &[
     "case",
@@ -80,19 +80,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     ];
     let mut notes = Vec::new();
     if let Some(out) = &arguments.out {
-        let name = out.file_name().and_then(std::ffi::OsStr::to_str).ok_or_else(|| {
-            Refusal(format!(
-                "{} does not name a file; choose another --out",
-                out.display()
-            ))
-        })?;
-        let folder = match out.parent() {
-            Some(parent) if parent != Path::new("") => parent,
-            _ => Path::new("."),
-        };
         let target = Target::parse(HUMAN, "human-fingertip.toml")?;
         let page = page(&domes, &papers, &paper_data, &target);
-        output::write_all(folder, &[(name, page.into_bytes())])?;
+        output::write_one(out, page.into_bytes())?;
         notes.push(format!("wrote {}", out.display()));
     }
     let mut rows = Rows::new(COLUMNS);
@@ -221,10 +211,19 @@ fn page(domes: &[Case; 3], papers: &[Case; 3], paper_data: &Data, target: &Targe
          calibration serves; it carries over to no other depth or dome. The standard errors know nothing of that: they are \
          those of noise. Modulus and wall act on a membrane as one, so the wall is held.\n\n",
     );
+    text.push_str(SURENESS);
     text.push_str(&paper_section(papers, paper_data));
     text.push_str(&size_section(target));
     text
 }
+
+/// Too long for a test, which runs fewer repeats against the same nominal shares.
+const SURENESS: &str = "## How sure the standard errors are, and how long it takes\n\n\
+    Where the model is right and noise is all there is, they hold. Over 200 synthetic benches (25 rows, 1 % noise, the usual \
+    parameters) the truth lies within one standard error of the modulus in 68 %, of the stretch in 64 %, of the compliance in 70 % \
+    of them; nominal are 68 %, and 7 % either way is chance. `FIT_REPEATS=200 cargo test --release -p model-tables --features cli \
+    --test fit standard_errors -- --nocapture` repeats that. Such a fit takes half a second of one core, and the search below 7 s; \
+    both commands print how long they took.\n\n";
 
 fn paper_section(papers: &[Case; 3], data: &Data) -> String {
     let mut text = String::from(

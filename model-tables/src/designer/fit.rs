@@ -11,6 +11,7 @@ use crate::fit::data::{Choice, Data, Direction};
 use crate::fit::parameter::Parameter;
 use crate::fit::{self, Fit, Held};
 use std::path::PathBuf;
+use std::time::Instant;
 
 const COLUMNS: &[&str] = &["parameter", "key", "start", "value", "standard_error", "state"];
 
@@ -101,8 +102,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     if arguments.from_data {
         return from_data::run(arguments, &file, &data);
     }
+    let start = Instant::now();
     let fit = fit::fit(&file, &data, &arguments.parameters)
         .map_err(|error| Refusal::about(&arguments.data, &error))?;
+    let seconds = start.elapsed().as_secs_f64();
     let mut notes = report::findings(&file, &data, &fit);
     notes.extend(bench::caution(&file));
     if let Some(out) = &arguments.out {
@@ -124,6 +127,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             out.display()
         ));
     }
+    notes.push(format!("fitted and checked in {seconds:.2} s"));
     Ok(Answer {
         rows: rows(&fit),
         notes,

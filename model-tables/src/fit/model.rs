@@ -17,6 +17,7 @@ use crate::solid;
 use crate::solid::inflation::mid_surface;
 use crate::solid::mesh::Elements;
 use std::cell::RefCell;
+use std::fmt;
 use std::rc::Rc;
 
 /// Gauss points an element.
@@ -38,7 +39,7 @@ const NEARLY: f64 = 0.9995;
 /// States of a curve at most: a press of any depth from a thousandth of it on.
 const MOST_STATES: usize = 64;
 /// Curves that are kept.
-const KEPT: usize = 32;
+const KEPT: usize = 512;
 
 /// A quantity that is measured and predicted.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -47,6 +48,15 @@ pub enum Quantity {
     Force,
     /// Pressure rise, pascals.
     Rise,
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Force => "force",
+            Self::Rise => "pressure rise",
+        })
+    }
 }
 
 /// One number to explain.

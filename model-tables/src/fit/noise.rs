@@ -15,6 +15,8 @@ const STEPS: usize = 30;
 const FIRST_RATIO: f64 = 10.0;
 /// Standard deviations, roughly known, beyond which a value does not count.
 const OUTLYING: f64 = 4.5;
+/// Size of rounding, over the largest reading.
+pub(super) const ROUNDING: f64 = 1e-9;
 /// Residuals under which a ratio is not worth estimating.
 const ENOUGH: usize = 12;
 

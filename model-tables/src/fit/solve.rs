@@ -3,7 +3,7 @@
 
 use super::data::Data;
 use super::model::{Model, Quantity, Target};
-use super::noise::Noise;
+use super::noise::{Noise, ROUNDING};
 use super::parameter::{Parameter, Units, Values};
 use super::robust;
 use crate::press::ModelError;
@@ -86,7 +86,7 @@ impl Weighting {
             let readings: Vec<f64> = members.iter().map(|&i| predicted[i]).collect();
             let largest = largest(targets, quantity);
             let share = spent as f64 * members.len() as f64 / targets.len() as f64;
-            let noise = Noise::estimate(&residuals, &readings, largest, share, 1e-9 * largest);
+            let noise = Noise::estimate(&residuals, &readings, largest, share, ROUNDING * largest);
             weighting.noise[index(quantity)] = noise;
             for &i in &members {
                 weighting.sigma[i] = noise.at(predicted[i]);

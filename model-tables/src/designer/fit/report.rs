@@ -12,6 +12,8 @@ use std::fmt::Write as _;
 
 /// Order in the signs of what is left, in standard deviations, that is no chance (one in two hundred).
 const ORDERED: f64 = -2.58;
+/// What is left, in percent of the largest reading, that is more than the noise of a bench.
+const LARGE: f64 = 5.0;
 /// Correlation that is worth a word.
 const CORRELATED: f64 = 0.95;
 
@@ -68,6 +70,12 @@ pub(super) fn findings(file: &DesignFile, data: &Data, fit: &Fit) -> Vec<String>
         }
     }
     for (k, (name, ..)) in QUANTITIES.into_iter().enumerate() {
+        let left = fit.after[k].map_or(0.0, |misfit| misfit.rms_percent());
+        if fit.systematic[k].is_none() && left > LARGE {
+            lines.push(format!(
+                "the model hardly explains the {name}: {left:.0} % of the largest is left, more than the noise of a bench, in data                  too few to see an order; try other parameters or --from-data"
+            ));
+        }
         if let Some(order) = fit.systematic[k]
             && order < ORDERED
         {
