@@ -130,6 +130,14 @@ impl FingertipDesign {
         &self.file.name
     }
 
+    /// Where the truth of a press comes from, in words.
+    pub fn truth(&self) -> String {
+        match self.file.calibration.curve {
+            Some(_) => format!("taking the data of {} for the truth", self.name()),
+            None => format!("solving the full model of {} for the truth", self.name()),
+        }
+    }
+
     /// Hash of the design, as the image for it carries it: the first eight bytes of its SHA-256.
     pub fn hash(&self) -> u64 {
         let [a, b, c, d, e, f, g, h, ..] = self.file.hash();

@@ -221,7 +221,7 @@ fn page(domes: &[Case; 3], papers: &[Case; 3], paper_data: &Data, target: &Targe
 const SURENESS: &str = "## How sure the standard errors are, and how long it takes\n\n\
     Where the model is right and noise is all there is, they hold. Over 200 synthetic benches (25 rows, 1 % noise, the usual \
     parameters) the truth lies within one standard error of the modulus in 68 %, of the stretch in 64 %, of the compliance in 70 % \
-    of them; nominal are 68 %, and 7 % either way is chance. `FIT_REPEATS=200 cargo test --release -p model-tables --features cli \
+    of them (nominal are 68 %, and 7 % either way is chance), and within two in 95, 95 and 97 % (nominal 95 %). `FIT_REPEATS=200 cargo test --release -p model-tables --features cli \
     --test fit standard_errors -- --nocapture` repeats that. Such a fit takes half a second of one core, and the search below 7 s; \
     both commands print how long they took.\n\n";
 

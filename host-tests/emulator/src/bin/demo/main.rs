@@ -63,13 +63,10 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
         design.name()
     );
     let image = Image::firmware(Some(&design.path))?;
-    say!(
-        "2/3 solving the full model of {} for the truth ...",
-        design.name()
-    );
+    say!("2/3 {} ...", design.truth());
     let started = Instant::now();
     let plant = design.plant(scenario.clone())?;
-    say!("    solved in {:.1} s", started.elapsed().as_secs_f64());
+    say!("    in {:.1} s", started.elapsed().as_secs_f64());
     say!(
         "3/3 running the image on the emulated STM32F427: {} ({:.1} s)",
         options.scenario,
@@ -137,7 +134,7 @@ fn serve(options: &Options, address: &str) -> Result<(), Box<dyn Error>> {
         design.name()
     );
     let image = Image::firmware(Some(&design.path))?;
-    say!("solving the full model of {} for the truth ...", design.name());
+    say!("{} ...", design.truth());
     let plant = design.plant(scenario)?;
     say!(
         "serving {} at tcp:{address}, until Ctrl-C; watch it with",
