@@ -3,7 +3,7 @@
 //! Medians over repetitions, in one process; a plain harness, because the pieces take from nanoseconds to
 //! milliseconds and nothing but their medians is wanted.
 
-use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::campaign::scaling;
 use model_tables::design_file::{Accuracy, DesignFile};
 use model_tables::generate;
 use model_tables::material::Law;
@@ -50,33 +50,17 @@ fn sweep<const S: usize>(mut press: Press<Law, S>, deepest: f64) -> Vec<f64> {
         .collect()
 }
 
-/// States of a sweep over a solid, 0.1 mm apart.
-const SOLID_STATES: usize = 25;
-
 /// The printed fingertip as solids of more and more elements: each state from those before it.
 fn solids() {
-    let design = Design {
-        membrane: Membrane {
-            radial_semi_axis: 9e-3,
-            axial_semi_axis: 7e-3,
-            thickness: 1e-3,
-        },
-        law: Law::MooneyRivlin {
-            c1: 160_355.0,
-            c2: 46_559.0,
-        },
-        rest: RestBy::Unstretched,
-        compliance: 0.0,
-    };
-    for (through, along) in [(1, 24), (1, 48), (1, 96), (2, 24), (2, 48), (2, 96), (3, 96)] {
-        let rest = solid::press::Press::new(&design, Elements { through, along })
+    for [through, along] in scaling::MESHES {
+        let rest = solid::press::Press::new(&scaling::PRINTED, Elements { through, along })
             .expect("unstretched is a rest state");
-        let name = format!("solid {through} x {along}: a state of a sweep of {SOLID_STATES}");
-        figure(&name, SOLID_STATES, || {
-            let mut press = rest.clone();
-            for k in 1..=SOLID_STATES {
-                black_box(press.contact_at(1e-4 * k as f64).expect("within the limit"));
-            }
+        let name = format!(
+            "solid {through} x {along}: a state of a sweep of {}",
+            scaling::STATES
+        );
+        figure(&name, scaling::STATES, || {
+            scaling::sweep(&mut rest.clone()).expect("within the limit")
         });
     }
 }

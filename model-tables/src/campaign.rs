@@ -5,6 +5,7 @@
 
 pub mod draw;
 pub mod judge;
+pub mod scaling;
 pub mod walls;
 
 use draw::Case;

@@ -163,7 +163,7 @@ fn ladder_writes_every_number_the_map_and_the_page() {
         .map(|row| row[2].parse::<u32>().expect("a count"))
         .sum();
     assert_eq!(walls, 5);
-    let page = fs::read_to_string(out.join("ladder.md")).expect("the page");
+    let page = fs::read_to_string(out.join("LADDER.md")).expect("the page");
     assert!(page.starts_with("# Which model a wall needs\n"), "{page}");
     let csv = fs::read_to_string(out.join("ladder.csv")).expect("the numbers");
     assert!(csv.lines().count() > 4, "{csv}");

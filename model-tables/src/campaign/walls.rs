@@ -4,6 +4,7 @@ use super::draw::Random;
 use crate::curve::Contact;
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
+use crate::material::preset::{AGILUS30, SKIN};
 use crate::methods::light_contact::LightContact;
 use crate::press::ModelError;
 use crate::rung::choice::{LADDER, PARTS, Wanted};
@@ -67,14 +68,8 @@ pub fn draw(index: u64) -> Case {
     let thickness = random.logarithmic(0.1e-3, 1.5e-3).min(0.25 * radial.min(axial));
     let stretch = 1.0 + random.logarithmic(0.01, 1.0);
     let law = match index % 3 {
-        0 => Law::MooneyRivlin {
-            c1: 160_355.0,
-            c2: 46_559.0,
-        },
-        1 => Law::MooneyRivlin {
-            c1: 13_400.0,
-            c2: 29_500.0,
-        },
+        0 => AGILUS30,
+        1 => SKIN,
         _ => Law::Yeoh {
             c1: 20_400.0,
             c2: 4_470.0,
@@ -114,7 +109,7 @@ impl Case {
     /// Solves every rung.
     pub fn measure(self) -> Measured {
         let wanted = self.wanted(1.0);
-        let mut rungs = LADDER.map(|(kind, _)| kind.applies(&self.design).then(|| self.solve(kind, &wanted)));
+        let mut rungs = LADDER.map(|kind| kind.applies(&self.design).then(|| self.solve(kind, &wanted)));
         let truth = match &rungs[LADDER.len() - 1] {
             Some(Evidence {
                 contacts: Ok(truth), ..
@@ -184,7 +179,8 @@ impl Measured {
             };
             below.push((place, contacts));
             let rungs = below.iter().map(|&(_, contacts)| contacts);
-            let judged = wanted.judge(rungs, contacts, LADDER[place].1);
+            let own_error = wanted.own_error(LADDER[place], &self.case.design);
+            let judged = wanted.judge(rungs, contacts, own_error);
             if let Some(near) = judged {
                 taken = below[near].0;
                 break;

@@ -174,11 +174,11 @@ fn escape(words: &str) -> String {
     words.replace('&', "&amp;").replace('<', "&lt;")
 }
 
-/// A logarithmic axis: decades over pixels.
+/// A logarithmic axis: decades, whole or not, over pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
     /// First and last decade.
-    pub(super) decades: [i32; 2],
+    pub(super) decades: [f64; 2],
     /// Where they lie.
     pub(super) pixels: [f64; 2],
 }
@@ -186,9 +186,14 @@ pub(super) struct Axis {
 impl Axis {
     /// Where a value lies; values beyond the ends lie at the ends.
     pub(super) fn at(&self, value: f64) -> f64 {
-        let [first, last] = self.decades.map(f64::from);
+        let [first, last] = self.decades;
         let part = ((libm::log10(value) - first) / (last - first)).clamp(0.0, 1.0);
         self.pixels[0] + part * (self.pixels[1] - self.pixels[0])
+    }
+
+    fn whole(&self) -> core::ops::RangeInclusive<i32> {
+        let [first, last] = self.decades;
+        first.ceil() as i32..=last.floor() as i32
     }
 }
 
@@ -210,12 +215,12 @@ impl Panel {
     /// Grid, frame, and the labels of every `step`-th decade, in words.
     pub(super) fn draw(&self, drawing: &mut Drawing, steps: [usize; 2], words: [&dyn Fn(i32) -> String; 2]) {
         let ([left, right], [bottom, top]) = (self.x.pixels, self.y.pixels);
-        for decade in (self.x.decades[0]..=self.x.decades[1]).step_by(steps[0]) {
+        for decade in self.x.whole().step_by(steps[0]) {
             let x = self.x.at(libm::pow(10.0, f64::from(decade)));
             drawing.line([x, bottom], [x, top], GRID, 1.0);
             drawing.text([x, bottom + 17.0], Anchor::Middle, 12.0, BLACK, &words[0](decade));
         }
-        for decade in (self.y.decades[0]..=self.y.decades[1]).step_by(steps[1]) {
+        for decade in self.y.whole().step_by(steps[1]) {
             let y = self.y.at(libm::pow(10.0, f64::from(decade)));
             drawing.line([left, y], [right, y], GRID, 1.0);
             drawing.text([left - 7.0, y + 4.0], Anchor::End, 12.0, BLACK, &words[1](decade));
@@ -290,7 +295,7 @@ mod tests {
     #[test]
     fn axes_are_logarithmic() {
         let axis = Axis {
-            decades: [-2, 2],
+            decades: [-2.0, 2.0],
             pixels: [0.0, 400.0],
         };
         assert!((axis.at(1.0) - 200.0).abs() < 1e-9 && (axis.at(10.0) - 300.0).abs() < 1e-9);

@@ -7,6 +7,7 @@ use super::output::write_all;
 use super::progress::Progress;
 use super::rows::{Cell, Rows};
 use super::{Answer, Refusal};
+use crate::campaign::scaling;
 use crate::campaign::walls::{self, ASKED, Measured};
 use crate::design::RestBy;
 use crate::rung::choice::LADDER;
@@ -30,8 +31,8 @@ const TOP: f64 = 112.0;
 const GAP: f64 = 74.0;
 /// Accuracies that have a map.
 const MAPPED: [f64; 3] = [0.05, 0.02, 0.005];
-/// Where unstretched walls stand on the axis of the pre-stretch.
-const UNSTRETCHED: f64 = 0.004;
+/// Between which heights unstretched walls stand on the axis of the pre-stretch, one above the other lest they hide each other.
+const UNSTRETCHED: [f64; 2] = [0.0024, 0.0065];
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -51,12 +52,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         measured.push(walls::draw(index).measure());
         progress.set((index + 1) as f64 / arguments.designs as f64);
     }
+    let scaling = scaling::measure().map_err(|error| Refusal(error.to_string()))?;
     progress.finish();
     let judged: Vec<&Measured> = measured.iter().filter(|wall| wall.has_truth()).collect();
     let mut rows = Rows::new(COLUMNS);
     for asked in ASKED {
         let taken: Vec<_> = judged.iter().map(|wall| wall.take(asked)).collect();
-        for (place, (kind, _)) in LADDER.iter().enumerate() {
+        for (place, kind) in LADDER.iter().enumerate() {
             let errors = taken
                 .iter()
                 .filter(|taken| taken.rung == place)
@@ -74,13 +76,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         ("ladder.csv", csv(&measured).into_bytes()),
         ("ladder.svg", svg(&judged).into_bytes()),
         (
-            "ladder.md",
-            page::markdown(&judged, measured.len() - judged.len()).into_bytes(),
+            "LADDER.md",
+            page::markdown(&judged, measured.len() - judged.len(), &scaling).into_bytes(),
         ),
     ];
     write_all(&arguments.out, &contents)?;
     let mut notes = vec![format!(
-        "wrote ladder.csv, ladder.svg and ladder.md to {}",
+        "wrote LADDER.md, ladder.svg and ladder.csv to {}",
         arguments.out.display()
     )];
     if judged.len() < measured.len() {
@@ -116,7 +118,7 @@ fn csv(measured: &[Measured]) -> String {
         if let Some(error) = wall.closed_form {
             let _ = writeln!(text, "{start},closed form,{error:.4e},,ok");
         }
-        for ((kind, _), evidence) in LADDER.iter().zip(&wall.rungs) {
+        for (kind, evidence) in LADDER.iter().zip(&wall.rungs) {
             let Some(evidence) = evidence else { continue };
             let _ = match &evidence.contacts {
                 Ok(_) => writeln!(
@@ -131,7 +133,7 @@ fn csv(measured: &[Measured]) -> String {
     text
 }
 
-fn panel(place: usize, x: [i32; 2], y: [i32; 2]) -> Panel {
+fn panel(place: usize, x: [f64; 2], y: [f64; 2]) -> Panel {
     let left = LEFT + place as f64 * (PANEL[0] + GAP);
     Panel {
         x: Axis {
@@ -153,7 +155,7 @@ fn svg(measured: &[&Measured]) -> String {
     let line = "Errors: the larger of force and pressure rise at any of eight indentations up to 0.35 of the height, against the \
                 refined solid. Maps: the model that auto takes.";
     drawing.text([LEFT, 50.0], Anchor::Start, 13.0, GREY, line);
-    for (place, (kind, _)) in LADDER.iter().enumerate() {
+    for (place, kind) in LADDER.iter().enumerate() {
         let x = LEFT + 150.0 * place as f64;
         drawing.marker(MARKERS[place], [x + 5.0, 70.0], COLORS[place], false);
         drawing.text([x + 16.0, 74.0], Anchor::Start, 13.0, BLACK, &kind.to_string());
@@ -167,7 +169,7 @@ fn svg(measured: &[&Measured]) -> String {
 
 /// Error against time.
 fn costs(drawing: &mut Drawing, measured: &[&Measured]) {
-    let panel = panel(0, [-4, 0], [-4, 0]);
+    let panel = panel(0, [-4.0, 0.0], [-4.0, 0.0]);
     panel.draw(drawing, [1, 1], [&power, &power]);
     for wall in measured {
         for (place, evidence) in wall.rungs[..LADDER.len() - 1].iter().enumerate() {
@@ -188,9 +190,16 @@ fn costs(drawing: &mut Drawing, measured: &[&Measured]) {
     );
 }
 
+/// A height for an unstretched wall: any.
+fn unstretched(index: u64) -> f64 {
+    let [low, high] = UNSTRETCHED;
+    let part = (index * 7 % 17) as f64 / 16.0;
+    low * libm::pow(high / low, part)
+}
+
 /// What `auto` takes.
 fn map(drawing: &mut Drawing, place: usize, asked: f64, measured: &[&Measured]) {
-    let panel = panel(place, [-2, 0], [-3, 0]);
+    let panel = panel(place, [-2.2, -0.4], [-2.7, 0.1]);
     panel.draw(drawing, [1, 1], [&power, &power]);
     let mut worst = 0.0_f64;
     for wall in measured {
@@ -198,16 +207,17 @@ fn map(drawing: &mut Drawing, place: usize, asked: f64, measured: &[&Measured]) 
         worst = worst.max(taken.error);
         let outer = wall.case.design.membrane;
         let stretch = match pre_stretch(wall) {
-            none if none <= 0.0 => UNSTRETCHED,
+            none if none <= 0.0 => unstretched(wall.case.index),
             some => some,
         };
         let at = panel.at([outer.thickness / outer.radial_semi_axis, stretch]);
         drawing.marker(MARKERS[taken.rung], at, COLORS[taken.rung], false);
     }
-    let y = panel.y.at(UNSTRETCHED);
+    let y = panel.y.at(1.2 * UNSTRETCHED[1]);
+    drawing.line([panel.x.pixels[0], y], [panel.x.pixels[1], y], GREY, 1.0);
     drawing.text(
-        [panel.x.pixels[0] + 4.0, y + 20.0],
-        Anchor::Start,
+        [panel.x.pixels[1] - 4.0, y + 14.0],
+        Anchor::End,
         11.0,
         PURPLE,
         "unstretched",

@@ -44,6 +44,17 @@ const fn silicone(name: &'static str, title: &'static str, c1: f64, c2: f64, c3:
     }
 }
 
+/// Agilus30, relaxed: Shi et al., Soft Matter 18 (2022) 9076.
+pub const AGILUS30: Law = Law::MooneyRivlin {
+    c1: 160_355.0,
+    c2: 46_559.0,
+};
+/// Human fingertip skin: Serina et al. 1998, as Shi et al. use it.
+pub const SKIN: Law = Law::MooneyRivlin {
+    c1: 13_400.0,
+    c2: 29_500.0,
+};
+
 /// Every material with a name.
 pub const PRESETS: [Preset; 13] = [
     silicone("ecoflex-00-10", "Ecoflex 00-10", 3.52e3, 0.256e3, -0.030e3),
@@ -71,10 +82,7 @@ pub const PRESETS: [Preset; 13] = [
     Preset {
         name: "agilus30",
         title: "Agilus30",
-        law: Law::MooneyRivlin {
-            c1: 160_355.0,
-            c2: 46_559.0,
-        },
+        law: AGILUS30,
         source: "Shi et al., Soft Matter 18 (2022) 9076; small-strain modulus 1.24 MPa",
         rate: "relaxed",
         strain: None,
@@ -85,10 +93,7 @@ pub const PRESETS: [Preset; 13] = [
     Preset {
         name: "skin",
         title: "human fingertip skin",
-        law: Law::MooneyRivlin {
-            c1: 13_400.0,
-            c2: 29_500.0,
-        },
+        law: SKIN,
         source: "Serina et al. 1998, as Shi et al., Soft Matter 18 (2022) 9076, use it",
         rate: "not stated",
         strain: None,

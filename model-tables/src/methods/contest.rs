@@ -11,6 +11,7 @@ use super::shooting::Shooting;
 use crate::adapt::Resolution;
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
+use crate::material::preset::{AGILUS30, SKIN};
 use crate::membrane::TensionField;
 use crate::press::{ModelError, Press};
 use std::time::{Duration, Instant};
@@ -66,16 +67,6 @@ const fn dome(radial: f64, axial: f64, law: Law, pole_stretch: f64) -> Design {
         compliance: 0.0,
     }
 }
-
-/// Agilus30 and the skin analogue, as the source paper gives them.
-const AGILUS30: Law = Law::MooneyRivlin {
-    c1: 160_355.0,
-    c2: 46_559.0,
-};
-const SKIN: Law = Law::MooneyRivlin {
-    c1: 13_400.0,
-    c2: 29_500.0,
-};
 
 /// The designs: much, little and moderate pre-stretch. Nothing in them is compressed, so that wrinkles play no part.
 pub const DESIGNS: [Contestant; 3] = [

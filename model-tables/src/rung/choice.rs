@@ -2,9 +2,10 @@
 //!
 //! `kind = "auto"` solves every rung of a ladder up to the solid of 2 x 60 elements, at eight indentations up to the deepest. **The rule:**
 //! the first rung, from the cheapest, is taken whose force and pressure rise differ from that solid's by no more than what
-//! [`Accuracy`](crate::design_file::Accuracy) allows of the force, less the solid's own error ([`LADDER`]); the solid itself if only that
-//! is allowed. If even that is not, a refined solid judges them all. Coarse solids judge nobody: their errors are of one kind, and two
-//! of them agreed with each other where both were wrong. `designer ladder` holds the rule to the refined solid over random walls.
+//! [`Accuracy`](crate::design_file::Accuracy) allows of the force, less the solid's own error ([`Wanted::own_error`]); the solid itself if
+//! only that is allowed. If even that is not, a refined solid judges them all. Coarse solids judge nobody: their errors are of one
+//! kind, and two of them agreed with each other where both were wrong. `designer ladder` holds the rule to the refined solid over
+//! random walls.
 
 use super::{Kind, Rung};
 use crate::curve::Contact;
@@ -14,13 +15,13 @@ use crate::press::ModelError;
 use crate::solid;
 use crate::solid::mesh::Elements;
 
-/// The ladder that `auto` climbs, each rung with the error it counts with as a judge; one without a bound does not judge.
-pub const LADDER: [(Kind, f64); 5] = [
-    (Kind::Membrane, f64::INFINITY),
-    (Kind::Solid(solid::press::COARSE), f64::INFINITY),
-    (Kind::Solid(solid::press::FULL), f64::INFINITY),
-    (Kind::Solid(FINE), 0.005),
-    (Kind::Solid(REFINED), 0.0),
+/// The ladder that `auto` climbs.
+pub const LADDER: [Kind; 5] = [
+    Kind::Membrane,
+    Kind::Solid(solid::press::COARSE),
+    Kind::Solid(solid::press::FULL),
+    Kind::Solid(FINE),
+    Kind::Solid(REFINED),
 ];
 /// Enough elements for a few tenths of a percent.
 pub const FINE: Elements = Elements {
@@ -34,6 +35,14 @@ pub const REFINED: Elements = Elements {
 };
 /// Indentations at which rungs are compared, over the deepest.
 pub const PARTS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
+/// Error of [`FINE`], largest of the walls of `designer ladder` that are no [`THIN`] ones.
+const FINE_ERROR: f64 = 0.006;
+/// The same of walls that are [`THIN`], and of presses that are [`DEEP`].
+const HARD_ERROR: f64 = 0.01;
+/// Wall over outer radius under which 60 elements are long for what bends, `sqrt(radius * wall)`.
+const THIN: f64 = 0.02;
+/// Indentation over the height beyond which the bonded rim takes part.
+const DEEP: f64 = 0.36;
 /// What is allowed of the force where a design does not say, percent.
 const DEFAULT_PERCENT: f64 = 1.0;
 /// Where the percentage begins where a design does not say, percent of the deepest.
@@ -66,6 +75,20 @@ impl Wanted {
             error: percent / 100.0,
             from: from / 100.0,
             deepest: 1e-3 * file.max_indentation_mm.unwrap_or(DEFAULT_DEPTH * height),
+        }
+    }
+
+    /// The error that a rung counts with as a judge; infinite if it does not judge.
+    pub fn own_error(&self, kind: Kind, design: &Design) -> f64 {
+        let outer = &design.membrane;
+        match kind {
+            Kind::Solid(REFINED) => 0.0,
+            Kind::Solid(FINE) => {
+                let thin = outer.thickness < THIN * outer.radial_semi_axis;
+                let deep = self.deepest > DEEP * outer.axial_semi_axis;
+                if thin || deep { HARD_ERROR } else { FINE_ERROR }
+            }
+            _ => f64::INFINITY,
         }
     }
 
@@ -128,10 +151,11 @@ pub struct Choice {
 pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
     let mut solved: Vec<(Kind, Rung, Vec<Contact>)> = Vec::new();
     let mut failure = ModelError::RestNotForSolid;
-    for (judge, own_error) in LADDER {
+    for judge in LADDER {
         if !judge.applies(design) {
             continue;
         }
+        let own_error = wanted.own_error(judge, design);
         let found = Rung::of(judge, design).and_then(|mut rung| {
             let contacts = wanted.contacts(&mut rung)?;
             Ok((rung, contacts))

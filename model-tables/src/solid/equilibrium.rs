@@ -3,10 +3,10 @@
 //! Dimensionless: lengths in outer radial semi-axes, stresses in shear moduli.
 
 use super::Failure;
-use super::element::{self, Element, UNKNOWNS};
+use super::element::{self, Element, Material};
 use super::fluid;
 use super::front::{Fronts, SIDES};
-use super::mesh::{Elements, Mesh, NODES, PRESSURES};
+use super::mesh::{CUBIC_PRESSURES, Elements, FUNCTIONS, Mesh, NODES, PRESSURES};
 use super::plate;
 use crate::material::Law;
 
@@ -25,10 +25,10 @@ const STEP_LIMIT: f64 = 0.5;
 /// Unknowns of a state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Radius and height of every node.
+    /// Radius and height of every node, in the mesh's order, with the amplitudes of cubic functions.
     pub nodes: Vec<[f64; 2]>,
-    /// Pressure in the wall, three terms an element.
-    pub pressures: Vec<[f64; PRESSURES]>,
+    /// Terms of the pressure in each element.
+    pub pressures: Vec<[f64; CUBIC_PRESSURES]>,
     /// Gauge pressure of the fluid.
     pub fluid: f64,
 }
@@ -58,7 +58,7 @@ impl State {
     /// All zero.
     pub fn clear(&mut self) {
         self.nodes.fill([0.0; 2]);
-        self.pressures.fill([0.0; PRESSURES]);
+        self.pressures.fill([0.0; CUBIC_PRESSURES]);
         self.fluid = 0.0;
     }
 }
@@ -96,8 +96,10 @@ pub struct Balance {
 pub struct Wall {
     /// The undeformed wall.
     pub mesh: Mesh,
-    /// Its law, in shear moduli.
-    pub law: Law,
+    /// Its material, in shear moduli.
+    pub material: Material,
+    /// Which unknown of a column each unknown of its elements is, innermost element first.
+    places: Vec<Vec<usize>>,
     /// Contact pressure over penetration.
     contact_stiffness: f64,
     /// Undeformed radii and heights of each column's outer edge.
@@ -117,26 +119,27 @@ impl Wall {
     /// A wall of outer semi-axes 1 and `height`, with a law in shear moduli.
     pub fn new(height: f64, thickness: f64, law: Law, elements: Elements) -> Self {
         let mesh = Mesh::new(height, thickness, elements);
-        let station = 2 * mesh.layers();
+        let Layout { station, own } = layout(&mesh);
         let outer = (0..elements.along)
             .map(|column| edge(&mesh, &mesh.nodes, column, mesh.layers() - 1))
             .collect();
         let step = State {
             nodes: vec![[0.0; 2]; mesh.nodes.len()],
-            pressures: vec![[0.0; PRESSURES]; mesh.points.len()],
+            pressures: vec![[0.0; CUBIC_PRESSURES]; mesh.points.len()],
             fluid: 0.0,
         };
         Self {
             contact_stiffness: CONTACT_STIFFNESS / thickness,
             outer,
-            fronts: Fronts::new(station, station + PRESSURES * elements.through, elements.along),
+            fronts: Fronts::new(station, own, elements.along),
             element: Element::default(),
             volume_by_node: vec![[0.0; 2]; mesh.stations()],
             by_pressure: step.clone(),
             step,
             iterations: 0,
+            material: Material::new(law, mesh.is_cubic()),
+            places: (0..elements.through).map(|layer| places(&mesh, layer)).collect(),
             mesh,
-            law,
         }
     }
 
@@ -144,7 +147,10 @@ impl Wall {
     pub fn undeformed(&self) -> State {
         State {
             nodes: self.mesh.nodes.clone(),
-            pressures: vec![[element::pressure_at_rest(&self.law), 0.0, 0.0]; self.mesh.points.len()],
+            pressures: vec![
+                [element::pressure_at_rest(&self.material.law), 0.0, 0.0, 0.0, 0.0];
+                self.mesh.points.len()
+            ],
             fluid: 0.0,
         }
     }
@@ -168,9 +174,22 @@ impl Wall {
             .enumerate()
             .map(|(e, points)| {
                 let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
-                element::energy(&self.law, points, &positions)
+                element::energy(&self.material, points, &positions)
             })
             .sum()
+    }
+
+    /// The largest `I1` outside the crease.
+    pub fn largest_invariant(&self, state: &State) -> f64 {
+        let through = self.mesh.elements.through;
+        let mut largest = 3.0_f64;
+        for (e, points) in self.mesh.points.iter().enumerate() {
+            let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
+            for point in points.iter().filter(|point| !point.in_crease) {
+                largest = largest.max(element::first_invariant(element::deformation(point, &positions)));
+            }
+        }
+        largest
     }
 
     /// Whether the law softens anywhere in a state.
@@ -180,7 +199,7 @@ impl Wall {
             let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
             points
                 .iter()
-                .any(|point| element::softens(&self.law, element::deformation(point, &positions)))
+                .any(|point| element::softens(&self.material.law, element::deformation(point, &positions)))
         })
     }
 
@@ -218,7 +237,8 @@ impl Wall {
     fn assemble(&mut self, state: &State, plate: f64) -> Balance {
         let Self {
             mesh,
-            law,
+            material,
+            places,
             contact_stiffness,
             outer,
             fronts,
@@ -228,10 +248,9 @@ impl Wall {
         } = self;
         let Elements { through, along } = mesh.elements;
         let layers = mesh.layers();
-        let station = 2 * layers;
-        let own = station + PRESSURES * through;
+        let Layout { station, own } = layout(mesh);
         let size = 2 * station + own;
-        let starts = [0, station, station + own];
+        let starts = starts(mesh);
         let mut balance = Balance {
             least: f64::INFINITY,
             ..Balance::default()
@@ -244,20 +263,18 @@ impl Wall {
             for layer in 0..through {
                 let index = column * through + layer;
                 let positions = positions(mesh, &state.nodes, column, layer);
-                let least = element.assemble(law, &mesh.points[index], &positions, &state.pressures[index]);
+                let (points, pressures) = (&mesh.points[index], &state.pressures[index]);
+                let least = if mesh.is_cubic() {
+                    element.assemble::<FUNCTIONS, CUBIC_PRESSURES>(material, points, &positions, pressures)
+                } else {
+                    element.assemble::<NODES, PRESSURES>(material, points, &positions, pressures)
+                };
                 balance.least = balance.least.min(least);
-                let place: [usize; UNKNOWNS] = core::array::from_fn(|i| {
-                    if i < 2 * NODES {
-                        let (node, component) = (i % NODES, i / NODES);
-                        starts[node / 3] + 2 * (2 * layer + node % 3) + component
-                    } else {
-                        2 * station + PRESSURES * layer + (i - 2 * NODES)
-                    }
-                });
-                for i in 0..UNKNOWNS {
-                    let row = front.row(place[i]);
-                    for j in 0..UNKNOWNS {
-                        row[place[j]] += element.stiffness[i][j];
+                let places = &places[layer];
+                for (i, &place) in places.iter().enumerate() {
+                    let row = front.row(place);
+                    for (&place, stiffness) in places.iter().zip(&element.stiffness[i]) {
+                        row[place] += stiffness;
                     }
                     row[size] -= element.residual[i];
                 }
@@ -280,14 +297,14 @@ impl Wall {
             balance.force += action.force;
             balance.contact_energy += action.energy;
             for i in 0..3 {
-                let row = front.row(starts[i] + station - 1);
+                let row = front.row(starts[i] + 2 * layers - 1);
                 row[size] -= action.first[i];
                 for j in 0..3 {
-                    row[starts[j] + station - 1] += action.second[i][j];
+                    row[starts[j] + 2 * layers - 1] += action.second[i][j];
                 }
             }
         }
-        for layer in 0..layers {
+        for layer in 0..mesh.stride() {
             fronts.hold_first(2 * layer);
         }
         balance.residual = residual(fronts, station, own, along) / mesh.thickness;
@@ -303,17 +320,18 @@ impl Wall {
             by_pressure,
             ..
         } = self;
-        let layers = self.mesh.layers();
-        let station = 2 * layers;
+        let stride = self.mesh.stride();
+        let Layout { station, .. } = layout(&self.mesh);
         let through = self.mesh.elements.through;
+        let terms = terms(&self.mesh);
         fronts.solutions(|column, i, x: [f64; SIDES]| {
             for (part, x) in [&mut *step, &mut *by_pressure].into_iter().zip(x) {
                 if i < 2 * station {
                     let at = 2 * column + i / station;
-                    part.nodes[at * layers + (i % station) / 2][i % 2] = x;
+                    part.nodes[at * stride + (i % station) / 2][i % 2] = x;
                 } else {
                     let p = i - 2 * station;
-                    part.pressures[column * through + p / PRESSURES][p % PRESSURES] = x;
+                    part.pressures[column * through + p / terms][p % terms] = x;
                 }
             }
         });
@@ -322,7 +340,7 @@ impl Wall {
                 .iter()
                 .enumerate()
                 .map(|(station, d)| {
-                    let x = part.nodes[station * layers];
+                    let x = part.nodes[station * stride];
                     d[0] * x[0] + d[1] * x[1]
                 })
                 .sum::<f64>()
@@ -342,6 +360,56 @@ impl Wall {
                 .fold(0.0, f64::max),
         )
     }
+}
+
+/// Numbers of unknowns in a column of elements.
+struct Layout {
+    /// Of a station: radius and height of its nodes from inside to outside, and of its cubic function.
+    station: usize,
+    /// Of a column's own: its middle station, and the pressures of its elements.
+    own: usize,
+}
+
+fn layout(mesh: &Mesh) -> Layout {
+    let station = 2 * mesh.stride();
+    Layout {
+        station,
+        own: station + terms(mesh) * mesh.elements.through,
+    }
+}
+
+/// Terms of an element's pressure.
+fn terms(mesh: &Mesh) -> usize {
+    if mesh.is_cubic() {
+        CUBIC_PRESSURES
+    } else {
+        PRESSURES
+    }
+}
+
+/// Where in a column its three stations begin.
+fn starts(mesh: &Mesh) -> [usize; 3] {
+    let Layout { station, own } = layout(mesh);
+    [0, station, station + own]
+}
+
+/// Where in a column the unknowns of an element are.
+fn places(mesh: &Mesh, layer: usize) -> Vec<usize> {
+    let starts = starts(mesh);
+    let functions = if mesh.is_cubic() { FUNCTIONS } else { NODES };
+    let node = |component: usize, i: usize| {
+        let (station, layer) = if i < NODES {
+            (i / 3, 2 * layer + i % 3)
+        } else {
+            (i - NODES, mesh.layers())
+        };
+        starts[station] + 2 * layer + component
+    };
+    let pressure = 2 * layout(mesh).station + terms(mesh) * layer;
+    (0..2 * functions)
+        .map(|i| node(i / functions, i % functions))
+        .chain(pressure..pressure + terms(mesh))
+        .collect()
 }
 
 /// Largest entry of the residual on the unknowns that are free.
@@ -370,8 +438,18 @@ pub fn edge(mesh: &Mesh, nodes: &[[f64; 2]], column: usize, layer: usize) -> [[f
     [0, 1].map(|c| core::array::from_fn(|i| nodes[mesh.node(2 * column + i, layer)][c]))
 }
 
-/// Radii and heights of an element's nodes.
+/// Radii and heights of an element's nodes, and the amplitudes of its cubic functions.
 pub fn positions(mesh: &Mesh, nodes: &[[f64; 2]], column: usize, layer: usize) -> element::Positions {
     let at = mesh.element_nodes(column, layer);
-    [0, 1].map(|c| at.map(|node| nodes[node][c]))
+    [0, 1].map(|c| {
+        core::array::from_fn(|i| {
+            if i < NODES {
+                nodes[at[i]][c]
+            } else if mesh.is_cubic() {
+                nodes[mesh.node(2 * column + i - NODES, mesh.layers())][c]
+            } else {
+                0.0
+            }
+        })
+    })
 }

@@ -77,6 +77,7 @@ pub fn bonded(wall: &mut Wall, state: &mut State, design: &Design, stretch: f64)
         grow(
             &mut trial,
             layers,
+            wall.mesh.stride(),
             [rest.edge_radius / length, rest.height / length],
         );
         for layer in 0..layers {
@@ -118,17 +119,18 @@ pub fn bonded(wall: &mut Wall, state: &mut State, design: &Design, stretch: f64)
 }
 
 /// A guess for a wall whose middle has grown to a radius and a height: as much thinner as it grew.
-fn grow(state: &mut State, layers: usize, [radius, height]: [f64; 2]) {
+fn grow(state: &mut State, layers: usize, stride: usize, [radius, height]: [f64; 2]) {
     let middle = layers / 2;
-    let last = state.nodes.len() - layers;
+    let last = state.nodes.len() - stride;
     let factors = [
         radius / state.nodes[last + middle][0],
         height / state.nodes[middle][1],
     ];
     let thinning = 1.0 / (factors[0] * factors[1]);
-    for station in state.nodes.chunks_exact_mut(layers) {
+    for station in state.nodes.chunks_exact_mut(stride) {
         let at = station[middle];
-        for node in station {
+        // The amplitude of a cubic function, behind the nodes, stays as it is.
+        for node in &mut station[..layers] {
             for c in 0..2 {
                 node[c] = factors[c] * at[c] + thinning * (node[c] - at[c]);
             }

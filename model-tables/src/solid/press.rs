@@ -132,7 +132,8 @@ impl Press {
         let rest = Rest {
             pressure: state.fluid * modulus,
             pole_stretch: section::pole_stretch(&wall, &state),
-            edge_radius: state.nodes[state.nodes.len() - 1][0] * length,
+            edge_radius: state.nodes[wall.mesh.node(wall.mesh.stations() - 1, wall.mesh.layers() - 1)][0]
+                * length,
             height: height * length,
             volume: volume * unit,
             energy: wall.energy(&state) * modulus * unit,
@@ -216,6 +217,16 @@ impl Press {
             pressure_rise: (kept.state.fluid - self.fluid.pressure) * self.modulus,
             force: kept.balance.force * self.modulus * self.length * self.length,
         })
+    }
+
+    /// The largest `I1` in the wall at an indentation in metres, 0 ..= limit, outside the crease at the rim.
+    ///
+    /// # Errors
+    /// As [`Press::at_indentation`].
+    pub fn largest_invariant(&mut self, indentation: f64) -> Result<f64, ModelError> {
+        self.contact_at(indentation)?;
+        let kept = self.trail.nearest(indentation / self.length);
+        Ok(self.wall.largest_invariant(&kept.state))
     }
 
     /// The end of the press.

@@ -2,7 +2,7 @@
 
 use super::element;
 use super::equilibrium::{State, Wall, edge, positions};
-use super::mesh::{CREASE, NODES, PLACES, WEIGHTS, shape, slope};
+use super::mesh::{CREASE, FUNCTIONS, PLACES, WEIGHTS, function, shape, slope};
 use crate::press::EndsBy;
 use core::f64::consts::FRAC_PI_2;
 
@@ -200,13 +200,12 @@ fn shear(wall: &Wall, state: &State, column: usize, x: f64) -> f64 {
 
 /// Derivatives of the place by the element's two coordinates.
 fn tangents([r, z]: &element::Positions, x: f64, y: f64) -> ([f64; 2], [f64; 2]) {
-    let (n, m, dn, dm) = (shape(x), shape(y), slope(x), slope(y));
     let (mut along, mut through) = ([0.0; 2], [0.0; 2]);
-    for i in 0..NODES {
-        let (a, b) = (i / 3, i % 3);
+    for i in 0..FUNCTIONS {
+        let [_, by_along, by_through] = function(i, x, y);
         for (c, value) in [r[i], z[i]].into_iter().enumerate() {
-            along[c] += dn[a] * m[b] * value;
-            through[c] += n[a] * dm[b] * value;
+            along[c] += by_along * value;
+            through[c] += by_through * value;
         }
     }
     (along, through)
@@ -228,9 +227,9 @@ fn forces(wall: &Wall, state: &State, column: usize, x: f64, tangent: [f64; 2]) 
             let x = x.max(if column == 0 { -1.0 + 1e-6 } else { -1.0 });
             let (point, across, radius) = super::mesh::sample(&undeformed, x, y);
             let stress = element::stress(
-                &wall.law,
+                &wall.material,
                 element::deformation(&point, &deformed),
-                pressures[0] + pressures[1] * x + pressures[2] * y,
+                element::pressure_at(x, y, pressures),
             );
             // The section's undeformed normal times its length: the fibre turned right.
             let normal = [across[1], -across[0]];

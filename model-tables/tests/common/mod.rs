@@ -3,11 +3,7 @@
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 
-/// Agilus30 as the source paper gives it.
-pub(crate) const AGILUS30: Law = Law::MooneyRivlin {
-    c1: 160_355.0,
-    c2: 46_559.0,
-};
+pub(crate) use model_tables::material::preset::AGILUS30;
 
 /// A design in millimetres, rest by pole stretch, rigid fluid path.
 pub(crate) fn design(radial: f64, axial: f64, thickness: f64, law: Law, pole_stretch: f64) -> Design {

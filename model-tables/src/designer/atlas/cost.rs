@@ -5,8 +5,8 @@ use super::super::drawing::{
     Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, Panel, VERMILION, power,
 };
 use crate::adapt::Resolution;
-use crate::design::{Design, Membrane, RestBy};
-use crate::material::Law;
+use crate::campaign::scaling::PRINTED;
+use crate::design::{Design, RestBy};
 use crate::membrane::TensionField;
 use crate::methods::shooting::Shooting;
 use crate::press::{FULL, ModelError, Press};
@@ -33,17 +33,8 @@ pub(super) struct Cost {
 
 fn design(stretch: f64) -> Design {
     Design {
-        membrane: Membrane {
-            radial_semi_axis: 9e-3,
-            axial_semi_axis: 7e-3,
-            thickness: 1e-3,
-        },
-        law: Law::MooneyRivlin {
-            c1: 160_355.0,
-            c2: 46_559.0,
-        },
         rest: RestBy::PoleStretch(stretch),
-        compliance: 0.0,
+        ..PRINTED
     }
 }
 
@@ -178,11 +169,11 @@ pub(super) fn svg(costs: &[Cost]) -> String {
         let left = 80.0 + side as f64 * (SIZE[0] + 120.0);
         let panel = Panel {
             x: Axis {
-                decades: if side == 0 { [-3, 1] } else { [-1, 1] },
+                decades: if side == 0 { [-3.0, 1.0] } else { [-1.0, 1.0] },
                 pixels: [left, left + SIZE[0]],
             },
             y: Axis {
-                decades: [1, 4],
+                decades: [1.0, 4.0],
                 pixels: [TOP + SIZE[1], TOP],
             },
         };

@@ -3,6 +3,7 @@
 use crate::adapt::Resolution;
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
+use crate::material::preset::AGILUS30;
 use crate::membrane::TensionField;
 use crate::methods::bisection::{Bisection, PAPER};
 use crate::methods::shooting::Shooting;
@@ -192,14 +193,10 @@ impl Chart {
 
     /// The design of a cell, and its indentation over the limit.
     fn design(&self, value: f64, stretch: f64) -> (Design, f64) {
-        let agilus = Law::MooneyRivlin {
-            c1: 160_355.0,
-            c2: 46_559.0,
-        };
         let c1 = 100e3;
         let (radial, axial, thickness, law, part) = match self.across {
-            Across::Aspect => (9e-3, 9e-3 * value, 1e-3, agilus, 0.5),
-            Across::Indentation => (9e-3, 7e-3, 1e-3, agilus, value),
+            Across::Aspect => (9e-3, 9e-3 * value, 1e-3, AGILUS30, 0.5),
+            Across::Indentation => (9e-3, 7e-3, 1e-3, AGILUS30, value),
             Across::MooneyRatio => (6e-3, 9e-3, 0.5e-3, Law::MooneyRivlin { c1, c2: c1 * value }, 0.5),
             Across::YeohRatio => {
                 let law = Law::Yeoh {

@@ -30,11 +30,11 @@ pub(super) fn svg(measured: &[Measured]) -> String {
         let left = LEFT + i as f64 * (PANEL[0] + GAP);
         let panel = Panel {
             x: Axis {
-                decades: INDENTATIONS,
+                decades: INDENTATIONS.map(f64::from),
                 pixels: [left, left + PANEL[0]],
             },
             y: Axis {
-                decades: ERRORS,
+                decades: ERRORS.map(f64::from),
                 pixels: [TOP + PANEL[1], TOP],
             },
         };

@@ -86,11 +86,11 @@ pub(super) fn svg(measured: &[Measured]) -> String {
         let left = LEFT + i as f64 * (PANEL[0] + GAP);
         let panel = Panel {
             x: Axis {
-                decades: ERRORS,
+                decades: ERRORS.map(f64::from),
                 pixels: [left, left + PANEL[0]],
             },
             y: Axis {
-                decades: TIMES,
+                decades: TIMES.map(f64::from),
                 pixels: [TOP + PANEL[1], TOP],
             },
         };

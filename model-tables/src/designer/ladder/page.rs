@@ -1,6 +1,7 @@
 //! The page: errors of the rungs over walls, indentations and pre-stretches, and what `auto` lets through.
 
 use super::pre_stretch;
+use crate::campaign::scaling::{self, Cost};
 use crate::campaign::walls::{ASKED, Evidence, FROM, Measured};
 use crate::rung::choice::{LADDER, PARTS};
 use std::fmt::Write as _;
@@ -58,22 +59,24 @@ fn error_at(wall: &Measured, place: usize, part: usize) -> Option<f64> {
     )))
 }
 
-pub(super) fn markdown(measured: &[&Measured], left_out: usize) -> String {
+pub(super) fn markdown(measured: &[&Measured], left_out: usize, scaling: &[Cost]) -> String {
     let refined = LADDER.len() - 1;
     let mut text = format!(
         "# Which model a wall needs\n\n\
-         Written by `cargo designer ladder --designs {} --out DIR` as `ladder.md`, beside the map (`ladder.svg`) and every number \
-         (`ladder.csv`). Random walls: outer radius 5 to 12 mm, height 0.6 to 1.4 of it, wall 0.1 to 1.5 mm, three materials, one in \
+         Written by `cargo designer ladder --designs {} --out DIR`, with every number in `ladder.csv`. Times are those of the machine \
+         that wrote the page; a test recomputes the walls that the last table names. Random walls: outer radius 5 to 12 mm, height 0.6 to 1.4 of it, wall 0.1 to 1.5 mm, three materials, one in \
          three unstretched, the others stretched by 1 % to 100 % at the pole and bonded there. *Error* is the larger of force and \
          pressure rise against the {}, relative, from 1 % of full scale on, at eight indentations up to 0.35 of the height",
         measured.len() + left_out,
-        LADDER[refined].0
+        LADDER[refined]
     );
     let _ = match left_out {
         0 => writeln!(text, "."),
         some => writeln!(text, "; {some} walls have no such state there and are left out."),
     };
+    text.push_str("\n![Error against time, and what auto takes](ladder.svg)\n");
     costs(&mut text, measured);
+    by_elements(&mut text, scaling);
     let _ = writeln!(
         text,
         "\n## By wall and stretch\n\nMedian error of the membrane and of the solid 1 x 24, percent, with the number of walls.\n"
@@ -81,7 +84,7 @@ pub(super) fn markdown(measured: &[&Measured], left_out: usize) -> String {
     by_wall(&mut text, measured);
     let _ = writeln!(
         text,
-        "\n## By indentation\n\nMedian error, percent, over every wall that has the model.\n"
+        "\n## By indentation\n\nMedian error, percent, over every wall that has the model; of the membrane also by wall over radius.\n"
     );
     by_indentation(&mut text, measured);
     choices(&mut text, measured);
@@ -108,13 +111,35 @@ fn costs(text: &mut String, measured: &[&Measured]) {
     };
     let closed = measured.iter().filter_map(|wall| wall.closed_form).collect();
     row("closed form of light contact", closed, None);
-    for (place, (kind, _)) in LADDER.iter().enumerate() {
+    for (place, kind) in LADDER.iter().enumerate() {
         let of = || measured.iter().filter_map(|wall| evidence(wall, place));
         let time = spread(of().map(|evidence| evidence.seconds)).map(|spread| spread[0]);
         row(
             &kind.to_string(),
             of().map(|evidence| evidence.error).collect(),
             time,
+        );
+    }
+}
+
+fn by_elements(text: &mut String, scaling: &[Cost]) {
+    let _ = writeln!(
+        text,
+        "\n## By elements\n\nThe printed fingertip, 9 x 7 mm outside, wall 1 mm, unstretched, pressed in {} states {} mm apart, each from those before \
+         it, on one core (`cargo bench -p model-tables` times the same). *Error* is the largest of force and pressure against \
+         the last row.\n\n| through x along | a state, ms | Newton iterations a state | largest error, % |\n|---|---|---|---|",
+        scaling::STATES,
+        1e3 * scaling::STEP
+    );
+    for cost in scaling {
+        let _ = writeln!(
+            text,
+            "| {} x {} | {:.2} | {:.1} | {} |",
+            cost.elements.through,
+            cost.elements.along,
+            1e3 * cost.seconds,
+            cost.iterations,
+            percent(cost.error)
         );
     }
 }
@@ -154,7 +179,7 @@ fn by_indentation(text: &mut String, measured: &[&Measured]) {
         let _ = write!(text, " {part} |");
     }
     let _ = writeln!(text, "\n|---|{}", "---|".repeat(PARTS.len()));
-    for (place, (kind, _)) in LADDER[..LADDER.len() - 1].iter().enumerate() {
+    for (place, kind) in LADDER[..LADDER.len() - 1].iter().enumerate() {
         let _ = write!(text, "| {kind} |");
         for part in 0..PARTS.len() {
             let errors = measured.iter().filter_map(|wall| error_at(wall, place, part));
@@ -163,21 +188,39 @@ fn by_indentation(text: &mut String, measured: &[&Measured]) {
         }
         text.push('\n');
     }
+    let mut above = 0.0;
+    for (name, end) in WALLS {
+        let _ = write!(text, "| membrane, wall {name} |");
+        let here = measured.iter().filter(|wall| {
+            let outer = wall.case.design.membrane;
+            let wall = outer.thickness / outer.radial_semi_axis;
+            wall > above && wall <= end
+        });
+        for part in 0..PARTS.len() {
+            let errors = here.clone().filter_map(|wall| error_at(wall, 0, part));
+            let median = spread(errors).map_or_else(|| "-".to_owned(), |spread| percent(spread[0]));
+            let _ = write!(text, " {median} |");
+        }
+        text.push('\n');
+        above = end;
+    }
 }
 
 fn choices(text: &mut String, measured: &[&Measured]) {
     text.push_str(
         "\n## What `kind = \"auto\"` takes\n\n\
-         The cheapest rung that differs from the solid 2 x 60 by no more than what is allowed less that solid's own error, and otherwise \
-         the cheapest that is near enough to the refined one. How many walls end on which rung, and the largest error let through:\n\n\
+         The cheapest rung that differs from the solid 2 x 60 by no more than what is allowed less that solid's own error (0.6 %; \
+         1 % where the wall is thinner than 0.02 of the radius, or pressed deeper than 0.36 of the height), and otherwise the \
+         cheapest that is near enough to the refined one. How many walls end on which rung, and the largest error let through, \
+         with the number of its wall (`model_tables::campaign::walls::draw`):\n\n\
          | allowed, % |",
     );
-    for (kind, _) in LADDER {
+    for kind in LADDER {
         let _ = write!(text, " {kind} |");
     }
     let _ = writeln!(
         text,
-        " let through, % |\n|---|{}---|",
+        " let through, % | wall |\n|---|{}---|---|",
         "---|".repeat(LADDER.len())
     );
     for asked in ASKED {
@@ -190,7 +233,13 @@ fn choices(text: &mut String, measured: &[&Measured]) {
                 taken.iter().filter(|taken| taken.rung == place).count()
             );
         }
-        let worst = taken.iter().map(|taken| taken.error).fold(0.0, f64::max);
-        let _ = writeln!(text, " {:.2} |", 100.0 * worst);
+        let worst = measured
+            .iter()
+            .zip(&taken)
+            .max_by(|(_, a), (_, b)| a.error.total_cmp(&b.error));
+        let _ = match worst {
+            Some((wall, taken)) => writeln!(text, " {:.2} | {} |", 100.0 * taken.error, wall.case.index),
+            None => writeln!(text, " - | - |"),
+        };
     }
 }

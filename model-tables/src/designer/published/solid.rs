@@ -4,7 +4,7 @@ use super::super::Refusal;
 use super::shipped;
 use crate::curve::Contact;
 use crate::design::{Design, Membrane, RestBy};
-use crate::material::Law;
+use crate::material::preset::AGILUS30;
 use crate::membrane::TensionField;
 use crate::press::{ModelError, Press};
 use crate::rung::Rung;
@@ -56,11 +56,6 @@ const MID_SURFACE: Membrane = Membrane {
     radial_semi_axis: 8.5e-3,
     axial_semi_axis: 6.5e-3,
     thickness: 1e-3,
-};
-/// Its material.
-const AGILUS30: Law = Law::MooneyRivlin {
-    c1: 160_355.0,
-    c2: 46_559.0,
 };
 /// Pole stretch that leaves the membrane all but unstretched at rest.
 pub(super) const UNSTRETCHED: f64 = 1.002;

@@ -332,11 +332,11 @@ pub(super) fn speed(costs: &[Cost]) -> Option<String> {
     };
     let panel = drawing::Panel {
         x: drawing::Axis {
-            decades: decades(0)?,
+            decades: decades(0)?.map(f64::from),
             pixels: [LEFT, RIGHT],
         },
         y: drawing::Axis {
-            decades: decades(1)?,
+            decades: decades(1)?.map(f64::from),
             pixels: [BOTTOM, TOP],
         },
     };
@@ -356,7 +356,7 @@ pub(super) fn speed(costs: &[Cost]) -> Option<String> {
         "Time of a state against the error of the model",
         &words.join("; "),
     );
-    let step = |[first, last]: [i32; 2]| (1 + (last - first) / 6) as usize;
+    let step = |[first, last]: [f64; 2]| 1 + (last - first) as usize / 6;
     let steps = [step(panel.x.decades), step(panel.y.decades)];
     panel.draw(&mut drawing, steps, [&power, &power]);
     let mut heights: Vec<f64> = shown.iter().map(|(_, at)| panel.at(*at)[1] - 10.0).collect();

@@ -57,9 +57,8 @@ pub(super) fn costs(file: &DesignFile, used: Kind, design: &Design, deepest: f64
             );
         }
         Kind::Solid(elements) => {
-            let rungs = LADDER.iter().map(|(kind, _)| *kind);
-            let own = (!LADDER.iter().any(|(kind, _)| *kind == used)).then_some(used);
-            for kind in rungs.filter(|kind| kind.applies(design)).chain(own) {
+            let own = (!LADDER.contains(&used)).then_some(used);
+            for kind in LADDER.into_iter().filter(|kind| kind.applies(design)).chain(own) {
                 let is_used = kind == Kind::Solid(elements);
                 add(kind.to_string(), is_used, rung(kind, design, deepest));
             }
