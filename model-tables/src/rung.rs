@@ -1,6 +1,6 @@
 //! Either model behind one interface, and which of them a design needs.
 //!
-//! [`choice`] is what `kind = "auto"` does.
+//! [`choice`] is what `kind = "auto"` does; [`state`] is what is read off a state of either.
 
 use crate::adapt::Resolution;
 use crate::curve::{Contact, Curve};
@@ -14,6 +14,7 @@ use crate::solid::mesh::Elements;
 use std::fmt;
 
 pub mod choice;
+pub mod state;
 
 /// A model of a fingertip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,10 +103,7 @@ impl Rung {
 
     /// Gauge pressure at rest, pascals.
     pub fn rest_pressure(&self) -> f64 {
-        match self {
-            Self::Membrane(press) => press.rest().pressure,
-            Self::Solid(press) => press.rest().pressure,
-        }
+        self.rest().pressure
     }
 
     /// Pressure rise and force at an indentation in metres, 0 ..= limit.

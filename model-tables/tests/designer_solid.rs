@@ -121,6 +121,51 @@ fn refuses_in_one_line() {
     );
 }
 
+/// RTV615 was fitted up to a strain of 1; inflated beyond it, every command says so.
+#[test]
+fn solve_rest_and_report_warn_of_strains_that_the_law_does_not_cover() {
+    let warned = |name: &str, material: &str, more: &str, arguments: &[&str]| {
+        let file = design(name, more);
+        let text = fs::read_to_string(&file).expect("the design");
+        let text = text.replace(
+            "law = \"mooney-rivlin\"\nc1_pa = 160355\nc2_pa = 46559\n",
+            material,
+        );
+        fs::write(&file, text).expect("the test folder");
+        let output = designer(&[&[arguments[0], &file], &arguments[1..]].concat());
+        let text = String::from_utf8(output.stderr).expect("text");
+        assert!(output.status.success(), "{text}");
+        text
+    };
+    let none = warned(
+        "sound",
+        "law = \"mooney-rivlin\"\nc1_pa = 160355\nc2_pa = 46559\n",
+        "",
+        &["solve", "--indentation-mm", "2.5"],
+    );
+    assert!(!none.contains("warning"), "{none}");
+    let silicone = "law = \"yeoh\"\nc1_pa = 166e3\nc2_pa = 12.8e3\nc3_pa = 0.944e3\n";
+    let inflated = warned(
+        "blown",
+        silicone,
+        "through = 1\nalong = 24\n[rest]\npressure_kpa = 84.0\n",
+        &["rest"],
+    );
+    assert!(
+        inflated.contains("beyond 2.00 up to which the constants of RTV615 were fitted"),
+        "{inflated}"
+    );
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("solid-blown-report");
+    let folder = out.to_str().expect("text");
+    let more = "through = 1\nalong = 24\n[rest]\npressure_kpa = 84.0\n[press]\nmax_indentation_mm = 0.5\n";
+    warned("reported", silicone, more, &["report", "--out", folder]);
+    let page = fs::read_dir(&out)
+        .expect("the report")
+        .filter_map(|entry| fs::read_to_string(entry.expect("an entry").path()).ok())
+        .collect::<String>();
+    assert!(page.contains("beyond 2.00 up to which the constants of RTV615 were fitted"));
+}
+
 /// A thin, stretched wall is a membrane; an unstretched one never.
 #[test]
 fn auto_says_what_it_took() {

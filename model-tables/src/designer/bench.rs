@@ -2,9 +2,9 @@
 
 use super::warn;
 use crate::design_file::{Calibration, DesignFile};
-use crate::material::Hyperelastic;
 use crate::material::preset::Preset;
-use crate::press::{ModelError, Press};
+use crate::press::ModelError;
+use crate::rung::Rung;
 use std::path::Path;
 
 /// The depth to press to, metres, for what the bench's stage reads, millimetres: from first touch on.
@@ -59,37 +59,30 @@ pub(super) fn about(preset: &Preset) -> String {
     )
 }
 
+/// Points of a membrane's meridian at which its strain is looked at.
+const POINTS: usize = 61;
 /// Warns when the state at `depth` metres (0 is rest) leaves the range of strain that the material was fitted in.
-pub(super) fn warn_of_strain<L: Hyperelastic, const S: usize>(
-    file: &Path,
-    design: &DesignFile,
-    press: &mut Press<L, S>,
-    depth: f64,
-) {
-    const POINTS: usize = 61;
-    let Ok(meridian) = press.profile(depth, POINTS) else {
-        return;
-    };
-    let stretches = meridian.map(|point| [point.meridional_stretch, point.hoop_stretch]);
-    if let Some(reason) = beyond_strain(design, stretches, depth) {
+pub(super) fn warn_of_strain(file: &Path, design: &DesignFile, rung: &mut Rung, depth: f64) {
+    if let Some(reason) = beyond_strain(design, rung, depth) {
         warn(file, &reason);
     }
 }
 
-/// What to say when the stretches along and around at `depth` metres leave the range of strain that the material was fitted in.
-pub(super) fn beyond_strain(
-    design: &DesignFile,
-    stretches: impl Iterator<Item = [f64; 2]>,
-    depth: f64,
-) -> Option<String> {
+/// What to say when the state at `depth` metres (0 is rest) leaves the range of strain that the material was fitted in.
+pub(super) fn beyond_strain(design: &DesignFile, rung: &mut Rung, depth: f64) -> Option<String> {
     let preset = Preset::of(&design.material)?;
     let most = preset.largest_invariant()?;
-    let reached = stretches
-        .map(|stretches| {
-            let [a, b] = stretches.map(|stretch| stretch * stretch);
-            a + b + 1.0 / (a * b) - 3.0
-        })
-        .fold(0.0, f64::max);
+    let reached = match rung {
+        Rung::Membrane(press) => press
+            .profile(depth, POINTS)
+            .ok()?
+            .map(|point| {
+                let [a, b] = [point.meridional_stretch, point.hoop_stretch].map(|stretch| stretch * stretch);
+                a + b + 1.0 / (a * b) - 3.0
+            })
+            .fold(0.0, f64::max),
+        Rung::Solid(press) => press.largest_invariant(depth).ok()? - 3.0,
+    };
     (reached > most).then(|| {
         format!(
             "at indentation {} mm the stretches reach I1 - 3 = {reached:.2}, beyond {most:.2} up to which the constants of \

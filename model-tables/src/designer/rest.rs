@@ -7,7 +7,7 @@ use crate::design_file::DesignFile;
 use crate::membrane::TensionField;
 use crate::press::{ModelError, Press};
 use crate::rest::Branch;
-use crate::rung::Kind;
+use crate::rung::{Kind, Rung};
 use crate::solid;
 use crate::solid::mesh::Elements;
 use std::path::Path;
@@ -37,7 +37,6 @@ pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
     if press.rest_stability().is_stable() {
         warn_of_instability(file, "at the end of the press", press.stability());
     }
-    bench::warn_of_strain(file, &design_file, &mut press, 0.0);
     let mut rows = Rows::new(COLUMNS);
     rows.push(vec![
         Cell::Number(calibration.pressure_read(rest.pressure) * 1e-3),
@@ -57,6 +56,7 @@ pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
             "two rest states: this is the more stretched, the other has a pole stretch of {other:.6}"
         )],
     };
+    bench::warn_of_strain(file, &design_file, &mut Rung::Membrane(Box::new(press)), 0.0);
     notes.extend(model.note);
     notes.extend(bench::caution(&design_file));
     Ok(Answer { rows, notes })
@@ -84,6 +84,7 @@ fn solid(
         Cell::Number(calibration.indentation_read(limit.indentation) * 1e3),
         Cell::word(limit.ends_by.word()),
     ]);
+    bench::warn_of_strain(file, design_file, &mut Rung::Solid(Box::new(press)), 0.0);
     Ok(Answer {
         rows,
         notes: model

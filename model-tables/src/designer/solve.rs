@@ -5,7 +5,7 @@ use super::rows::{Cell, Rows};
 use super::{Answer, Field, Refusal, bench, finite, read, refuse_plain, warn, warn_of_instability};
 use crate::design_file::DesignFile;
 use crate::press::{ModelError, Press};
-use crate::rung::Kind;
+use crate::rung::{Kind, Rung};
 use crate::solid;
 use crate::solid::mesh::Elements;
 use crate::stability::Margin;
@@ -75,7 +75,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     if let Some((indentation, margin)) = worst {
         warn_of_instability(file, &format!("at indentation {indentation} mm"), margin);
     }
-    bench::warn_of_strain(file, &design_file, &mut press, deepest);
+    let mut rung = Rung::Membrane(Box::new(press));
+    bench::warn_of_strain(file, &design_file, &mut rung, deepest);
     let mut rows = Rows::new(COLUMNS);
     for (state, &asked) in states.iter().flatten().zip(&arguments.indentation_mm) {
         rows.push(vec![
@@ -108,11 +109,12 @@ fn solid(
     let refuse = |error: ModelError| Refusal::about(&arguments.design, &bench::as_read(calibration, error));
     let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
     let mut rows = Rows::new(COLUMNS);
+    let mut deepest = 0.0_f64;
     // States on the way serve all that follow, in whatever order.
     for &asked in &arguments.indentation_mm {
-        let state = press
-            .at_indentation(bench::depth(calibration, asked))
-            .map_err(refuse)?;
+        let depth = bench::depth(calibration, asked);
+        let state = press.at_indentation(depth).map_err(refuse)?;
+        deepest = deepest.max(depth);
         rows.push(vec![
             Cell::Number(asked),
             Cell::Number(calibration.pressure_read(state.pressure) * 1e-3),
@@ -127,6 +129,8 @@ fn solid(
             Cell::Empty,
         ]);
     }
+    let mut rung = Rung::Solid(Box::new(press));
+    bench::warn_of_strain(&arguments.design, design_file, &mut rung, deepest);
     Ok(Answer {
         rows,
         notes: model.note.iter().cloned().collect(),

@@ -6,8 +6,9 @@ use super::super::drawing::{
 use super::super::linear::{Axis, Panel};
 use super::super::rows::plain;
 use super::cost::Cost;
-use super::findings::{Findings, Meridian, Pressed, Said, Station};
+use super::findings::{Findings, Meridian, Said};
 use super::words::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit};
+use crate::rung::state::{Pressed, Station};
 
 const SIZE: [f64; 2] = [420.0, 330.0];
 const LEFT: f64 = 64.0;

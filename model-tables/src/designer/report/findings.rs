@@ -9,10 +9,11 @@ use crate::actuator::{Actuator, Blocked};
 use crate::design::{Design, RestBy};
 use crate::design_file::{Calibration, DesignFile};
 use crate::generate::{Generated, from_design};
-use crate::membrane::{TensionField, Zone};
+use crate::membrane::TensionField;
 use crate::press::{Limit, ModelError, Press};
 use crate::rest::Branch;
 use crate::rung::choice::FINE;
+use crate::rung::state::{Pressed, Rest, Station};
 use crate::rung::{Kind, Rung};
 use crate::state::Wrinkling;
 use crate::units::PressureRise;
@@ -55,44 +56,13 @@ pub(super) struct Findings {
     pub(super) warnings: Vec<String>,
 }
 
-/// The rest state.
-pub(super) struct Rest {
-    pub(super) pressure: f64,
-    pub(super) pole_stretch: f64,
-    pub(super) edge_radius: f64,
-    pub(super) height: f64,
-    pub(super) volume: f64,
-}
-
-/// A pressed state.
-#[derive(Clone, Copy)]
-pub(super) struct Pressed {
-    pub(super) indentation: f64,
-    pub(super) pressure_rise: f64,
-    pub(super) force: f64,
-    pub(super) contact_radius: f64,
-}
-
 /// The meridian of a state.
 pub(super) struct Meridian {
     pub(super) indentation: f64,
     pub(super) force: f64,
+    /// Thickness of the undeformed wall, metres.
+    pub(super) wall: f64,
     pub(super) points: Vec<Station>,
-}
-
-/// A point of a meridian: the middle of the wall.
-#[derive(Clone, Copy)]
-pub(super) struct Station {
-    pub(super) parameter: f64,
-    pub(super) radius: f64,
-    pub(super) height: f64,
-    pub(super) angle: f64,
-    /// Deformed thickness of the wall, metres.
-    pub(super) thickness: f64,
-    pub(super) stretches: [f64; 2],
-    /// Along and around, newtons per metre.
-    pub(super) tensions: [f64; 2],
-    pub(super) in_contact: bool,
 }
 
 /// What the tables say of a state.
@@ -131,7 +101,7 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     let states = (0..=STATES)
         .map(|k| {
             let part = k as f64 / STATES as f64;
-            pressed(&mut rung, deepest * part * libm::sqrt(part))
+            rung.at_indentation(deepest * part * libm::sqrt(part))
         })
         .collect::<Result<Vec<_>, _>>()
         .map_err(refuse)?;
@@ -153,11 +123,11 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     } else {
         Vec::new()
     };
-    let mut warnings = warnings(&file, &mut rung, &meridians, limit, deepest);
+    let mut warnings = warnings(&file, &mut rung, limit, deepest);
     warnings.extend(bench::caution(&file));
     Ok(Findings {
         actuator: actuator(&file, &design),
-        rest: rest(&rung),
+        rest: rung.rest(),
         model: kind,
         note,
         limit,
@@ -173,91 +143,12 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     })
 }
 
-fn rest(rung: &Rung) -> Rest {
-    match rung {
-        Rung::Membrane(press) => {
-            let rest = press.rest();
-            Rest {
-                pressure: rest.pressure,
-                pole_stretch: rest.pole_stretch,
-                edge_radius: rest.edge_radius,
-                height: rest.height,
-                volume: rest.volume,
-            }
-        }
-        Rung::Solid(press) => {
-            let rest = press.rest();
-            Rest {
-                pressure: rest.pressure,
-                pole_stretch: rest.pole_stretch,
-                edge_radius: rest.edge_radius,
-                height: rest.height,
-                volume: rest.volume,
-            }
-        }
-    }
-}
-
-fn pressed(rung: &mut Rung, indentation: f64) -> Result<Pressed, ModelError> {
-    Ok(match rung {
-        Rung::Membrane(press) => {
-            let state = press.at_indentation(indentation)?;
-            Pressed {
-                indentation,
-                pressure_rise: state.pressure_rise,
-                force: state.force,
-                contact_radius: state.contact_radius,
-            }
-        }
-        Rung::Solid(press) => {
-            let state = press.at_indentation(indentation)?;
-            Pressed {
-                indentation,
-                pressure_rise: state.pressure_rise,
-                force: state.force,
-                contact_radius: state.contact_radius,
-            }
-        }
-    })
-}
-
 fn meridian(rung: &mut Rung, design: &Design, indentation: f64) -> Result<Meridian, ModelError> {
-    let force = rung.contact_at(indentation)?.force;
-    let wall = design.membrane.thickness;
-    let points = match rung {
-        Rung::Membrane(press) => press
-            .profile(indentation, POINTS)?
-            .map(|point| Station {
-                parameter: point.parameter,
-                radius: point.radius,
-                height: point.height,
-                angle: point.angle,
-                // Incompressible.
-                thickness: wall / (point.meridional_stretch * point.hoop_stretch),
-                stretches: [point.meridional_stretch, point.hoop_stretch],
-                tensions: [point.meridional_tension, point.hoop_tension],
-                in_contact: point.zone == Zone::Contact,
-            })
-            .collect(),
-        Rung::Solid(press) => press
-            .profile(indentation, POINTS)?
-            .into_iter()
-            .map(|point| Station {
-                parameter: point.parameter,
-                radius: point.radius,
-                height: point.height,
-                angle: point.angle,
-                thickness: wall * point.thickness_stretch,
-                stretches: [point.meridional_stretch, point.hoop_stretch],
-                tensions: [point.meridional_tension, point.hoop_tension],
-                in_contact: point.in_contact,
-            })
-            .collect(),
-    };
     Ok(Meridian {
         indentation,
-        force,
-        points,
+        force: rung.contact_at(indentation)?.force,
+        wall: design.membrane.thickness,
+        points: rung.profile(indentation, POINTS)?,
     })
 }
 
@@ -352,13 +243,7 @@ fn actuator(file: &DesignFile, design: &Design) -> Vec<(f64, Blocked)> {
         .collect()
 }
 
-fn warnings(
-    file: &DesignFile,
-    rung: &mut Rung,
-    meridians: &[Meridian],
-    limit: Limit,
-    deepest: f64,
-) -> Vec<String> {
+fn warnings(file: &DesignFile, rung: &mut Rung, limit: Limit, deepest: f64) -> Vec<String> {
     let mut lines = Vec::new();
     if let Rung::Membrane(press) = rung {
         match press.branch() {
@@ -399,10 +284,7 @@ fn warnings(
             _ => {}
         }
     }
-    lines.extend(meridians.last().and_then(|meridian| {
-        let stretches = meridian.points.iter().map(|point| point.stretches);
-        bench::beyond_strain(file, stretches, meridian.indentation)
-    }));
+    lines.extend(bench::beyond_strain(file, rung, deepest));
     let share = deepest / limit.indentation;
     if share > 0.9 && file.max_indentation_mm.is_some() {
         lines.push(format!(

@@ -1,8 +1,9 @@
 //! Pressed shapes: sections through the axis, wall and all, to one scale.
 
 use super::super::drawing::{Anchor, BLACK, BLUE, Drawing, GREY};
-use super::findings::{Findings, Meridian, Station};
+use super::findings::{Findings, Meridian};
 use super::words::{MM, NEWTON};
+use crate::rung::state::Station;
 
 const WIDTH: f64 = 300.0;
 /// From the axis to the widest place of any state, pixels.
@@ -20,10 +21,12 @@ const BARS: [f64; 10] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 /// A picture a state.
 pub(super) fn draw(found: &Findings) -> Vec<String> {
     let outer = || {
-        found
-            .meridians
-            .iter()
-            .flat_map(|meridian| meridian.points.iter().map(|point| surface(point, 0.5)))
+        found.meridians.iter().flat_map(|meridian| {
+            meridian
+                .points
+                .iter()
+                .map(|point| surface(point, 0.5 * meridian.wall))
+        })
     };
     let widest = outer().map(|[r, _]| r).fold(0.0, f64::max);
     let tallest = outer().map(|[_, z]| z).fold(0.0, f64::max);
@@ -36,9 +39,9 @@ pub(super) fn draw(found: &Findings) -> Vec<String> {
         .collect()
 }
 
-/// A point of the wall, `part` of its thickness outside its middle, metres.
-fn surface(point: &Station, part: f64) -> [f64; 2] {
-    let shift = part * point.thickness;
+/// A point of the wall that was `outside` of its middle, metres.
+fn surface(point: &Station, outside: f64) -> [f64; 2] {
+    let shift = outside * point.thickness_stretch;
     [
         point.radius + shift * libm::sin(point.angle),
         point.height + shift * libm::cos(point.angle),
@@ -68,7 +71,7 @@ fn one(meridian: &Meridian, scale: f64, base: f64) -> String {
     // Both halves: from the left rim over the pole to the right, cut off at the base.
     let all = |part: f64| -> Vec<[f64; 2]> {
         let at = |side: f64, point: &Station| {
-            let [r, z] = surface(point, part);
+            let [r, z] = surface(point, part * meridian.wall);
             [centre + side * scale * r, base - scale * z.max(0.0)]
         };
         let left = meridian.points.iter().rev().map(|point| at(-1.0, point));
