@@ -73,7 +73,8 @@ pub(super) fn findings(file: &DesignFile, data: &Data, fit: &Fit) -> Vec<String>
         let left = fit.after[k].map_or(0.0, |misfit| misfit.rms_percent());
         if fit.systematic[k].is_none() && left > LARGE {
             lines.push(format!(
-                "the model hardly explains the {name}: {left:.0} % of the largest is left, more than the noise of a bench, in data                  too few to see an order; try other parameters or --from-data"
+                "the model hardly explains the {name}: {left:.0} % of the largest is left, more than the noise of a bench, in data \
+                 too few to see an order; try other parameters or --from-data"
             ));
         }
         if let Some(order) = fit.systematic[k]
