@@ -1,6 +1,7 @@
 //! What the tests across the crates share: documents, whose figures they hold to what the code gives, and the
 //! simulated flash.
 
+pub mod budget;
 pub mod nor_flash;
 pub mod world;
 

@@ -1,28 +1,7 @@
 //! The figures of the README that the host can compute.
 
-use host_tests::{assert_readme_says, design};
+use host_tests::assert_readme_says;
 use micromath::F32Ext;
-use model_tables::generate;
-
-#[test]
-fn tables_of_the_shipped_designs() {
-    for name in [
-        "index-fingertip",
-        "paper-prestretched",
-        "skin-analogue",
-        "skin-light-touch",
-    ] {
-        let generated = generate::from_design_file(&design(name)).expect("a shipped design");
-        let (tables, certificate) = (&generated.certified.tables, &generated.certified.certificate);
-        assert_readme_says(&format!(
-            "| {name} | {} | {} | {:.3} | {:.3} |",
-            tables.bytes(),
-            certificate.inputs,
-            certificate.force.of_reading.max,
-            certificate.indentation.of_reading.max,
-        ));
-    }
-}
 
 /// Largest relative error of `of` against `truth` over 1/1000 ..= 1, percent.
 fn largest_error(of: impl Fn(f32) -> f32, truth: impl Fn(f64) -> f64) -> f64 {

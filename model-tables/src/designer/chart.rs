@@ -1,7 +1,8 @@
-//! `designer chart`: speed against accuracy of every method, and the ladder of models, as SVG and CSV.
+//! `designer chart`: speed against accuracy of every method, and the ladder of models, as SVG and CSV; or what tables cost.
 
 mod ladder;
 mod speed;
+mod tables;
 
 use super::output::write_all;
 use super::rows::{Cell, Rows};
@@ -21,6 +22,9 @@ pub(super) struct Arguments {
     /// The designs: paper, finger, skin [default: all three]
     #[arg(value_parser = ["paper", "finger", "skin"])]
     designs: Vec<String>,
+    /// What the tables cost over designs and accuracies instead: a page and CSV
+    #[arg(long, conflicts_with = "designs")]
+    tables: bool,
     /// The folder to write to; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "target/chart")]
     out: PathBuf,
@@ -34,18 +38,11 @@ struct Measured {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
-    let chosen: Vec<Contestant> = DESIGNS
-        .into_iter()
-        .filter(|d| arguments.designs.is_empty() || arguments.designs.iter().any(|name| name == d.name))
-        .collect();
-    let measured = chosen.iter().map(measure).collect::<Result<Vec<_>, _>>()?;
-    let contents: Vec<(&str, Vec<u8>)> = vec![
-        ("speed-accuracy.svg", speed::svg(&measured).into_bytes()),
-        ("speed-accuracy.csv", results_csv(&measured).into_bytes()),
-        ("ladder.svg", ladder::svg(&measured).into_bytes()),
-        ("ladder.csv", ladder_csv(&measured).into_bytes()),
-        ("sweeps.csv", sweeps_csv(&measured).into_bytes()),
-    ];
+    let contents = if arguments.tables {
+        tables::contents()?
+    } else {
+        methods(arguments)?
+    };
     write_all(&arguments.out, &contents)?;
     let mut rows = Rows::new(COLUMNS);
     for (name, content) in &contents {
@@ -58,6 +55,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         rows,
         notes: Vec::new(),
     })
+}
+
+/// The methods of solving, and the ladder of models.
+fn methods(arguments: &Arguments) -> Result<Vec<(&'static str, Vec<u8>)>, Refusal> {
+    let chosen: Vec<Contestant> = DESIGNS
+        .into_iter()
+        .filter(|d| arguments.designs.is_empty() || arguments.designs.iter().any(|name| name == d.name))
+        .collect();
+    let measured = chosen.iter().map(measure).collect::<Result<Vec<_>, _>>()?;
+    Ok(vec![
+        ("speed-accuracy.svg", speed::svg(&measured).into_bytes()),
+        ("speed-accuracy.csv", results_csv(&measured).into_bytes()),
+        ("ladder.svg", ladder::svg(&measured).into_bytes()),
+        ("ladder.csv", ladder_csv(&measured).into_bytes()),
+        ("sweeps.csv", sweeps_csv(&measured).into_bytes()),
+    ])
 }
 
 fn measure(contestant: &Contestant) -> Result<Measured, Refusal> {

@@ -76,8 +76,8 @@ impl Shape {
     }
 }
 
-/// Instructions from a pressure rise to both outputs and the flag, inlined, as rustc makes them for the chip (counted from its
-/// listings; the test of the image counts those of the default design as they run).
+/// Instructions from a pressure rise to both outputs and the flag, inlined, as rustc makes them for the chip: counted from its
+/// listings, without what the code around them makes it spill.
 pub(super) fn instructions(layout: &Layout) -> u32 {
     let maximum = i64::from(layout.maximum);
     let held = if power_of_two(layout.maximum) == maximum {
