@@ -1,21 +1,29 @@
 //! Pressure rise -> force and indentation, through the tables of the design.
 
 use crate::design::Design;
-use crate::report::{Measurement, Sigma, Warnings};
-use crate::touch::Touch;
-use model_tables::units::PressureRise;
+use crate::report::Warnings;
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-/// Force and indentation at a rise; 1-sigma and touch are left to whoever knows the zero. Below zero both are 0; below [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) that is flagged.
+/// What the tables say of a rise.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Contact {
+    /// Force on the fingertip.
+    pub force: Micronewtons,
+    /// Indentation of its pole.
+    pub indentation: Nanometres,
+    /// What qualifies both.
+    pub warnings: Warnings,
+}
+
+/// Force and indentation at a rise, with what the tables add to the warnings. Below zero both are 0; below
+/// [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) that is flagged.
 #[inline]
-pub fn contact<D: Design>(rise: PressureRise, warnings: Warnings) -> Measurement {
+pub fn contact<D: Design>(rise: PressureRise, warnings: Warnings) -> Contact {
     let lowest_rest = const { D::CONSTANTS.transducer.lowest_rest(D::PRESSURE_FRACTION_BITS) };
     let reading = D::lookup(rise);
-    Measurement {
-        pressure_rise: rise,
+    Contact {
         force: reading.force,
         indentation: reading.indentation,
-        sigma: Sigma::default(),
-        touch: Touch::Unknown,
         warnings: warnings
             .and(Warnings::SATURATED.when(reading.saturated))
             .and(Warnings::BELOW_ZERO.when(rise < lowest_rest)),
@@ -28,7 +36,7 @@ mod tests {
     use crate::test_design::{FORCE_END, INDENTATION_END, Linear, RISE_END};
     use proptest::prelude::*;
 
-    fn at(rise: i32) -> Measurement {
+    fn at(rise: i32) -> Contact {
         contact::<Linear>(PressureRise(rise), Warnings::NONE)
     }
 

@@ -12,6 +12,9 @@ pub trait Design {
     /// `k`: pressures are counted in `1 / 2^k` pascal, 0 to 16.
     const PRESSURE_FRACTION_BITS: u32;
 
+    /// The last rise that the tables cover; beyond it they are saturated.
+    const LAST_RISE: PressureRise;
+
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     fn lookup(rise: PressureRise) -> Reading;
 }

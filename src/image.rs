@@ -21,6 +21,8 @@ impl Design for ImageDesign {
 
     const PRESSURE_FRACTION_BITS: u32 = TABLES.layout.pressure_fraction_bits;
 
+    const LAST_RISE: PressureRise = PressureRise(TABLES.layout.maximum);
+
     #[inline]
     fn lookup(rise: PressureRise) -> Reading {
         TABLES.lookup(rise)

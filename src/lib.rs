@@ -20,6 +20,7 @@ pub mod filter;
 pub mod fluid;
 pub mod image;
 pub mod lookup_sweep;
+pub mod lookup_ways;
 pub mod outbox;
 pub mod pipeline;
 pub mod pressure;

@@ -18,7 +18,7 @@ mod probe {
     use fingertip::design::Design;
     use fingertip::image::ImageDesign;
     use fingertip::lookup_sweep;
-    use fingertip::report::{Report, Warnings};
+    use fingertip::report::{Measurement, Report, Warnings};
     use fingertip::telemetry::{Frame, Hello, Message, encode};
     use panic_probe as _;
 
@@ -35,9 +35,16 @@ mod probe {
         } = Board::take();
         let mut sequence = 0_u16;
         for rise in lookup_sweep::inputs::<ImageDesign>() {
+            let contact = contact::<ImageDesign>(rise, Warnings::NONE);
             let report = Report {
                 time: clock.now(),
-                outcome: Ok(contact::<ImageDesign>(rise, Warnings::NONE)),
+                outcome: Ok(Measurement {
+                    pressure_rise: rise,
+                    force: contact.force,
+                    indentation: contact.indentation,
+                    warnings: contact.warnings,
+                    ..Measurement::default()
+                }),
             };
             let message = Message::Report {
                 report,

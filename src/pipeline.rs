@@ -148,11 +148,16 @@ impl<D: Design> Pipeline<D> {
             .and(self.fluid.suspicions())
             .and(Warnings::ZERO_AGED.when(aged && verified))
             .and(Warnings::TEMPERATURE.when(missed > Self::THRESHOLDS.touch.0));
-        let mut measurement = contact::<D>(rise, warnings);
-        measurement.touch = touch;
+        let contact = contact::<D>(rise, warnings);
         let sigma = Self::UNCERTAINTY.rise(verified, drifted, missed);
-        measurement.sigma = through_tables::<D>(&measurement, sigma);
-        Ok(measurement)
+        Ok(Measurement {
+            pressure_rise: rise,
+            force: contact.force,
+            indentation: contact.indentation,
+            sigma: through_tables::<D>(rise, &contact, sigma),
+            touch,
+            warnings: contact.warnings,
+        })
     }
 
     /// What was measured over the old zero is void.

@@ -36,6 +36,8 @@ impl Design for Linear {
 
     const PRESSURE_FRACTION_BITS: u32 = 8;
 
+    const LAST_RISE: PressureRise = PressureRise(RISE_END);
+
     fn lookup(rise: PressureRise) -> Reading {
         let held = rise.0.clamp(0, RISE_END);
         Reading {

@@ -1,9 +1,10 @@
 //! One standard deviation of the pressure rise, and through the tables of force and indentation.
 
+use crate::contact::Contact;
 use crate::counts::BLOCK_LENGTH;
 use crate::design::Design;
 use crate::pressure::Pressure;
-use crate::report::{Measurement, Sigma};
+use crate::report::Sigma;
 use model_tables::constants::{DesignConstants, TransducerKind};
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
@@ -64,21 +65,25 @@ fn hypotenuse(a: i32, b: i32) -> i32 {
 }
 
 /// The same through the tables: what they give one deviation further on, or back at their end.
-#[inline]
-pub fn through_tables<D: Design>(reading: &Measurement, sigma: PressureRise) -> Sigma {
-    let rise = reading.pressure_rise;
-    let mut other = D::lookup(PressureRise(rise.0.max(0).saturating_add(sigma.0)));
-    if other.saturated {
-        other = D::lookup(PressureRise(rise.0.saturating_sub(sigma.0)));
-    }
+// On its own: woven into the reading's own lookup it takes the registers that this one needs.
+#[inline(never)]
+pub fn through_tables<D: Design>(rise: PressureRise, at: &Contact, sigma: PressureRise) -> Sigma {
+    let rise = rise.0;
+    let above = rise.max(0).saturating_add(sigma.0);
+    let other = if above > D::LAST_RISE.0 {
+        rise.saturating_sub(sigma.0)
+    } else {
+        above
+    };
+    let other = D::lookup(PressureRise(other));
     Sigma {
         pressure_rise: sigma,
-        force: Micronewtons(other.force.0.saturating_sub(reading.force.0).saturating_abs()),
+        force: Micronewtons(other.force.0.saturating_sub(at.force.0).saturating_abs()),
         indentation: Nanometres(
             other
                 .indentation
                 .0
-                .saturating_sub(reading.indentation.0)
+                .saturating_sub(at.indentation.0)
                 .saturating_abs(),
         ),
     }
@@ -91,6 +96,10 @@ mod tests {
     use crate::report::Warnings;
     use crate::test_design::{Linear, RISE_END};
     use proptest::prelude::*;
+
+    fn beside(rise: PressureRise, sigma: PressureRise) -> Sigma {
+        through_tables::<Linear>(rise, &contact::<Linear>(rise, Warnings::NONE), sigma)
+    }
 
     #[test]
     fn noise_is_what_filtering_leaves_and_resolution_what_steps_leave() {
@@ -105,10 +114,9 @@ mod tests {
     #[test]
     fn at_the_end_of_the_tables_it_is_taken_from_below() {
         let rise = PressureRise(RISE_END - 5);
-        let sigma = through_tables::<Linear>(&contact::<Linear>(rise, Warnings::NONE), PressureRise(700));
+        let sigma = beside(rise, PressureRise(700));
         assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700));
-        let below = contact::<Linear>(PressureRise(-9_000), Warnings::NONE);
-        let below = through_tables::<Linear>(&below, PressureRise(700));
+        let below = beside(PressureRise(-9_000), PressureRise(700));
         assert_eq!(below.force.0, 700);
     }
 
@@ -122,8 +130,7 @@ mod tests {
 
         #[test]
         fn nothing_overflows(rise in any::<i32>(), sigma in 0..=i32::MAX, drift in 0..=i32::MAX) {
-            let reading = contact::<Linear>(PressureRise(rise), Warnings::NONE);
-            let sigma = through_tables::<Linear>(&reading, PressureRise(sigma));
+            let sigma = beside(PressureRise(rise), PressureRise(sigma));
             prop_assert!(sigma.force.0 >= 0 && sigma.indentation.0 >= 0);
             prop_assert!(hypotenuse(drift, rise.saturating_abs()) >= drift);
         }

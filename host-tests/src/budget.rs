@@ -84,7 +84,7 @@ impl Budget {
         let mut terms = Vec::new();
         if let Some(model) = &generated.model_error {
             terms.push(of_reading(
-                "model, against a mesh twice as fine",
+                "model, against a finer mesh",
                 "measured",
                 model.force_percent,
                 model.indentation_percent,

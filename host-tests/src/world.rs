@@ -24,6 +24,7 @@ impl Design for WithAbsolutePart {
         constants
     };
     const PRESSURE_FRACTION_BITS: u32 = ImageDesign::PRESSURE_FRACTION_BITS;
+    const LAST_RISE: PressureRise = ImageDesign::LAST_RISE;
 
     fn lookup(rise: PressureRise) -> Reading {
         ImageDesign::lookup(rise)

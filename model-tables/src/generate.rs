@@ -6,7 +6,7 @@
 mod certify;
 mod design;
 mod emit;
-mod minimax;
+pub(crate) mod minimax;
 mod owned;
 mod quantise;
 mod search;
@@ -58,7 +58,8 @@ pub struct Certified {
 pub enum NoTables {
     /// Even the largest tables tried miss the accuracy.
     Inaccurate {
-        /// Their error as a multiple of what is allowed.
+        /// Their error as a multiple of what is allowed; where it is below 1 it is that of real coefficients, which do not
+        /// round.
         share_of_allowed: f64,
     },
     /// The pressure rise does not fit 31 bits in the unit that the accuracy asks for.
@@ -240,6 +241,11 @@ fn fraction_bits(curve: &Curve, end: Contact, accuracy: &Accuracy, resolution: f
 impl std::fmt::Display for NoTables {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Self::Inaccurate { share_of_allowed } if *share_of_allowed < 1.0 => write!(
+                f,
+                "no tables of integers keep within [accuracy], though real coefficients would ({share_of_allowed:.3} times \
+                 the error that it allows): allow a little more, or cover less with press.max_indentation_mm"
+            ),
             Self::Inaccurate { share_of_allowed } => write!(
                 f,
                 "the largest tables tried have {share_of_allowed:.3} times the error that [accuracy] allows: \

@@ -77,6 +77,7 @@ pub mod fit;
 pub mod generate;
 pub mod history;
 pub mod inflation;
+pub mod lookups;
 pub mod material;
 pub mod membrane;
 pub mod mesh;

@@ -101,6 +101,32 @@ impl Rung {
         })
     }
 
+    /// The same design and model on a finer mesh, and that mesh in words: a membrane's is twice as fine, a solid's has an element
+    /// more through the wall and 8 for 5 along it, as [`choice::REFINED`] to [`choice::FINE`].
+    ///
+    /// # Errors
+    /// [`ModelError`] where it has no rest state.
+    pub fn finer(&self, file: &DesignFile) -> Result<(Self, String), ModelError> {
+        let mut design = file.design();
+        match self {
+            Self::Membrane(_) => {
+                if file.model == ModelSection::Auto {
+                    design.membrane = mid_surface(&design.membrane);
+                }
+                let press = press::Press::with_resolution(&design, TensionField::Relaxed, press::FINER)?;
+                Ok((Self::Membrane(Box::new(press)), "a mesh twice as fine".to_owned()))
+            }
+            Self::Solid(press) => {
+                let Elements { through, along } = press.elements();
+                let kind = Kind::Solid(Elements {
+                    through: through + 1,
+                    along: (8 * along).div_ceil(5),
+                });
+                Ok((Self::of(kind, &design)?, kind.to_string()))
+            }
+        }
+    }
+
     /// Gauge pressure at rest, pascals.
     pub fn rest_pressure(&self) -> f64 {
         self.rest().pressure

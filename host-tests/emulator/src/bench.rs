@@ -8,6 +8,7 @@ use fingertip::command::{self, Request};
 use rigless::emulator::{Access, AccessKind, Driver, Hit, Host, Settled, Start, Stop, Watch};
 use rigless::session::{Reset, Session};
 use rigless::time::VirtualNanos;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::ControlFlow;
 
@@ -39,6 +40,9 @@ pub struct Moment {
     pub clock_zero: f64,
 }
 
+/// Addresses, each with the instructions retired whenever the core arrived there.
+pub type Arrivals = BTreeMap<u64, Vec<u64>>;
+
 /// What a run leaves behind.
 #[derive(Debug)]
 pub struct Outcome<L> {
@@ -51,6 +55,8 @@ pub struct Outcome<L> {
     /// The instructions of each report, in order: of one call of each function asked for, from its first to the one
     /// that returns, those of interrupts taken meanwhile included.
     pub calls: Vec<u64>,
+    /// When the core arrived at each address watched.
+    pub arrivals: Arrivals,
     /// Resets after power-on, in words.
     pub resets: Vec<String>,
     /// What the image asked of the part that the emulator does not model, in words. Empty, or the run proves
@@ -97,6 +103,21 @@ pub fn run<L: Listener>(
     counted: &[(&str, &str)],
     listener: L,
 ) -> Result<Outcome<L>, BenchError> {
+    run_watching(image, plant, duration, counted, &[], listener)
+}
+
+/// The same, and notes when the core arrives at each address in `watched`.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_watching<L: Listener>(
+    image: &Image,
+    plant: Plant,
+    duration: f64,
+    counted: &[(&str, &str)],
+    watched: &[u64],
+    listener: L,
+) -> Result<Outcome<L>, BenchError> {
     let counted = counted
         .iter()
         .map(|(owner, name)| -> Result<Counted, ImageError> {
@@ -109,13 +130,17 @@ pub fn run<L: Listener>(
     let elf = rigless::image::Image::new(image.path(), image.bytes().to_vec(), None).map_err(emulator)?;
     let board = Box::new(Nucleo::new(&plant.transducer()).map_err(emulator)?);
     let mut session = Session::new(board, 0, VirtualNanos(LISTEN)).map_err(emulator)?;
-    for address in counter.addresses() {
+    let mut addresses: Vec<u64> = counter.addresses().chain(watched.iter().copied()).collect();
+    addresses.sort_unstable();
+    addresses.dedup();
+    for address in addresses {
         session.watch(Watch::Instruction(address));
     }
     let driver = Bench {
         plant,
         listener,
         counter,
+        arrivals: watched.iter().map(|&address| (address, Vec::new())).collect(),
         clock_zero: None,
         resets: 0,
         last_stop: 0.0,
@@ -135,6 +160,7 @@ pub fn run<L: Listener>(
         time,
         instructions,
         calls: finished.driver.counter.calls,
+        arrivals: finished.driver.arrivals,
         resets: finished.session.resets().iter().map(describe).collect(),
         gaps: gaps(&finished.session),
     })
@@ -174,6 +200,7 @@ struct Bench<L> {
     plant: Plant,
     listener: L,
     counter: CallCounter,
+    arrivals: Arrivals,
     clock_zero: Option<f64>,
     resets: usize,
     /// Milliseconds.
@@ -240,7 +267,12 @@ impl<L: Listener> Driver<Nucleo> for Bench<L> {
                 session.board_mut().set_transducer(output);
             }
             Settled::Access { access, .. } => self.note_clock(access),
-            Settled::Hit(hit) => self.counter.hit(hit),
+            Settled::Hit(hit) => {
+                if let Some(arrivals) = self.arrivals.get_mut(&hit.address) {
+                    arrivals.push(hit.instruction_count);
+                }
+                self.counter.hit(hit);
+            }
             _ => {}
         }
     }

@@ -44,6 +44,8 @@ pub enum ImageError {
     Unreadable(PathBuf, std::io::Error),
     /// The file is not an image.
     Malformed(PathBuf, object::Error),
+    /// Its debug information cannot be read.
+    Debug(String),
     /// No function, or several, of this name.
     Symbol {
         /// The name looked for.
@@ -65,6 +67,7 @@ impl fmt::Display for ImageError {
             Self::Missing { binary } => write!(f, "cargo built no binary `{binary}`"),
             Self::Unreadable(path, error) => write!(f, "cannot read {}: {error}", path.display()),
             Self::Malformed(path, error) => write!(f, "{} is not an image: {error}", path.display()),
+            Self::Debug(why) => write!(f, "the image's debug information cannot be read: {why}"),
             Self::Symbol { name, found } => {
                 write!(f, "the image has {found} functions called `{name}`, not one")
             }
@@ -276,11 +279,11 @@ impl Image {
         Ok(returns)
     }
 
-    fn file(&self) -> Result<object::File<'_>, ImageError> {
+    pub(crate) fn file(&self) -> Result<object::File<'_>, ImageError> {
         object::File::parse(&*self.elf).map_err(|error| self.malformed(error))
     }
 
-    fn malformed(&self, error: object::Error) -> ImageError {
+    pub(crate) fn malformed(&self, error: object::Error) -> ImageError {
         ImageError::Malformed(self.path.clone(), error)
     }
 }

@@ -4,18 +4,17 @@ use super::{Certified, NoTables, emit, tables};
 use crate::constants::{Transducer, TransducerKind};
 use crate::curve::{Contact, Curve};
 use crate::design_file::{
-    DataCurve, DesignFile, DesignFileError, ModelSection, Supply, TransducerKindSection, TransducerSection,
-    Transfer,
+    DataCurve, DesignFile, DesignFileError, Supply, TransducerKindSection, TransducerSection, Transfer,
 };
-use crate::membrane::TensionField;
-use crate::press::{CurveFailure, FINER, ModelError, Press};
+use crate::press::{CurveFailure, ModelError};
 use crate::rung::Rung;
 use sha2::{Digest as _, Sha256};
 use std::fmt;
 use std::path::Path;
 
-/// States that the curve is compared with on it, about.
+/// States that the curve is compared with on a finer mesh, about; of the solid, whose states take long, fewer.
 const CHECKED: usize = 12;
+const CHECKED_SOLID: usize = 6;
 /// How much deeper than the press the curve goes where it can, so that the last input can be a number that the chip handles in
 /// fewer instructions: the pressure, which grows faster than the indentation, then goes on by as much at least.
 const BEYOND: f64 = 1.0 + 1.0 / 64.0;
@@ -31,6 +30,8 @@ pub struct Solved {
     pub curve: Curve,
     /// The end that the tables cover.
     pub end: Contact,
+    /// The model that solved it; nothing where the curve is of data.
+    pub rung: Option<Rung>,
 }
 
 /// Tables of a design, with everything that is written beside them.
@@ -46,13 +47,15 @@ pub struct Generated {
     pub end: Contact,
     /// Tables and certificate.
     pub certified: Certified,
-    /// How far the curve is from the model's own limit; not measured for the solid, each of whose states takes long.
+    /// How far the curve is from the model's own limit; nothing where it is of data.
     pub model_error: Option<Convergence>,
 }
 
-/// A curve against states of the same model on a mesh twice as fine, half way between those that it was made from.
+/// A curve against states of the same model on a finer mesh, half way between those that it was made from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
+    /// The finer mesh, in words.
+    pub mesh: String,
     /// States compared.
     pub states: usize,
     /// Largest error of the force at a pressure rise, percent of reading, as the tables' errors are.
@@ -175,14 +178,12 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
         rest_pressure,
         curve,
         end,
+        rung,
     } = solve(&design)?;
     let certified =
         tables(&curve, end, &accuracy, transducer.resolution_pa).map_err(GenerateError::NoTables)?;
     let from = accuracy.from_percent_of_full_scale / 100.0;
-    let model_error = match design.calibration.curve {
-        None => convergence(&design, &curve, end, from),
-        Some(_) => None,
-    };
+    let model_error = rung.and_then(|rung| convergence(&design, &rung, &curve, end, from));
     Ok(Generated {
         design,
         transducer,
@@ -201,13 +202,14 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
     let indentation = design.max_indentation_mm.ok_or(missing("press"))?;
     let transducer = design.transducer.ok_or(missing("transducer"))?;
-    let (rest_pressure, curve, end) = match &design.calibration.curve {
-        Some(data) => {
-            let curve = measured(data, indentation * 1e-3)?;
-            let end = curve.end();
-            (data.rest_pressure_kpa * 1e3, curve, end)
-        }
-        None => pressed(design, &transducer, indentation)?,
+    let (rest_pressure, curve, end, rung) = if let Some(data) = &design.calibration.curve {
+        let curve = measured(data, indentation * 1e-3)?;
+        let end = curve.end();
+        (data.rest_pressure_kpa * 1e3, curve, end, None)
+    } else {
+        let mut rung = Rung::for_curve(design).map_err(GenerateError::Model)?;
+        let (rest_pressure, curve, end) = pressed(&mut rung, design, &transducer, indentation)?;
+        (rest_pressure, curve, end, Some(rung))
     };
     in_range(&transducer, State::Rest, rest_pressure)?;
     in_range(
@@ -220,17 +222,26 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         rest_pressure,
         curve,
         end,
+        rung,
     })
 }
 
 /// Solves the design again on a finer mesh at some indentations.
-fn convergence(design: &DesignFile, curve: &Curve, end: Contact, from: f64) -> Option<Convergence> {
-    if !matches!(design.model, ModelSection::Membrane) {
-        return None;
-    }
-    let mut press: Press = Press::with_resolution(&design.design(), TensionField::Relaxed, FINER).ok()?;
+fn convergence(
+    design: &DesignFile,
+    rung: &Rung,
+    curve: &Curve,
+    end: Contact,
+    from: f64,
+) -> Option<Convergence> {
+    let (mut press, mesh) = rung.finer(design).ok()?;
+    let checked = match rung {
+        Rung::Membrane(_) => CHECKED,
+        Rung::Solid(_) => CHECKED_SOLID,
+    };
     let gain = design.calibration.pressure_gain;
     let mut found = Convergence {
+        mesh,
         states: 0,
         force_percent: 0.0,
         indentation_percent: 0.0,
@@ -240,7 +251,7 @@ fn convergence(design: &DesignFile, curve: &Curve, end: Contact, from: f64) -> O
         .windows(2)
         .filter(|pair| pair[1].indentation >= from * end.indentation)
         .collect();
-    for pair in pairs.iter().step_by(pairs.len().div_ceil(CHECKED).max(1)) {
+    for pair in pairs.iter().step_by(pairs.len().div_ceil(checked).max(1)) {
         let indentation = libm::sqrt(pair[0].indentation * pair[1].indentation);
         let state = press.contact_at(indentation).ok()?;
         let read = curve.at_pressure_rise(gain * state.pressure_rise);
@@ -257,13 +268,13 @@ fn convergence(design: &DesignFile, curve: &Curve, end: Contact, from: f64) -> O
 /// What the transducer reads at rest, and the curve of the model as it reads it with the end of the press: its own zero takes
 /// the offset away.
 fn pressed(
+    press: &mut Rung,
     design: &DesignFile,
     transducer: &TransducerSection,
     indentation: f64,
 ) -> Result<(f64, Curve, Contact), GenerateError> {
     let calibration = &design.calibration;
     let deepest = indentation * 1e-3;
-    let mut press = Rung::for_curve(design).map_err(GenerateError::Model)?;
     let rest_pressure = calibration.pressure_read(press.rest_pressure());
     // What cannot be read is refused before the curve is solved.
     in_range(transducer, State::Rest, rest_pressure)?;

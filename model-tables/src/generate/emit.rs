@@ -200,11 +200,12 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     if let Some(model) = &generated.model_error {
         writeln!(
             out,
-            "[model] # the curve against states of its own on a mesh twice as fine, between those it was made from\n\
+            "[model] # the curve against states of its own on a finer mesh, between those it was made from\n\
+             mesh = \"{}\"\n\
              states = {}\n\
              force_percent = {:.1e}\n\
              indentation_percent = {:.1e}\n",
-            model.states, model.force_percent, model.indentation_percent
+            model.mesh, model.states, model.force_percent, model.indentation_percent
         )?;
     }
     writeln!(

@@ -161,6 +161,11 @@ impl Press {
         &self.rest
     }
 
+    /// Its elements.
+    pub fn elements(&self) -> Elements {
+        self.wall.mesh.elements
+    }
+
     /// Newton iterations spent so far.
     pub fn iterations(&self) -> u64 {
         self.wall.iterations

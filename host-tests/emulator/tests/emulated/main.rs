@@ -1,11 +1,14 @@
 //! The firmware image, unmodified, on the emulated board.
 
+mod budget;
 mod bus;
 mod cost;
 mod crash;
 mod faults;
 mod hold;
 mod integers;
+mod kernels;
+mod lookup;
 mod measured;
 mod monitor;
 mod press;

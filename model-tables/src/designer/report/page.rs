@@ -412,11 +412,11 @@ fn certified(found: &Findings, generated: &Generated) -> Markup {
     ];
     if let Some(model) = &generated.model_error {
         facts.push((
-            "model against a mesh twice as fine, force",
+            "model against a finer mesh, force",
             PERCENT.given(&plain(model.force_percent, 2)),
         ));
         facts.push((
-            "model against a mesh twice as fine, indentation",
+            "model against a finer mesh, indentation",
             PERCENT.given(&plain(model.indentation_percent, 2)),
         ));
     }

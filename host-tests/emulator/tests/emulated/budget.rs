@@ -1,0 +1,45 @@
+//! The error budget of the default design against what the running image reports.
+
+use crate::{design, press_hold_release};
+use emulator::accuracy::Accuracy;
+use host_tests::assert_readme_figure;
+use host_tests::budget::{Budget, PLACES};
+use model_tables::generate;
+
+/// A budget that is more than so many times what is observed says little.
+const LOOSE: f64 = 20.0;
+
+#[test]
+fn the_demo_stays_within_its_error_budget() {
+    let run = press_hold_release();
+    let generated = generate::from_design_file(&design().path).expect("the default design");
+    let budget = Budget::of(&generated);
+    let all = Accuracy::of(run.record.rows.iter(), &run.plant);
+    println!(
+        "pressure rise: {:.3} Pa of error (RMS) over the demo, {:.3} Pa budgeted",
+        all.pressure_error,
+        budget.pressure()
+    );
+    assert_readme_figure(
+        "RMS error of the pressure rise over the demo, pascals",
+        all.pressure_error,
+        0.2,
+    );
+    assert!(all.pressure_error <= budget.pressure() && budget.pressure() <= LOOSE * all.pressure_error);
+
+    // At the end of the press a median error stays below one deviation and the bounds.
+    let hold = run.record.rows.iter();
+    let hold = hold.filter(|row| run.plant.scenario().phase_at(row.time) == "hold");
+    let hold = Accuracy::of(hold, &run.plant);
+    let budgeted = budget.sum(PLACES.len() - 1);
+    let observed = [hold.force_median, hold.indentation_median].map(|share| 100.0 * share);
+    println!(
+        "held at 98 %: median errors of force and indentation {observed:.4?} % of reading, {budgeted:.4?} budgeted"
+    );
+    for (observed, budgeted) in observed.into_iter().zip(budgeted) {
+        assert!(
+            observed <= budgeted && budgeted <= LOOSE * observed,
+            "{observed} for {budgeted}"
+        );
+    }
+}
