@@ -157,7 +157,7 @@ mod probe {
     macro_rules! shipped {
         ($($module:ident $lookup:ident $path:literal)*) => {
             $(
-                #[allow(clippy::unreadable_literal, dead_code)] // written by a program
+                #[allow(clippy::unreadable_literal, dead_code, unreachable_pub)] // written by a program
                 mod $module {
                     include!(concat!("../model-tables/golden/", $path, "/tables.rs"));
                     use core::hint::black_box;

@@ -5,7 +5,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
     name: "paper-prestretched",
     hash: 0x0b0805c0f73222b7,
     table_version: 3,
-    certificate: 0xb1bd6069f6feb791,
+    certificate: 0x89187af370d633e3,
     rest_pressure: 179062,
     maximum_pressure: 278482,
     transducer: model_tables::constants::Transducer {

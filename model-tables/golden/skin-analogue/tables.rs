@@ -5,7 +5,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
     name: "skin-analogue",
     hash: 0x73a603700cd3b677,
     table_version: 3,
-    certificate: 0xac35361ff23ab603,
+    certificate: 0x86a41185c6500a0d,
     rest_pressure: 8269,
     maximum_pressure: 16195,
     transducer: model_tables::constants::Transducer {

@@ -5,7 +5,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
     name: "skin-light-touch",
     hash: 0xc0c7d2128bdf05d5,
     table_version: 3,
-    certificate: 0xfa8c7b139e3c2157,
+    certificate: 0xe9a3b43de099867c,
     rest_pressure: 1811,
     maximum_pressure: 4133,
     transducer: model_tables::constants::Transducer {

@@ -27,19 +27,19 @@ fn the_demo_stays_within_its_error_budget() {
     );
     assert!(all.pressure_error <= budget.pressure() && budget.pressure() <= LOOSE * all.pressure_error);
 
-    // At the end of the press a median error stays below one deviation and the bounds.
+    // The demo's truth is the same model. At the end of the press a median error stays below one deviation and the bounds, which
+    // are the largest anywhere.
+    let mut of_the_chip = budget;
+    of_the_chip.terms.retain(|term| !term.name.starts_with("model"));
     let hold = run.record.rows.iter();
     let hold = hold.filter(|row| run.plant.scenario().phase_at(row.time) == "hold");
     let hold = Accuracy::of(hold, &run.plant);
-    let budgeted = budget.sum(PLACES.len() - 1);
+    let budgeted = of_the_chip.sum(PLACES.len() - 1);
     let observed = [hold.force_median, hold.indentation_median].map(|share| 100.0 * share);
     println!(
         "held at 98 %: median errors of force and indentation {observed:.4?} % of reading, {budgeted:.4?} budgeted"
     );
     for (observed, budgeted) in observed.into_iter().zip(budgeted) {
-        assert!(
-            observed <= budgeted && budgeted <= LOOSE * observed,
-            "{observed} for {budgeted}"
-        );
+        assert!(observed <= budgeted, "{observed} for {budgeted}");
     }
 }
