@@ -6,7 +6,9 @@
 use super::minimax::{MOST, Sample, fit};
 use crate::table::Constant;
 
-/// How many integers on either side of the best real coefficient are tried, one after the other until one serves.
+/// How many integers on either side of the best real coefficient are tried, one after the other until one serves: of the two
+/// highest powers, which over a short segment are worth little, so that what is best for them may be any number. What they
+/// leave is fitted again, and there the nearest two do.
 const REACHES: [i32; 3] = [1, 2, 5];
 
 /// The integers of one segment's sum: the constant in units of the sum, then the coefficients.
@@ -23,6 +25,7 @@ pub(super) fn round(
         let mut search = Search {
             samples,
             constant,
+            terms,
             reach,
             best: None,
             error: limit,
@@ -38,6 +41,7 @@ pub(super) fn round(
 struct Search<'a> {
     samples: &'a [Sample],
     constant: Constant,
+    terms: usize,
     reach: i32,
     best: Option<Coefficients>,
     error: f64,
@@ -56,9 +60,9 @@ impl Search<'_> {
             self.finish(real, given);
             return;
         }
-        // Over a short segment a high power is worth little, and what is best for it may be any number.
+        let reach = if last + 2 > self.terms { self.reach } else { 1 };
         let below = libm::floor(real.clamp(f64::from(i16::MIN), f64::from(i16::MAX)));
-        let mut nearest: Vec<f64> = (1 - self.reach..=self.reach)
+        let mut nearest: Vec<f64> = (1 - reach..=reach)
             .map(|step| below + f64::from(step))
             .filter(|&integer| integer >= f64::from(i16::MIN) && integer <= f64::from(i16::MAX))
             .collect();

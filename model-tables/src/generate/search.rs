@@ -19,6 +19,12 @@ const QUICK: u32 = 28;
 const SAMPLES: usize = 41;
 /// A first look above this share of the tolerance leaves nothing for rounding.
 const HOPEFUL: f64 = 0.97;
+/// Segmentations of a size whose coefficients are rounded at most: where these fail the others, which are further off, hardly
+/// ever serve.
+const ROUNDED: usize = 8;
+/// Sizes of a shape whose coefficients are rounded in vain before it is given up: 16 bits are then too few for it, however
+/// short its segments.
+const PATIENCE: usize = 6;
 /// Samples lie between inputs: integers must stay this far inside the tolerance.
 const MARGIN: f64 = 0.985;
 /// Part of a unit that rounding can add to an error.
@@ -70,7 +76,12 @@ pub(super) fn smallest<T>(
         if closest > within {
             break;
         }
+        // Sizes of each shape that real coefficients would have done for, and integers did not.
+        let mut unrounded: Vec<Shape> = Vec::new();
         for &(bytes, segments, shape) in sizes.iter().take_while(|(bytes, ..)| *bytes <= most_bytes) {
+            if unrounded.iter().filter(|&&other| other == shape).count() >= PATIENCE {
+                continue;
+            }
             let mut hopeful = Vec::new();
             for truth in truths {
                 for bias in biases(shape, truth.maximum, segments as u32) {
@@ -101,11 +112,13 @@ pub(super) fn smallest<T>(
                     }
                 }
             }
-            hopeful.sort_by(|a, b| {
-                a.instructions()
-                    .cmp(&b.instructions())
-                    .then(a.error.total_cmp(&b.error))
-            });
+            // What leaves rounding most room, and of those the quickest first.
+            hopeful.sort_by(|a, b| a.error.total_cmp(&b.error));
+            hopeful.truncate(ROUNDED);
+            hopeful.sort_by_key(Candidate::instructions);
+            if !hopeful.is_empty() {
+                unrounded.push(shape);
+            }
             // A shift of its own for an output costs an instruction: first without.
             for shifts in [false, true] {
                 for candidate in &hopeful {

@@ -6,6 +6,9 @@ use crate::curve::{Contact, Curve};
 const EXACT: i32 = 64;
 /// Blocks an octave of the input is cut into, beyond that.
 const BLOCKS_PER_OCTAVE: i32 = 32;
+/// Relative deviation of a polynomial from the curve above which its block is cut in two: around the knots of the curve, whose
+/// pieces are smooth.
+const CLOSE: f64 = 1e-7;
 /// Nodes of a block's polynomial: degree five.
 const NODES: usize = 6;
 /// Chebyshev points of [-1, 1]: `cos((2 i + 1) pi / 12)`, increasing.
@@ -53,14 +56,7 @@ impl Truth {
             let step = (octave / BLOCKS_PER_OCTAVE).max(1);
             let mut start = octave;
             while start < octave.saturating_mul(2) && start <= maximum {
-                let width = f64::from(step.min(maximum - start).max(1));
-                let place = |z: f64| f64::from(start) + 0.5 * width * (z + 1.0);
-                let values = CHEBYSHEV.map(|z| at(place(z)));
-                blocks.push(Block {
-                    start,
-                    width,
-                    powers: [0, 1].map(|output| powers(values.map(|value| value[output]))),
-                });
+                Block::cover(start, step.min(maximum - start).max(1), &at, &mut blocks);
                 start = start.saturating_add(step);
             }
             octave = octave.saturating_mul(2);
@@ -80,12 +76,7 @@ impl Truth {
         let at = exactly(curve, self.fraction_bits);
         let mut deviation = 0.0_f64;
         for block in &self.blocks {
-            for z in [-1.0, -0.5, 0.0, 0.5, 1.0] {
-                let truth = at(f64::from(block.start) + 0.5 * block.width * (z + 1.0));
-                for (powers, value) in block.powers.iter().zip(truth) {
-                    deviation = deviation.max((evaluate(powers, z) / value - 1.0).abs());
-                }
-            }
+            deviation = deviation.max(block.deviation(&at));
         }
         deviation
     }
@@ -114,6 +105,36 @@ impl Truth {
 }
 
 impl Block {
+    /// Blocks that are [`CLOSE`] over `counts` inputs from `start` on.
+    fn cover(start: i32, counts: i32, at: &impl Fn(f64) -> [f64; 2], blocks: &mut Vec<Self>) {
+        let width = f64::from(counts);
+        let values = CHEBYSHEV.map(|z| at(f64::from(start) + 0.5 * width * (z + 1.0)));
+        let block = Self {
+            start,
+            width,
+            powers: [0, 1].map(|output| powers(values.map(|value| value[output]))),
+        };
+        if counts > 1 && block.deviation(at) > CLOSE {
+            let half = counts / 2;
+            Self::cover(start, half, at, blocks);
+            Self::cover(start + half, counts - half, at, blocks);
+        } else {
+            blocks.push(block);
+        }
+    }
+
+    /// Largest relative deviation at the points farthest from the nodes.
+    fn deviation(&self, at: &impl Fn(f64) -> [f64; 2]) -> f64 {
+        let mut deviation = 0.0_f64;
+        for z in [-1.0, -0.5, 0.0, 0.5, 1.0] {
+            let truth = at(f64::from(self.start) + 0.5 * self.width * (z + 1.0));
+            for (powers, value) in self.powers.iter().zip(truth) {
+                deviation = deviation.max((evaluate(powers, z) / value - 1.0).abs());
+            }
+        }
+        deviation
+    }
+
     #[inline]
     fn at(&self, count: i32) -> [f64; 2] {
         let z = 2.0 * f64::from(count - self.start) / self.width - 1.0;
