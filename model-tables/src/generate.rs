@@ -24,6 +24,8 @@ pub use owned::OwnedTables;
 /// Version of the tables' layout and of the generator; counts up when either changes the integers.
 pub const TABLE_VERSION: u32 = 3;
 
+/// Bytes above which a finer unit is tried too.
+const MANY: usize = 192;
 /// An input count is not finer than this part of what the transducer tells apart: averaging a thousand of its
 /// samples gains a factor of 32, and the count stays four times finer than that.
 const COUNTS_PER_RESOLUTION: f64 = 128.0;
@@ -157,7 +159,9 @@ fn search<T>(
     }
     let [coarsest, finest] = fraction_bits(curve, end, accuracy, resolution);
     let mut failure = None;
-    // Two units at a time: segments of two octaves can lie two ways.
+    let mut smallest: Option<search::Found<T>> = None;
+    // Two units at a time: segments of two octaves can lie two ways. Where the first that serve leave the segments of first
+    // contact so few inputs that many are needed, the next may do with fewer.
     for first in (coarsest..=finest).step_by(2) {
         let mut truths = Vec::new();
         for fraction_bits in [first, first + 1] {
@@ -171,14 +175,18 @@ fn search<T>(
             }
         }
         match search::smallest(&truths, accuracy, &mut accept) {
-            Ok(found) => return Ok(found),
+            Ok(found) => match smallest {
+                Some(before) if before.tables.bytes() <= found.tables.bytes() => return Ok(before),
+                None if found.tables.bytes() > MANY => smallest = Some(found),
+                _ => return Ok(found),
+            },
             Err(share_of_allowed) if share_of_allowed.is_finite() => {
                 failure = Some(NoTables::Inaccurate { share_of_allowed });
             }
             Err(_) => {}
         }
     }
-    Err(failure.unwrap_or(NoTables::Inaccurate {
+    smallest.ok_or(failure.unwrap_or(NoTables::Inaccurate {
         share_of_allowed: f64::INFINITY,
     }))
 }

@@ -5,7 +5,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
     name: "paper-prestretched",
     hash: 0x0b0805c0f73222b7,
     table_version: 3,
-    certificate: 0x89187af370d633e3,
+    certificate: 0x329d939068882fe1,
     rest_pressure: 179062,
     maximum_pressure: 278482,
     transducer: model_tables::constants::Transducer {
@@ -39,7 +39,7 @@ pub const TABLES: DesignTables = model_tables::table::Tables {
         [121769621, 50135855, -196981, 2293268],
         [60426051, 33096339, -2031803, 3079921],
         [28771232, 19792332, -2490463, 4915050],
-        [11927991, 9634091, -9895989, 19464078],
-        [-982803, -458545, 131123, 64356],
+        [11796923, 9634091, -8388661, 16514958],
+        [-982805, -458545, 196659, 326500],
     ],
 };

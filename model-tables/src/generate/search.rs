@@ -19,12 +19,28 @@ const QUICK: u32 = 28;
 const SAMPLES: usize = 41;
 /// A first look above this share of the tolerance leaves nothing for rounding.
 const HOPEFUL: f64 = 0.97;
-/// Segmentations of a size whose coefficients are rounded at most: where these fail the others, which are further off, hardly
-/// ever serve.
-const ROUNDED: usize = 8;
-/// Sizes of a shape whose coefficients are rounded in vain before it is given up: 16 bits are then too few for it, however
-/// short its segments.
-const PATIENCE: usize = 6;
+/// How much is tried before larger tables are.
+struct Effort {
+    /// Segmentations of a size whose coefficients are rounded, those first that leave it most room.
+    rounded: usize,
+    /// Tables of a size that are offered for acceptance, which evaluates every input.
+    offered: usize,
+    /// Sizes of a shape that fail in these before it is given up: 16 bits are then too few for it, however short its segments.
+    patience: usize,
+}
+
+/// For small tables with a quick lookup, which are what is wanted.
+const EVERYTHING: Effort = Effort {
+    rounded: usize::MAX,
+    offered: usize::MAX,
+    patience: usize::MAX,
+};
+/// For the others.
+const USUAL: Effort = Effort {
+    rounded: 8,
+    offered: 2,
+    patience: 4,
+};
 /// Samples lie between inputs: integers must stay this far inside the tolerance.
 const MARGIN: f64 = 0.985;
 /// Part of a unit that rounding can add to an error.
@@ -68,10 +84,10 @@ pub(super) fn smallest<T>(
     let (usual, cut) = (sizes(&Shape::ALL), sizes(&Shape::CUT));
     let (mut tried, mut closest) = (0, f64::INFINITY);
     // Octaves are cut where coefficients do not round; where sums of real ones are too far off it is not tried.
-    for (sizes, most_bytes, most_instructions, within) in [
-        (&usual, SMALL, QUICK, f64::INFINITY),
-        (&usual, usize::MAX, u32::MAX, f64::INFINITY),
-        (&cut, usize::MAX, u32::MAX, HOPEFUL),
+    for (sizes, most_bytes, most_instructions, within, effort) in [
+        (&usual, SMALL, QUICK, f64::INFINITY, EVERYTHING),
+        (&usual, usize::MAX, u32::MAX, f64::INFINITY, USUAL),
+        (&cut, usize::MAX, u32::MAX, HOPEFUL, USUAL),
     ] {
         if closest > within {
             break;
@@ -79,7 +95,7 @@ pub(super) fn smallest<T>(
         // Sizes of each shape that real coefficients would have done for, and integers did not.
         let mut unrounded: Vec<Shape> = Vec::new();
         for &(bytes, segments, shape) in sizes.iter().take_while(|(bytes, ..)| *bytes <= most_bytes) {
-            if unrounded.iter().filter(|&&other| other == shape).count() >= PATIENCE {
+            if unrounded.iter().filter(|&&other| other == shape).count() >= effort.patience {
                 continue;
             }
             let mut hopeful = Vec::new();
@@ -114,25 +130,26 @@ pub(super) fn smallest<T>(
             }
             // What leaves rounding most room, and of those the quickest first.
             hopeful.sort_by(|a, b| a.error.total_cmp(&b.error));
-            hopeful.truncate(ROUNDED);
+            hopeful.truncate(effort.rounded);
             hopeful.sort_by_key(Candidate::instructions);
             if !hopeful.is_empty() {
                 unrounded.push(shape);
             }
             // A shift of its own for an output costs an instruction: first without.
-            for shifts in [false, true] {
-                for candidate in &hopeful {
-                    if let Some(tables) = candidate.finish(accuracy, shifts)
-                        && instructions(&tables.layout) <= most_instructions
-                        && let Some(accepted) = accept(&tables, candidate.truth)
-                    {
-                        debug_assert_eq!(tables.bytes(), bytes);
-                        return Ok(Found {
-                            tables,
-                            accepted,
-                            tried,
-                        });
-                    }
+            let finished = [false, true].into_iter().flat_map(|shifts| {
+                hopeful.iter().filter_map(move |candidate| {
+                    let tables = candidate.finish(accuracy, shifts)?;
+                    (instructions(&tables.layout) <= most_instructions).then_some((tables, candidate.truth))
+                })
+            });
+            for (tables, truth) in finished.take(effort.offered) {
+                if let Some(accepted) = accept(&tables, truth) {
+                    debug_assert_eq!(tables.bytes(), bytes);
+                    return Ok(Found {
+                        tables,
+                        accepted,
+                        tried,
+                    });
                 }
             }
         }

@@ -38,13 +38,13 @@ const DESIGNS: [(&str, &str, &str); 3] = [
 /// What these tables are called among the ways.
 const OURS: &str = "fingertip";
 /// Accuracies that these tables are made for, percent of reading.
-const PERCENTS: [f64; 8] = [2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];
+const PERCENTS: [f64; 6] = [2.0, 1.0, 0.5, 0.2, 0.1, 0.05];
 /// The transducer's resolution, pascals: fine enough for all of them.
 const RESOLUTION: f64 = 1.0;
 
 /// Transducers that the tool's choice is shown for, pascals, and the accuracies asked of it, percent of reading.
 const RESOLUTIONS: [f64; 3] = [50.0, 10.0, 1.0];
-const ASKED: [f64; 3] = [1.0, 0.1, 0.02];
+const ASKED: [f64; 3] = [1.0, 0.1, 0.05];
 
 /// A way at a size, measured.
 #[derive(Clone, Debug)]

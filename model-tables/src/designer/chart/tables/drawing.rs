@@ -8,12 +8,12 @@ use super::{Design, Measured, OURS, bytes, instructions};
 
 const PANEL: [f64; 2] = [400.0, 330.0];
 const LEFT: f64 = 86.0;
-const TOP: f64 = 176.0;
+const TOP: f64 = 192.0;
 const GAP: [f64; 2] = [46.0, 86.0];
 /// Decades of the error in percent, of bytes, of instructions.
-const ERRORS: [i32; 2] = [-3, 2];
-const BYTES: [i32; 2] = [1, 5];
-const INSTRUCTIONS: [i32; 2] = [1, 3];
+const ERRORS: [f64; 2] = [-4.0, 2.0];
+const BYTES: [f64; 2] = [1.0, 5.0];
+const INSTRUCTIONS: [f64; 2] = [1.0, 3.0];
 /// What the front is drawn in.
 const FRONT: &str = "#f0c800";
 
@@ -42,9 +42,14 @@ pub(super) fn svg(designs: &[Design]) -> String {
     let mut drawing = Drawing::new(width, TOP + 2.0 * PANEL[1] + GAP[1] + 62.0);
     let title = "Force and indentation from one pressure: error against bytes and instructions";
     drawing.text([LEFT, 30.0], Anchor::Start, 20.0, BLACK, title);
-    let line = "Largest error of both, percent of reading from 1 % of full scale up (of that 1 % below). Instructions of both as a \
-                function, counted on the emulated chip. The yellow line: nothing is better in both. Lower left is better.";
-    drawing.text([LEFT, 50.0], Anchor::Start, 12.5, GREY, line);
+    let lines = [
+        "Largest error of both, percent of reading from 1 % of full scale up (of that 1 % below). Lower left is better; the yellow \
+         line joins what nothing beats in both.",
+        "Instructions of both as a function, counted on the emulated chip.",
+    ];
+    for (y, line) in [50.0, 66.0].into_iter().zip(lines) {
+        drawing.text([LEFT, y], Anchor::Start, 12.5, GREY, line);
+    }
     key(&mut drawing);
     for (i, design) in designs.iter().enumerate() {
         let left = LEFT + i as f64 * (PANEL[0] + GAP[0]);
@@ -107,7 +112,7 @@ fn one(drawing: &mut Drawing, panel: &Panel, design: &Design, of: fn(&Measured) 
 fn key(drawing: &mut Drawing) {
     for (i, (way, words, _)) in WAYS.iter().enumerate() {
         let (column, row) = (i / 4, i % 4);
-        let (x, y) = (LEFT + 8.0 + 400.0 * column as f64, 74.0 + 20.0 * row as f64);
+        let (x, y) = (LEFT + 8.0 + 400.0 * column as f64, 90.0 + 20.0 * row as f64);
         let (color, marker) = look(way);
         drawing.marker(marker, [x, y], color, *way != OURS);
         drawing.text([x + 12.0, y + 4.5], Anchor::Start, 13.0, BLACK, words);
@@ -117,6 +122,7 @@ fn key(drawing: &mut Drawing) {
 /// A decade as a plain number.
 fn plain(decade: i32) -> String {
     match decade {
+        -4 => "0.0001".to_owned(),
         -3 => "0.001".to_owned(),
         -2 => "0.01".to_owned(),
         -1 => "0.1".to_owned(),

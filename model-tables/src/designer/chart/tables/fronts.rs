@@ -183,11 +183,13 @@ mod tests {
     /// Where the page is kept.
     const FOLDER: &str = "tables";
 
-    /// Most bytes and instructions at 0.1 %.
+    /// Most bytes and instructions at 0.1 %, but for one design: the longest way to touch down takes an instruction more, as the
+    /// page explains.
     const MOST: Cost = Cost {
         bytes: 192,
         instructions: 28,
     };
+    const SLOWER: usize = 1;
     /// Bytes that do at 0.125 %, but for so many designs: a soft touch-down takes a segment more, as the page explains.
     const COARSER: usize = 128;
     const LARGER: usize = 3;
@@ -203,16 +205,17 @@ mod tests {
         }
         let fronts = measure(&[0.125, 0.1]).unwrap_or_else(|Refusal(reason)| panic!("{reason}"));
         let page = std::fs::read_to_string(Path::new(FOLDER).join("README.md")).expect("the page");
-        let mut larger = 0;
+        let (mut larger, mut slower) = (0, 0);
         for (front, row) in fronts.iter().zip(rows(&fronts)) {
             println!("{row}");
             let [Some(coarser), Some(fine)] = front.costs[..] else {
                 panic!("{}: no tables", front.name)
             };
             assert!(
-                fine.bytes <= MOST.bytes && fine.instructions <= MOST.instructions,
+                fine.bytes <= MOST.bytes && fine.instructions <= MOST.instructions + 1,
                 "{row}"
             );
+            slower += usize::from(fine.instructions > MOST.instructions);
             larger += usize::from(coarser.bytes > COARSER);
             // The page has three accuracies more.
             let cells = |row: &str| {
@@ -230,8 +233,9 @@ mod tests {
             );
         }
         assert!(
-            larger <= LARGER,
-            "{larger} designs take more than {COARSER} bytes"
+            larger <= LARGER && slower <= SLOWER,
+            "{larger} designs take more than {COARSER} bytes, {slower} more than {} instructions",
+            MOST.instructions
         );
     }
 }
