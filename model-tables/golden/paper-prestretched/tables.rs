@@ -4,8 +4,8 @@
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     name: "paper-prestretched",
     hash: 0x0b0805c0f73222b7,
-    table_version: 3,
-    certificate: 0x329d939068882fe1,
+    table_version: 4,
+    certificate: 0x4b1a543d36b1a024,
     rest_pressure: 179062,
     maximum_pressure: 278482,
     transducer: model_tables::constants::Transducer {

@@ -4,8 +4,8 @@
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     name: "skin-analogue",
     hash: 0x73a603700cd3b677,
-    table_version: 3,
-    certificate: 0x86a41185c6500a0d,
+    table_version: 4,
+    certificate: 0x21a8c7fc0ffa92d6,
     rest_pressure: 8269,
     maximum_pressure: 16195,
     transducer: model_tables::constants::Transducer {

@@ -4,8 +4,8 @@
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     name: "skin-light-touch",
     hash: 0xc0c7d2128bdf05d5,
-    table_version: 3,
-    certificate: 0xe9a3b43de099867c,
+    table_version: 4,
+    certificate: 0x230e83543c30726b,
     rest_pressure: 1811,
     maximum_pressure: 4133,
     transducer: model_tables::constants::Transducer {

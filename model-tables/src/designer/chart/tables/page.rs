@@ -60,7 +60,7 @@ fn of_designs(fronts: &[Front]) -> String {
          are needed, and one or two for first contact, at 16 bytes each (20 with four powers). *Exponent*: the local power with\n\
          which the indentation follows the pressure, there and at the end; the further it goes, the more each sum has to bend.\n\
          Domes that are hardly stretched at rest touch down softly: most octaves, hence more than 128 bytes at 0.125 %. The one\n\
-         with most of them needs a shift of its own for one output, which is an instruction: 29 where the others take 28 or less.\n\
+         with most of them needs a sixth power, which is an instruction more: 29 where the others take 28 or less.\n\
          *none*: 16-bit coefficients do not reach so far there.\n",
     );
     text
