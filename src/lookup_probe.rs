@@ -13,12 +13,11 @@ mod probe {
     use defmt_rtt as _;
     use embassy_executor::Spawner;
     use embassy_time::Timer;
-    use fingertip::contact::contact;
     use fingertip::counts::PERIOD;
     use fingertip::design::Design;
     use fingertip::image::ImageDesign;
     use fingertip::lookup_sweep;
-    use fingertip::report::{Measurement, Report, Warnings};
+    use fingertip::report::Report;
     use fingertip::telemetry::{Frame, Hello, Message, encode};
     use panic_probe as _;
 
@@ -35,16 +34,9 @@ mod probe {
         } = Board::take();
         let mut sequence = 0_u16;
         for rise in lookup_sweep::inputs::<ImageDesign>() {
-            let contact = contact::<ImageDesign>(rise, Warnings::NONE);
             let report = Report {
                 time: clock.now(),
-                outcome: Ok(Measurement {
-                    pressure_rise: rise,
-                    force: contact.force,
-                    indentation: contact.indentation,
-                    warnings: contact.warnings,
-                    ..Measurement::default()
-                }),
+                outcome: Ok(lookup_sweep::answer::<ImageDesign>(rise)),
             };
             let message = Message::Report {
                 report,

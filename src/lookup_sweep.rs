@@ -1,8 +1,10 @@
 //! The inputs with which the chip's lookup is compared with the host's: 12 292 of them, everywhere in and around the
 //! tables of a design.
 
+use crate::contact::{Contact, contact};
 use crate::design::Design;
 use crate::pressure::{Pressure, saturate};
+use crate::report::{Measurement, Warnings};
 use model_tables::units::PressureRise;
 
 /// Every count from 0: the segments are narrowest there.
@@ -29,6 +31,22 @@ pub fn inputs<D: Design>() -> impl Iterator<Item = PressureRise> {
         .chain(spread)
         .chain(CORNERS.map(i64::from))
         .map(|rise| PressureRise(saturate(rise)))
+}
+
+/// What chip and host answer to an input.
+pub fn answer<D: Design>(rise: PressureRise) -> Measurement {
+    let Contact {
+        force,
+        indentation,
+        warnings,
+    } = contact::<D>(rise, Warnings::NONE);
+    Measurement {
+        pressure_rise: rise,
+        force,
+        indentation,
+        warnings,
+        ..Measurement::default()
+    }
 }
 
 #[cfg(test)]

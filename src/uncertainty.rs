@@ -21,18 +21,7 @@ impl Uncertainty {
     /// For a design; `far` bounds every zero.
     pub const fn of(constants: &DesignConstants, fraction_bits: u32, far: i32) -> Self {
         let transducer = &constants.transducer;
-        let averaged = match transducer.kind {
-            TransducerKind::Ratiometric {
-                supply_measured: false,
-                ..
-            } => BLOCK_LENGTH as i64,
-            // Half the codes, and as much noise again from the supply's half.
-            TransducerKind::Ratiometric {
-                supply_measured: true,
-                ..
-            } => BLOCK_LENGTH as i64 / 4,
-            _ => 1,
-        };
+        let averaged = averaged(&transducer.kind) as i64;
         let (noise, resolution) = (transducer.noise as i64, transducer.resolution as i64);
         // The kernel 1-2-1 over 4 leaves 6/16 of the variance; steps of the resolution have 1/12. Below 2^63.
         let variance = noise * noise / averaged / 16 * 6 + resolution * resolution / 12;
@@ -54,6 +43,22 @@ impl Uncertainty {
             sigma = hypotenuse(sigma, self.unverified);
         }
         PressureRise(sigma)
+    }
+}
+
+/// Samples of a transducer that a reading is made of, in what averaging them gains: the noise's variance falls by so much.
+pub const fn averaged(kind: &TransducerKind) -> u32 {
+    match kind {
+        TransducerKind::Ratiometric {
+            supply_measured: false,
+            ..
+        } => BLOCK_LENGTH as u32,
+        // Half the codes, and as much noise again from the supply's half.
+        TransducerKind::Ratiometric {
+            supply_measured: true,
+            ..
+        } => BLOCK_LENGTH as u32 / 4,
+        _ => 1,
     }
 }
 

@@ -3,10 +3,9 @@
 //! Bounds (model, table, conversion) are largest errors; the others are standard deviations. The sum is that of the bounds and
 //! the root of the sum of the others' squares.
 
-use fingertip::counts::BLOCK_LENGTH;
 use fingertip::tare::WINDOW;
 use fingertip::transducer::period;
-use model_tables::constants::TransducerKind;
+use fingertip::uncertainty::averaged;
 use model_tables::generate::Generated;
 use model_tables::units::PressureRise;
 use std::fmt::Write as _;
@@ -72,10 +71,7 @@ impl Budget {
             bound: true,
             percent: [[force, indentation]; PLACES.len()],
         };
-        let averaged = match constants.kind {
-            TransducerKind::Ratiometric { .. } => BLOCK_LENGTH as f64,
-            _ => 1.0,
-        };
+        let averaged = f64::from(averaged(&constants.kind));
         let window = (WINDOW / u64::from(period(&constants.kind))) as f64;
         // Steps are uniform: 1 / sqrt 12 of one.
         let step = transducer.resolution_pa / 12.0_f64.sqrt();

@@ -86,6 +86,8 @@ pub mod methods;
 #[cfg(feature = "std")]
 pub mod monotone;
 pub mod press;
+#[cfg(feature = "std")]
+mod random;
 mod refine;
 pub mod rest;
 #[cfg(feature = "std")]

@@ -6,6 +6,22 @@
 //! `designer chart --tables` fits them and measures their errors; the chip's emulator counts the instructions of these very
 //! functions.
 
+/// The knots on either side of `x` in 12.20 bits, or the value that holds beyond an end.
+#[inline]
+fn beside<T: Copy + Default>(knots: &[T], x: i32) -> Result<[T; 2], T> {
+    let index = (x >> 20) as usize;
+    let (Some(&first), Some(&last)) = (knots.first(), knots.last()) else {
+        return Err(T::default());
+    };
+    if x < 0 {
+        return Err(first);
+    }
+    match (knots.get(index), knots.get(index + 1)) {
+        (Some(&low), Some(&high)) => Ok([low, high]),
+        _ => Err(last),
+    }
+}
+
 /// `arm_linear_interp_q31` of CMSIS-DSP, twice: evenly spaced knots, the input as knot and fraction in 12.20 bits.
 #[inline]
 pub fn uniform_q31(knots: [&[i32]; 2], x: i32, out: &mut [i32; 2]) {
@@ -16,15 +32,9 @@ pub fn uniform_q31(knots: [&[i32]; 2], x: i32, out: &mut [i32; 2]) {
 
 #[inline]
 fn one_q31(knots: &[i32], x: i32) -> i32 {
-    let index = (x >> 20) as usize;
-    let (Some(&first), Some(&last)) = (knots.first(), knots.last()) else {
-        return 0;
-    };
-    if x < 0 {
-        return first;
-    }
-    let (Some(&low), Some(&high)) = (knots.get(index), knots.get(index + 1)) else {
-        return last;
+    let [low, high] = match beside(knots, x) {
+        Ok(both) => both,
+        Err(end) => return end,
     };
     let fraction = (x & 0xf_ffff) << 11;
     let sum = ((i64::from(low) * i64::from(0x7fff_ffff - fraction)) >> 32) as i32;
@@ -42,15 +52,9 @@ pub fn uniform_q15(knots: [&[i16]; 2], x: i32, out: &mut [i16; 2]) {
 
 #[inline]
 fn one_q15(knots: &[i16], x: i32) -> i16 {
-    let index = (x >> 20) as usize;
-    let (Some(&first), Some(&last)) = (knots.first(), knots.last()) else {
-        return 0;
-    };
-    if x < 0 {
-        return first;
-    }
-    let (Some(&low), Some(&high)) = (knots.get(index), knots.get(index + 1)) else {
-        return last;
+    let [low, high] = match beside(knots, x) {
+        Ok(both) => both,
+        Err(end) => return end,
     };
     let fraction = i64::from(x & 0xf_ffff);
     ((i64::from(low) * (0xf_ffff - fraction) + i64::from(high) * fraction) >> 20) as i16

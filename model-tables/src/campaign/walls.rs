@@ -1,12 +1,12 @@
 //! Random walls: every rung of the ladder against the refined solid, and what the rule of `auto` lets through.
 
-use super::draw::Random;
 use crate::curve::Contact;
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
 use crate::material::preset::{AGILUS30, SKIN};
 use crate::methods::light_contact::LightContact;
 use crate::press::ModelError;
+use crate::random::Random;
 use crate::rung::choice::{LADDER, PARTS, Wanted};
 use crate::rung::{Kind, Rung};
 use crate::solid::inflation::mid_surface;

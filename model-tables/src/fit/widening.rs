@@ -6,6 +6,7 @@
 //! scatter of the estimates over the standard errors that the formula gave them.
 
 use super::noise::{Noise, ROUNDING};
+use crate::random::Random;
 use nalgebra::{DMatrix, DVector};
 
 /// Simulated benches: the scatter is known to 5 %.
@@ -122,25 +123,6 @@ impl Bench<'_> {
             }
         }
         Some(sigma)
-    }
-}
-
-/// `SplitMix64`, and normal deviates from it (Box and Muller).
-struct Random(u64);
-
-impl Random {
-    /// Above 0, up to 1.
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (((z ^ (z >> 31)) >> 11) + 1) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let radius = libm::sqrt(-2.0 * libm::log(self.unit()));
-        radius * libm::cos(core::f64::consts::TAU * self.unit())
     }
 }
 

@@ -85,15 +85,20 @@ impl Rung {
     /// # Errors
     /// [`ModelError`], as the model's own.
     pub fn at_indentation(&mut self, indentation: f64) -> Result<Pressed, ModelError> {
-        let contact = self.contact_at(indentation)?;
-        let contact_radius = match self {
-            Self::Membrane(press) => press.at_indentation(indentation)?.contact_radius,
-            Self::Solid(press) => press.at_indentation(indentation)?.contact_radius,
+        let (pressure_rise, force, contact_radius) = match self {
+            Self::Membrane(press) => {
+                let state = press.at_indentation(indentation)?;
+                (state.pressure_rise, state.force, state.contact_radius)
+            }
+            Self::Solid(press) => {
+                let state = press.at_indentation(indentation)?;
+                (state.pressure_rise, state.force, state.contact_radius)
+            }
         };
         Ok(Pressed {
             indentation,
-            pressure_rise: contact.pressure_rise,
-            force: contact.force,
+            pressure_rise,
+            force,
             contact_radius,
         })
     }

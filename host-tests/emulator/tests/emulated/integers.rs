@@ -5,10 +5,9 @@ use emulator::bench::{self, Listener, Moment};
 use emulator::image::Image;
 use emulator::plant::Plant;
 use emulator::scenario::Scenario;
-use fingertip::contact::contact;
 use fingertip::image::ImageDesign;
 use fingertip::lookup_sweep;
-use fingertip::report::{Measurement, Warnings};
+use fingertip::report::Measurement;
 use fingertip::telemetry::{Decoder, Message};
 use std::ops::ControlFlow;
 
@@ -48,16 +47,7 @@ fn host_and_chip_give_the_same_integers_everywhere_in_and_around_the_tables() {
         .expect("the default design can be pressed");
     let outcome = bench::run(&image, plant, LIMIT, &[], Readings::default()).expect("the image runs");
     let expected: Vec<Measurement> = lookup_sweep::inputs::<ImageDesign>()
-        .map(|rise| {
-            let contact = contact::<ImageDesign>(rise, Warnings::NONE);
-            Measurement {
-                pressure_rise: rise,
-                force: contact.force,
-                indentation: contact.indentation,
-                warnings: contact.warnings,
-                ..Measurement::default()
-            }
-        })
+        .map(lookup_sweep::answer::<ImageDesign>)
         .collect();
     assert!(expected.len() >= 10_000);
     let readings = outcome.listener.readings;
