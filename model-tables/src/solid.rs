@@ -11,6 +11,10 @@
 //! meridian).
 
 #[cfg(feature = "std")]
+mod assembly;
+#[cfg(feature = "std")]
+pub mod batch;
+#[cfg(feature = "std")]
 pub mod element;
 #[cfg(feature = "std")]
 pub mod equilibrium;
@@ -20,6 +24,8 @@ pub mod fluid;
 pub mod front;
 #[cfg(feature = "std")]
 pub mod inflation;
+#[cfg(feature = "std")]
+pub mod lanes;
 #[cfg(feature = "std")]
 pub mod mesh;
 #[cfg(feature = "std")]

@@ -171,6 +171,11 @@ impl Press {
         self.wall.iterations
     }
 
+    /// Factorisations spent so far.
+    pub fn factorisations(&self) -> u64 {
+        self.wall.factorisations
+    }
+
     /// The pressed state at an indentation in metres, 0 ..= limit.
     ///
     /// # Errors

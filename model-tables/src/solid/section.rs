@@ -228,7 +228,7 @@ fn forces(wall: &Wall, state: &State, column: usize, x: f64, tangent: [f64; 2]) 
             let (point, across, radius) = super::mesh::sample(&undeformed, x, y);
             let stress = element::stress(
                 &wall.material,
-                element::deformation(&point, &deformed),
+                element::deformation(&point.gradient, &deformed),
                 element::pressure_at(x, y, pressures),
             );
             // The section's undeformed normal times its length: the fibre turned right.
