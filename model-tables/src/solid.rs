@@ -29,13 +29,13 @@ pub mod lanes;
 #[cfg(feature = "std")]
 pub mod mesh;
 #[cfg(feature = "std")]
+pub mod path;
+#[cfg(feature = "std")]
 pub mod plate;
 #[cfg(feature = "std")]
 pub mod press;
 #[cfg(feature = "std")]
 pub mod section;
-#[cfg(feature = "std")]
-pub mod trail;
 
 use core::fmt;
 
@@ -48,6 +48,8 @@ pub enum Failure {
     Singular,
     /// The law softens at strains that the wall reaches, `W' + 2 (I1 - 3) W'' <= 0`, and Newton's method did not converge.
     Softened,
+    /// What was found in balance is not on the path from rest.
+    Elsewhere,
     /// Newton's method did not converge.
     Stalled {
         /// Largest unbalanced force, in moduli times outer radius times wall thickness.
@@ -64,6 +66,7 @@ impl fmt::Display for Failure {
                 f,
                 "the material law softens at strains that the wall reaches: choose constants that hold there, or press less"
             ),
+            Self::Elsewhere => write!(f, "the next state in balance is not on the path from rest"),
             Self::Stalled { residual } => {
                 write!(f, "Newton's method did not converge, residual {residual:.1e}")
             }

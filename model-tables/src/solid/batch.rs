@@ -212,8 +212,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
                 pressure_at(&terms, &pressures),
             );
             let weight = self.weight[p];
-            let k = k.map(|row| row.map(|x| x * weight));
-            stiffness.add(gradient, &k, &v.map(|x| x * weight), &terms);
+            stiffness.add(gradient, &k, &v, weight, &terms);
         }
     }
 
@@ -289,13 +288,20 @@ impl<const N: usize, const T: usize> Stiffness<N, T> {
         [g1, g2, g3]: &[[Lanes; N]; 3],
         k: &[Deformation<Lanes>; 5],
         v: &Deformation<Lanes>,
+        weight: Lanes,
         terms: &[f64; CUBIC_PRESSURES],
     ) {
         for b in 0..N {
+            let [w1, w2, w3] = [g1[b] * weight, g2[b] * weight, g3[b] * weight];
             // Stiffness times gradient, of the node's radius and height.
-            let radial: [Lanes; 5] =
-                core::array::from_fn(|i| k[i][0] * g1[b] + k[i][1] * g2[b] + k[i][2] * g3[b]);
-            let axial: [Lanes; 2] = core::array::from_fn(|i| k[3 + i][3] * g1[b] + k[3 + i][4] * g2[b]);
+            let radial = [0, 1, 2, 3, 4].map(
+                #[inline(always)]
+                |i: usize| k[i][0] * w1 + k[i][1] * w2 + k[i][2] * w3,
+            );
+            let axial = [3, 4].map(
+                #[inline(always)]
+                |i: usize| k[i][3] * w1 + k[i][4] * w2,
+            );
             for a in 0..=b {
                 self.radial[a][b] += radial[0] * g1[a] + radial[1] * g2[a] + radial[2] * g3[a];
                 self.axial[a][b] += axial[0] * g1[a] + axial[1] * g2[a];
@@ -304,10 +310,7 @@ impl<const N: usize, const T: usize> Stiffness<N, T> {
             for a in 0..N {
                 self.mixed[b][a] += radial[3] * g1[a] + radial[4] * g2[a];
             }
-            let of_volume = [
-                v[0] * g1[b] + v[1] * g2[b] + v[2] * g3[b],
-                v[3] * g1[b] + v[4] * g2[b],
-            ];
+            let of_volume = [v[0] * w1 + v[1] * w2 + v[2] * w3, v[3] * w1 + v[4] * w2];
             for (term, &value) in self.volume.iter_mut().zip(terms) {
                 term[0][b] += of_volume[0] * value;
                 term[1][b] += of_volume[1] * value;

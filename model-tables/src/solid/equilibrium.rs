@@ -22,8 +22,11 @@ const TOLERANCE: f64 = 1e-10;
 const MAX_ITERATIONS: usize = 30;
 /// Largest displacement of a node in an iteration, over the wall thickness.
 const STEP_LIMIT: f64 = 0.5;
+/// Displacement of a node, over the wall thickness, after which the wall's part of the equations is set up anew. What changes with the contact's edge
+/// is the plate's part.
+const RENEWAL: f64 = 0.1;
 /// A step that leaves more than this part of the residual is the last with its factors.
-const CONTRACTION: f64 = 0.25;
+const CONTRACTION: f64 = 0.1;
 
 /// Unknowns of a state.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,10 +128,10 @@ pub struct Wall {
     forces: Vec<[f64; 2]>,
     /// Derivative of the volume by the nodes: zero but for the inner ones.
     by_node: Vec<[f64; 2]>,
-    /// What the plate's forces on the nodes grow by with the indentation, at the latest factors.
-    by_indentation: Vec<[f64; 2]>,
-    /// Whether the latest factors are those of a minimum of the energy.
-    stable: bool,
+    /// The plate's stiffness on each column, in the latest factors.
+    by_depth: Vec<[[f64; 3]; 3]>,
+    /// Negative pivots of each column.
+    negative: Vec<usize>,
     /// Newton's step, and the part of it that goes with the fluid's pressure.
     step: State,
     by_pressure: State,
@@ -158,8 +161,8 @@ impl Wall {
             assembly: Assembly::new(&mesh, &material),
             forces: step.nodes.clone(),
             by_node: step.nodes.clone(),
-            by_indentation: step.nodes.clone(),
-            stable: true,
+            by_depth: vec![[[0.0; 3]; 3]; elements.along],
+            negative: Vec::with_capacity(elements.along),
             by_pressure: step.clone(),
             step,
             factorisations: 0,
@@ -196,32 +199,48 @@ impl Wall {
         self.assembly.energy(&self.material, state)
     }
 
-    /// The deformations at the Gauss points outside the crease.
-    fn deformations<'a>(&'a self, state: &'a State) -> impl Iterator<Item = element::Deformation> + 'a {
+    /// The deformations at the Gauss points, with those in the crease or without.
+    fn deformations<'a>(
+        &'a self,
+        state: &'a State,
+        crease: bool,
+    ) -> impl Iterator<Item = element::Deformation> + 'a {
         let through = self.mesh.elements.through;
         self.mesh.points.iter().enumerate().flat_map(move |(e, points)| {
             let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
-            let outside = points.iter().filter(|point| !point.in_crease);
+            let outside = points.iter().filter(move |point| crease || !point.in_crease);
             outside.map(move |point| element::deformation(&point.gradient, &positions))
         })
     }
 
     /// The largest `I1` outside the crease.
     pub fn largest_invariant(&self, state: &State) -> f64 {
-        self.deformations(state)
+        self.deformations(state, false)
             .map(element::first_invariant)
             .fold(3.0, f64::max)
     }
 
     /// Whether the law softens anywhere in a state.
     pub fn softens(&self, state: &State) -> bool {
-        self.deformations(state)
+        self.deformations(state, true)
             .any(|deformation| element::softens(&self.material.law, deformation))
     }
 
-    /// Whether the latest settled state is a minimum of the energy, the fluid's included, among its neighbours.
-    pub fn is_stable(&self) -> bool {
-        self.stable
+    /// Whether the latest settled state is a minimum of the energy, the fluid's included, among its neighbours: by the latest factors.
+    pub fn is_stable(&mut self, fluid: &Fluid) -> bool {
+        // In the crease at the rim the surface may roll over the base, of no consequence for the rest.
+        let through = self.mesh.elements.through;
+        let columns = self.mesh.points.chunks(through);
+        let outside = columns.take_while(|column| !column.iter().flatten().any(|point| point.in_crease));
+        match self.negative.iter().take(outside.count()).sum() {
+            0 => true,
+            1 => {
+                // A direction in which the energy falls is no way out where the fluid's volume closes it.
+                self.follow_pressure();
+                fluid.by_pressure + fluid.by_volume * self.change(&self.by_pressure) < 0.0
+            }
+            _ => false,
+        }
     }
 
     /// Solves for the state in balance with a plate at a height and the fluid's equation, starting from `state`.
@@ -232,6 +251,8 @@ impl Wall {
     /// [`Failure`]; `state` is then of no use.
     pub fn settle(&mut self, state: &mut State, plate: f64, fluid: &Fluid) -> Result<Balance, Failure> {
         let mut before = f64::INFINITY;
+        // Not set up yet.
+        let mut moved = f64::INFINITY;
         let mut factors_hold = false;
         for _ in 0..MAX_ITERATIONS {
             let balance = self.balance(state, plate, fluid);
@@ -239,24 +260,32 @@ impl Wall {
             if !balance.residual.is_finite() {
                 return Err(Failure::Singular);
             }
+
             let force = balance.force / self.mesh.thickness;
             if balance.residual < TOLERANCE + RELATIVE_TOLERANCE * force {
                 // Admissible only right side out: the equations go on beyond.
-                let least = self.deformations(state).map(element::least);
+                let least = self.deformations(state, false).map(element::least);
                 return if least.fold(f64::INFINITY, f64::min) > 0.0 {
                     Ok(balance)
                 } else {
                     Err(Failure::InsideOut)
                 };
             }
-            if !factors_hold || balance.residual > CONTRACTION * before {
-                self.factor(state, plate, fluid).ok_or(Failure::Singular)?;
+            if moved > RENEWAL * self.mesh.thickness {
+                self.set_up(state);
+                self.factor(state, plate, 0).ok_or(Failure::Singular)?;
+                // Good enough also where the contact's edge moves on.
+                self.follow_pressure();
+                moved = 0.0;
+            } else if !factors_hold || balance.residual > CONTRACTION * before {
+                self.factor(state, plate, usize::MAX).ok_or(Failure::Singular)?;
             }
             before = balance.residual;
             let excess = fluid.excess(&balance, state);
             let largest = self.solve(fluid, excess).ok_or(Failure::Singular)?;
             let limit = STEP_LIMIT * self.mesh.thickness / largest;
             factors_hold = limit >= 1.0;
+            moved += largest * limit.min(1.0);
             state.add(limit.min(1.0), &self.step);
         }
         Err(Failure::Stalled { residual: before })
@@ -317,38 +346,24 @@ impl Wall {
         }
     }
 
-    /// Sets up the linear equations at a state, and factors them.
-    fn factor(&mut self, state: &State, plate: f64, fluid: &Fluid) -> Option<()> {
-        self.factorisations += 1;
+    /// Sets up the linear equations of wall and fluid at a state.
+    fn set_up(&mut self, state: &State) {
         let station = 2 * self.mesh.stride();
         self.fronts.clear();
         self.assembly.stiffness(&self.material, state, &mut self.fronts);
         self.by_node.fill([0.0; 2]);
-        self.by_indentation.fill([0.0; 2]);
         for column in 0..self.mesh.elements.along {
-            let [inner, outer] =
-                [0, self.mesh.layers() - 1].map(|layer| edge_nodes(&self.mesh, column, layer));
-            let [local_inner, local_outer] =
-                [0, self.mesh.layers() - 1].map(|layer| edge_nodes(&self.mesh, 0, layer));
+            let [nodes, local] = [column, 0].map(|column| edge_nodes(&self.mesh, column, 0));
             let front = self.fronts.column(column);
             let [r, z] = edge(&self.mesh, &state.nodes, column, 0);
             let share = fluid::share(&r, &z);
             for i in 0..6 {
-                self.by_node[inner[i % 3]][i / 3] += share.first[i];
+                self.by_node[nodes[i % 3]][i / 3] += share.first[i];
                 for j in 0..6 {
-                    let [row, other] = [i, j].map(|i| 2 * local_inner[i % 3] + i / 3);
+                    let [row, other] = [i, j].map(|i| 2 * local[i % 3] + i / 3);
                     if row <= other {
                         front[Fronts::place(station, row, other)] -= state.fluid * share.second[i][j];
                     }
-                }
-            }
-            let z = outer.map(|node| state.nodes[node][1]);
-            let action = plate::action(self.contact_stiffness, &self.outer[column], &z, plate);
-            for i in 0..3 {
-                self.by_indentation[outer[i]][1] += action.second[i].iter().sum::<f64>();
-                for j in i..3 {
-                    let [row, other] = [i, j].map(|i| 2 * local_outer[i] + 1);
-                    front[Fronts::place(station, row, other)] += action.second[i][j];
                 }
             }
         }
@@ -360,14 +375,41 @@ impl Wall {
         for node in &mut self.by_node[..self.mesh.stride()] {
             node[0] = 0.0;
         }
-        let negative = self.fronts.eliminate()?;
+        self.by_depth.fill([[0.0; 3]; 3]);
+    }
+
+    /// Factors the linear equations at a state: those of the wall as they were set up, the plate's of now.
+    fn factor(&mut self, state: &State, plate: f64, from: usize) -> Option<()> {
+        self.factorisations += 1;
+        let station = 2 * self.mesh.stride();
+        let local = edge_nodes(&self.mesh, 0, self.mesh.layers() - 1);
+        let mut first = from;
+        for column in 0..self.mesh.elements.along {
+            let z = edge_nodes(&self.mesh, column, self.mesh.layers() - 1).map(|node| state.nodes[node][1]);
+            let now = plate::action(self.contact_stiffness, &self.outer[column], &z, plate).second;
+            if now == self.by_depth[column] {
+                continue;
+            }
+            first = first.min(column);
+            let front = self.fronts.column(column);
+            for i in 0..3 {
+                for j in i..3 {
+                    let [row, other] = [i, j].map(|i| 2 * local[i] + 1);
+                    front[Fronts::place(station, row, other)] += now[i][j] - self.by_depth[column][i][j];
+                }
+            }
+            self.by_depth[column] = now;
+        }
+        self.negative.truncate(first);
+        self.fronts.eliminate(first, &mut self.negative)?;
+        Some(())
+    }
+
+    /// What goes with the fluid's pressure, by the latest factors.
+    fn follow_pressure(&mut self) {
         self.by_pressure.nodes.copy_from_slice(&self.by_node);
         self.fronts.solve(self.by_pressure.nodes.as_flattened_mut());
         self.assembly.pressures(&mut self.by_pressure, false);
-        // A direction in which the energy falls is no way out where the fluid's volume closes it.
-        let closes = fluid.by_pressure + fluid.by_volume * self.change(&self.by_pressure);
-        self.stable = negative == 0 || (negative == 1 && closes < 0.0);
-        Some(())
     }
 
     /// Change of the fluid's volume with a step.
@@ -408,18 +450,25 @@ impl Wall {
 
     /// How the latest settled state follows the plate, by the latest factors: those of an iterate beside it.
     pub fn tangent(&mut self, fluid: &Fluid) -> Option<Tangent> {
-        for (x, force) in self.step.nodes.iter_mut().zip(&self.by_indentation) {
-            *x = force.map(|force| -force);
+        self.follow_pressure();
+        self.step.nodes.fill([0.0; 2]);
+        let outer = self.mesh.layers() - 1;
+        for (column, by_depth) in self.by_depth.iter().enumerate() {
+            let nodes = edge_nodes(&self.mesh, column, outer);
+            for (node, row) in nodes.iter().zip(by_depth) {
+                self.step.nodes[*node][1] -= row.iter().sum::<f64>();
+            }
         }
         self.fronts.solve(self.step.nodes.as_flattened_mut());
         self.assembly.pressures(&mut self.step, false);
         self.border(fluid, 0.0)?;
-        let force = self
-            .by_indentation
-            .iter()
-            .zip(&self.step.nodes)
-            .map(|(by, step)| by[1] * (1.0 + step[1]))
-            .sum();
+        let mut force = 0.0;
+        for (column, by_depth) in self.by_depth.iter().enumerate() {
+            let nodes = edge_nodes(&self.mesh, column, outer);
+            for (node, row) in nodes.iter().zip(by_depth) {
+                force += row.iter().sum::<f64>() * (1.0 + self.step.nodes[*node][1]);
+            }
+        }
         Some(Tangent {
             state: self.step.clone(),
             force,

@@ -15,7 +15,11 @@ pub struct Fronts {
     station: usize,
     columns: usize,
     /// Rows of left and middle stations, each as wide as its column; behind them those of the rim.
+    matrix: Vec<f64>,
+    /// The factors, alike.
     values: Vec<f64>,
+    /// What elimination before a column left on its left station, column by column.
+    carried: Vec<f64>,
     /// One over the entries of `D`.
     inverse: Vec<f64>,
 }
@@ -27,14 +31,16 @@ impl Fronts {
         Self {
             station,
             columns,
+            matrix: vec![0.0; rows * 3 * station],
             values: vec![0.0; rows * 3 * station],
+            carried: vec![0.0; (columns + 1) * station * station],
             inverse: vec![0.0; 2 * columns * station],
         }
     }
 
     /// All zero.
     pub fn clear(&mut self) {
-        self.values.fill(0.0);
+        self.matrix.fill(0.0);
     }
 
     /// Entries from one row of a column to the next.
@@ -52,26 +58,39 @@ impl Fronts {
     /// The entries of a column, of those [`Fronts::place`]s.
     #[inline]
     pub fn column(&mut self, column: usize) -> &mut [f64] {
-        &mut self.values[column * 6 * self.station * self.station..]
+        &mut self.matrix[column * 6 * self.station * self.station..]
     }
 
     /// Holds an unknown of the first station.
     pub fn hold_first(&mut self, unknown: usize) {
         let width = 3 * self.station;
         for row in 0..unknown {
-            self.values[row * width + unknown] = 0.0;
+            self.matrix[row * width + unknown] = 0.0;
         }
-        self.values[unknown * width..(unknown + 1) * width].fill(0.0);
-        self.values[unknown * width + unknown] = 1.0;
+        self.matrix[unknown * width..(unknown + 1) * width].fill(0.0);
+        self.matrix[unknown * width + unknown] = 1.0;
     }
 
-    /// Factors the matrix; how many entries of `D` are negative. `None` if it is singular.
-    pub fn eliminate(&mut self) -> Option<usize> {
+    /// Factors the matrix, of which only columns from one on have changed since the last time; adds to `negative` how many entries of `D`
+    /// are that in each of those columns. `None` if it is singular.
+    pub fn eliminate(&mut self, from: usize, negative: &mut Vec<usize>) -> Option<()> {
         let station = self.station;
         let (own, width) = (2 * station, 3 * station);
-        let mut negative = 0;
-        for column in 0..self.columns {
+        for column in from..self.columns {
+            let mut falls = 0;
             let column_values = &mut self.values[column * own * width..][..width * width];
+            let matrix = &self.matrix[column * own * width..][..own * width];
+            column_values[..own * width].copy_from_slice(matrix);
+            column_values[own * width..].fill(0.0);
+            let carried = &self.carried[column * station * station..][..station * station];
+            for (row, carried) in column_values
+                .chunks_exact_mut(width)
+                .zip(carried.chunks_exact(station))
+            {
+                for (x, y) in row.iter_mut().zip(carried) {
+                    *x += y;
+                }
+            }
             let inverse = &mut self.inverse[column * own..][..own];
             for first in (0..own).step_by(BLOCK) {
                 let (pivots, targets) = column_values[first * width..].split_at_mut(BLOCK * width);
@@ -88,14 +107,20 @@ impl Fronts {
                     if pivot == 0.0 || !pivot.is_finite() {
                         return None;
                     }
-                    negative += usize::from(pivot < 0.0);
+                    falls += usize::from(pivot < 0.0);
                     inverse[first + i] = 1.0 / pivot;
                 }
                 let inverse: &[f64; BLOCK] = inverse[first..first + BLOCK].try_into().ok()?;
                 update(pivots, inverse, targets, width, own, first);
             }
+            let carried = &mut self.carried[(column + 1) * station * station..][..station * station];
+            let rows = column_values[own * width..].chunks_exact(width);
+            for (row, carried) in rows.zip(carried.chunks_exact_mut(station)) {
+                carried.copy_from_slice(&row[..station]);
+            }
+            negative.push(falls);
         }
-        Some(negative)
+        Some(())
     }
 
     /// Solves with the factors, in place: unknowns column by column. Those of the rim are zero.
@@ -173,13 +198,22 @@ fn update(
         }
         // The right station's rows begin with their own column.
         let from = if i < own { i } else { i - own };
-        let factors: [[f64; BLOCK]; 2] =
-            core::array::from_fn(|r| core::array::from_fn(|k| rows[k][i + r] * inverse[k]));
+        let [f, g] = [i, i + 1].map(
+            #[inline(always)]
+            |i| {
+                let [a, b, c, d] = rows;
+                [
+                    a[i] * inverse[0],
+                    b[i] * inverse[1],
+                    c[i] * inverse[2],
+                    d[i] * inverse[3],
+                ]
+            },
+        );
         let count = width - i;
         let (one, two) = pair.split_at_mut(width);
         let (one, two) = (&mut one[from..from + count], &mut two[from..from + count]);
         let [a, b, c, d] = rows.map(|row| &row[i..i + count]);
-        let [f, g] = factors;
         for j in 0..count {
             let y = [a[j], b[j], c[j], d[j]];
             one[j] -= f[0] * y[0] + f[1] * y[1] + f[2] * y[2] + f[3] * y[3];
@@ -231,6 +265,12 @@ mod tests {
         (fronts, full)
     }
 
+    fn negative_count(fronts: &mut Fronts) -> Option<usize> {
+        let mut negative = Vec::new();
+        fronts.eliminate(0, &mut negative)?;
+        Some(negative.iter().sum())
+    }
+
     /// The right-hand side of a known solution gives it back.
     #[test]
     fn solves_what_it_was_given() {
@@ -242,11 +282,25 @@ mod tests {
             .map(|row| row.iter().zip(&known).map(|(a, x)| a * x).sum())
             .collect();
         x.extend([0.0; STATION]);
-        assert_eq!(fronts.eliminate(), Some(0));
+        assert_eq!(negative_count(&mut fronts), Some(0));
         fronts.solve(&mut x);
         for (found, expected) in x.iter().zip(&known) {
             assert!((found - expected).abs() < 1e-12, "{found} {expected}");
         }
+    }
+
+    /// A change in the middle, factored from there on, gives what factoring all of it does.
+    #[test]
+    fn a_change_is_factored_from_its_column_on() {
+        let (mut fronts, _) = matrix(|_| 20.0);
+        assert_eq!(negative_count(&mut fronts), Some(0));
+        fronts.column(3)[Fronts::place(STATION, 1, 8)] += 0.5;
+        let mut anew = fronts.clone();
+        assert!(fronts.eliminate(3, &mut Vec::new()).is_some() && negative_count(&mut anew).is_some());
+        let [mut x, mut y] = [(); 2].map(|()| vec![1.0; UNKNOWNS + STATION]);
+        fronts.solve(&mut x);
+        anew.solve(&mut y);
+        assert_eq!(x, y);
     }
 
     /// A diagonally dominant matrix has as many negative eigenvalues as negative diagonals (Gershgorin's circles).
@@ -255,7 +309,7 @@ mod tests {
         let negative = |row: usize| row % 7 == 3;
         let (mut fronts, _) = matrix(|row| if negative(row) { -60.0 } else { 60.0 });
         let expected = (0..UNKNOWNS).filter(|&row| negative(row)).count();
-        assert_eq!(fronts.eliminate(), Some(expected));
+        assert_eq!(negative_count(&mut fronts), Some(expected));
     }
 
     #[test]
@@ -264,7 +318,7 @@ mod tests {
         fronts.hold_first(2);
         let mut x = vec![1.0; UNKNOWNS + STATION];
         x[2] = 0.0;
-        assert!(fronts.eliminate().is_some());
+        assert!(negative_count(&mut fronts).is_some());
         fronts.solve(&mut x);
         assert!(x[2] == 0.0 && x[3] != 0.0);
     }
@@ -273,6 +327,6 @@ mod tests {
     fn notices_singular_equations() {
         let mut fronts = Fronts::new(2, 2);
         fronts.clear();
-        assert!(fronts.eliminate().is_none());
+        assert!(negative_count(&mut fronts).is_none());
     }
 }
