@@ -14,6 +14,7 @@ mod fit;
 mod ladder;
 mod linear;
 mod materials;
+mod mesh_error;
 mod model;
 mod monitor;
 mod output;

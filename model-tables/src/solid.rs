@@ -5,10 +5,11 @@
 //! displacement, discontinuous linear pressure. Unlike in the membrane the plate's force is not the fluid's pressure
 //! times the contact area: at light touch the wall's bending carries most of it.
 //!
-//! [`mesh`] (the undeformed wall) -> [`element`] (one element's forces and stiffness), [`fluid`] (the volume inside) and
-//! [`plate`] (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`] (Newton's method) -> [`inflation`] ->
-//! [`press`] (states at asked indentations, each from its neighbours on the [`trail`], and the end of the press) -> [`section`] (what is read off along the
-//! meridian).
+//! [`mesh`] (the undeformed wall) -> [`element`] (the mechanics of a point) -> [`batch`] (forces and stiffness of four elements side by side,
+//! in [`lanes`]), [`fluid`] (the volume inside) and [`plate`] (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
+//! (Newton's method) -> [`inflation`] -> [`path`] (the
+//! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units)
+//! -> [`section`] (what is read off along the meridian).
 
 #[cfg(feature = "std")]
 mod assembly;
@@ -36,6 +37,10 @@ pub mod plate;
 pub mod press;
 #[cfg(feature = "std")]
 pub mod section;
+#[cfg(feature = "std")]
+pub mod state;
+#[cfg(feature = "std")]
+pub mod station;
 
 use core::fmt;
 
@@ -46,8 +51,6 @@ pub enum Failure {
     InsideOut,
     /// The equations are singular.
     Singular,
-    /// The law softens at strains that the wall reaches, `W' + 2 (I1 - 3) W'' <= 0`, and Newton's method did not converge.
-    Softened,
     /// What was found in balance is not on the path from rest.
     Elsewhere,
     /// Newton's method did not converge.
@@ -62,10 +65,6 @@ impl fmt::Display for Failure {
         match self {
             Self::InsideOut => write!(f, "the wall folded onto itself"),
             Self::Singular => write!(f, "the equations became singular"),
-            Self::Softened => write!(
-                f,
-                "the material law softens at strains that the wall reaches: choose constants that hold there, or press less"
-            ),
             Self::Elsewhere => write!(f, "the next state in balance is not on the path from rest"),
             Self::Stalled { residual } => {
                 write!(f, "Newton's method did not converge, residual {residual:.1e}")

@@ -9,10 +9,11 @@ use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::press::{self, EndsBy, ModelError};
-use model_tables::solid::equilibrium::{Fluid, State, Wall};
+use model_tables::solid::equilibrium::Wall;
 use model_tables::solid::inflation::mid_surface;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::{COARSE, FULL, Press};
+use model_tables::solid::state::{Fluid, State};
 use serde::Deserialize;
 
 fn printed_fingertip() -> Design {

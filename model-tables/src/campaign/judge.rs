@@ -101,6 +101,7 @@ fn reason(error: &ModelError, press: Option<&Press>) -> &'static str {
         ModelError::Unstretched | ModelError::RestNotForSolid | ModelError::PressureOutOfReach { .. } => {
             return "no-rest-state";
         }
+        ModelError::NoStiffness { .. } => return "no-stiffness",
         ModelError::Unheld { .. } => return "inflates-by-itself",
         ModelError::RestUnsolved { failure } | ModelError::PressUnsolved { failure, .. } => failure,
     };

@@ -2,7 +2,10 @@
 
 use super::model::{self, Model};
 use super::rows::{Cell, Rows};
-use super::{Answer, Field, Refusal, bench, finite, read, refuse_plain, warn, warn_of_instability};
+use super::{
+    Answer, Field, Refusal, bench, finite, mesh_error, read, refuse_plain, warn, warn_of_instability,
+};
+use crate::curve::Contact;
 use crate::design_file::DesignFile;
 use crate::press::{ModelError, Press};
 use crate::rung::{Kind, Rung};
@@ -110,11 +113,16 @@ fn solid(
     let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
     let mut rows = Rows::new(COLUMNS);
     let mut deepest = 0.0_f64;
-    // States on the way serve all that follow, in whatever order.
+    let mut contacts = Vec::new();
     for &asked in &arguments.indentation_mm {
         let depth = bench::depth(calibration, asked);
         let state = press.at_indentation(depth).map_err(refuse)?;
         deepest = deepest.max(depth);
+        contacts.push(Contact {
+            indentation: depth,
+            pressure_rise: state.pressure_rise,
+            force: state.force,
+        });
         rows.push(vec![
             Cell::Number(asked),
             Cell::Number(calibration.pressure_read(state.pressure) * 1e-3),
@@ -129,10 +137,18 @@ fn solid(
             Cell::Empty,
         ]);
     }
+    let mut notes: Vec<String> = model.note.iter().cloned().collect();
+    notes.push(mesh_error::note(&model.design, elements, &contacts));
+    notes.extend(press.other_state().map(|other| {
+        format!(
+            "other states exist: one at {:.6} mm has a pressure rise of {:.6} kPa and a force of {:.6} N; these are \
+             the states that a press from rest passes",
+            calibration.indentation_read(other.indentation) * 1e3,
+            calibration.pressure_read(other.pressure_rise) * 1e-3,
+            other.force
+        )
+    }));
     let mut rung = Rung::Solid(Box::new(press));
     bench::warn_of_strain(&arguments.design, design_file, &mut rung, deepest);
-    Ok(Answer {
-        rows,
-        notes: model.note.iter().cloned().collect(),
-    })
+    Ok(Answer { rows, notes })
 }

@@ -2,10 +2,10 @@
 
 use super::batch::{Batch, Forces, Stiffness};
 use super::element::Material;
-use super::equilibrium::State;
 use super::front::Fronts;
 use super::lanes::Lanes;
 use super::mesh::{CUBIC_PRESSURES, FUNCTIONS, Mesh, NODES, PRESSURES};
+use super::state::State;
 use crate::material::Hyperelastic as _;
 
 /// The elements of a mesh, of one kind.

@@ -9,6 +9,7 @@ use super::fluid;
 use super::front::Fronts;
 use super::mesh::{CUBIC_PRESSURES, Elements, Mesh, NODES};
 use super::plate;
+use super::state::{Balance, Fluid, State};
 use crate::material::Law;
 
 /// Contact stiffness times wall thickness, over the shear modulus: a contact pressure of a tenth of the modulus penetrates
@@ -18,8 +19,8 @@ const CONTACT_STIFFNESS: f64 = 200.0;
 const RELATIVE_TOLERANCE: f64 = 1e-8;
 /// The same in moduli times radius times thickness (volume: square radii times thickness), where there is hardly a force.
 const TOLERANCE: f64 = 1e-10;
-/// Iterations after which a state counts as lost.
-const MAX_ITERATIONS: usize = 30;
+/// Iterations, those with earlier factors among them, after which a state counts as lost.
+const MAX_ITERATIONS: usize = 60;
 /// Largest displacement of a node in an iteration, over the wall thickness.
 const STEP_LIMIT: f64 = 0.5;
 /// Displacement of a node, over the wall thickness, after which the wall's part of the equations is set up anew. What changes with the contact's edge
@@ -27,80 +28,6 @@ const STEP_LIMIT: f64 = 0.5;
 const RENEWAL: f64 = 0.1;
 /// A step that leaves more than this part of the residual is the last with its factors.
 const CONTRACTION: f64 = 0.1;
-
-/// Unknowns of a state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State {
-    /// Radius and height of every node, in the mesh's order, with the amplitudes of cubic functions.
-    pub nodes: Vec<[f64; 2]>,
-    /// Terms of the pressure in each element.
-    pub pressures: Vec<[f64; CUBIC_PRESSURES]>,
-    /// Gauge pressure of the fluid.
-    pub fluid: f64,
-}
-
-impl State {
-    /// Takes over another state of the same mesh, without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.nodes.copy_from_slice(&other.nodes);
-        self.pressures.copy_from_slice(&other.pressures);
-        self.fluid = other.fluid;
-    }
-
-    /// Adds a multiple of another vector of unknowns.
-    pub fn add(&mut self, factor: f64, other: &Self) {
-        for (x, y) in self.nodes.iter_mut().zip(&other.nodes) {
-            x[0] += factor * y[0];
-            x[1] += factor * y[1];
-        }
-        for (x, y) in self.pressures.iter_mut().zip(&other.pressures) {
-            for (x, y) in x.iter_mut().zip(y) {
-                *x += factor * y;
-            }
-        }
-        self.fluid += factor * other.fluid;
-    }
-
-    /// All zero.
-    pub fn clear(&mut self) {
-        self.nodes.fill([0.0; 2]);
-        self.pressures.fill([0.0; CUBIC_PRESSURES]);
-        self.fluid = 0.0;
-    }
-}
-
-/// The equation of the fluid: `by_volume (V - volume) + by_pressure (P - pressure) = 0`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fluid {
-    /// Weight of the volume.
-    pub by_volume: f64,
-    /// Volume to have, `V` over `by_volume`'s unit.
-    pub volume: f64,
-    /// Weight of the pressure: the compliance, where volume is kept.
-    pub by_pressure: f64,
-    /// Pressure to have.
-    pub pressure: f64,
-}
-
-impl Fluid {
-    /// What a state has too much of the left side.
-    fn excess(&self, balance: &Balance, state: &State) -> f64 {
-        self.by_volume * (balance.volume - self.volume) + self.by_pressure * (state.fluid - self.pressure)
-    }
-}
-
-/// What a converged state comes with.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Balance {
-    /// Volume of the fluid.
-    pub volume: f64,
-    /// Force on the plate.
-    pub force: f64,
-    /// Energy in the contact.
-    pub contact_energy: f64,
-    /// Largest entry of the residual, in units of the tolerance's scale.
-    pub residual: f64,
-}
 
 /// How a state follows the plate, at a fixed equation of the fluid.
 #[derive(Clone, Debug)]

@@ -1,7 +1,8 @@
 //! Rest states of a solid: inflated with the rim held, or inflated free and then bonded as a membrane is.
 
-use super::equilibrium::{Fluid, State, Wall};
+use super::equilibrium::Wall;
 use super::section;
+use super::state::{Fluid, State};
 use crate::adapt::Failure as AnyFailure;
 use crate::design::{Design, Membrane, RestBy};
 use crate::membrane::TensionField;

@@ -1,10 +1,12 @@
 //! Pressing a solid fingertip: its rest state, states at asked indentations, the end of the press.
 
-use super::equilibrium::{Fluid, Wall};
+use super::equilibrium::Wall;
 use super::inflation;
 use super::mesh::Elements;
-use super::path::{Kept, Other, Path, Stop};
+use super::path::{Other, Path, Stop};
 use super::section::{self, Station};
+use super::state::Fluid;
+use super::station::Kept;
 use crate::adapt::Failure as AnyFailure;
 use crate::curve::{Contact, Curve};
 use crate::design::{Design, RestBy};

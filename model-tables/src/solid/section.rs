@@ -1,8 +1,9 @@
 //! What is read off a state along the meridian: contact, touch of the base, stretches and section forces.
 
 use super::element;
-use super::equilibrium::{State, Wall, edge, positions};
+use super::equilibrium::{Wall, edge, positions};
 use super::mesh::{CREASE, FUNCTIONS, PLACES, WEIGHTS, function, shape, slope};
+use super::state::State;
 use crate::press::EndsBy;
 use core::f64::consts::FRAC_PI_2;
 
