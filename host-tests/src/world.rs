@@ -9,7 +9,7 @@ use fingertip::station::{Beginning, Station, ToStore};
 use fingertip::supervisor::Breadcrumb;
 use fingertip::telemetry::{Message, ResetCause, Stored};
 use fingertip::transducer::{Millipascals, Sample};
-use model_tables::constants::{DesignConstants, TransducerKind};
+use model_tables::constants::{DesignConstants, Quantity, TransducerKind};
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;
 
