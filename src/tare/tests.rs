@@ -161,7 +161,11 @@ fn only_a_reset_by_a_person_or_the_supply_measures() {
         verified: true,
     };
     for cause in [ResetCause::PowerOn, ResetCause::Pin, ResetCause::BrownOut] {
-        assert_eq!(StartUp::after(cause, Some(kept)), StartUp::Measured, "{cause}");
+        assert_eq!(
+            StartUp::after(cause, Some(kept), Quantity::Gauge),
+            StartUp::Measured,
+            "{cause}"
+        );
     }
     for cause in [
         ResetCause::Watchdog,
@@ -169,8 +173,16 @@ fn only_a_reset_by_a_person_or_the_supply_measures() {
         ResetCause::LowPower,
         ResetCause::Unknown,
     ] {
-        assert_eq!(StartUp::after(cause, None), StartUp::Stored, "{cause}");
-        assert_eq!(StartUp::after(cause, Some(kept)), StartUp::Kept(kept), "{cause}");
+        assert_eq!(
+            StartUp::after(cause, None, Quantity::Gauge),
+            StartUp::Stored,
+            "{cause}"
+        );
+        assert_eq!(
+            StartUp::after(cause, Some(kept), Quantity::Gauge),
+            StartUp::Kept(kept),
+            "{cause}"
+        );
     }
     let mut bench = Bench::new(GATES, StartUp::Stored);
     assert_eq!(
@@ -253,6 +265,23 @@ fn an_absolute_part_starts_with_the_air_and_waits_to_be_told() {
         assert_eq!(bench.command(|_| zero), Ok(()));
         assert_eq!(bench.zero(), (zero, true));
     }
+}
+
+#[test]
+fn a_verified_zero_of_an_absolute_part_outlives_any_reset_that_keeps_it() {
+    let kept = |verified| Zero {
+        pressure: Pressure(90_000),
+        verified,
+    };
+    let after = |cause, kept| StartUp::after(cause, kept, Quantity::Absolute);
+    for cause in [ResetCause::Pin, ResetCause::BrownOut] {
+        assert_eq!(after(cause, Some(kept(true))), StartUp::Kept(kept(true)));
+        assert_eq!(after(cause, Some(kept(false))), StartUp::Measured);
+    }
+    assert_eq!(after(ResetCause::PowerOn, None), StartUp::Measured);
+    let unseen = after(ResetCause::Watchdog, Some(kept(false)));
+    assert_eq!(unseen, StartUp::Kept(kept(false)));
+    assert_eq!(after(ResetCause::Watchdog, None), StartUp::Stored);
 }
 
 #[test]
