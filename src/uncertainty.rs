@@ -97,11 +97,30 @@ mod tests {
     use super::*;
     use crate::contact::contact;
     use crate::report::Warnings;
-    use crate::test_design::{Linear, RISE_END};
+    use crate::test_design::{Linear, RISE_END, With};
+    use model_tables::table::Reading;
     use proptest::prelude::*;
 
-    fn beside(rise: PressureRise, sigma: PressureRise) -> Sigma {
-        through_tables::<Linear>(rise, &contact::<Linear>(rise, Warnings::NONE), sigma)
+    fn beside<D: Design>(rise: PressureRise, sigma: PressureRise) -> Sigma {
+        through_tables::<D>(rise, &contact::<D>(rise, Warnings::NONE), sigma)
+    }
+
+    /// Many counts to a micronewton and to a nanometre.
+    struct Shallow;
+
+    impl Design for Shallow {
+        const CONSTANTS: DesignConstants = Linear::CONSTANTS;
+        const PRESSURE_FRACTION_BITS: u32 = Linear::PRESSURE_FRACTION_BITS;
+        const LAST_RISE: PressureRise = Linear::LAST_RISE;
+
+        fn lookup(rise: PressureRise) -> Reading {
+            let reading = Linear::lookup(rise);
+            Reading {
+                force: Micronewtons(reading.force.0 >> 12),
+                indentation: Nanometres(reading.indentation.0 >> 12),
+                ..reading
+            }
+        }
     }
 
     #[test]
@@ -117,16 +136,16 @@ mod tests {
     #[test]
     fn at_the_end_of_the_tables_it_is_taken_from_below() {
         let rise = PressureRise(RISE_END - 5);
-        let sigma = beside(rise, PressureRise(700));
+        let sigma = beside::<Linear>(rise, PressureRise(700));
         assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700));
-        let below = beside(PressureRise(-9_000), PressureRise(700));
+        let below = beside::<Linear>(PressureRise(-9_000), PressureRise(700));
         assert_eq!(below.force.0, 700);
     }
 
     #[test]
     fn beyond_the_end_it_is_what_it_is_at_the_end() {
         for beyond in [1, 700, 10_000, i32::MAX - RISE_END] {
-            let sigma = beside(PressureRise(RISE_END + beyond), PressureRise(700));
+            let sigma = beside::<Linear>(PressureRise(RISE_END + beyond), PressureRise(700));
             assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700), "{beyond}");
         }
     }
@@ -141,8 +160,13 @@ mod tests {
 
         #[test]
         fn nothing_overflows(rise in any::<i32>(), sigma in 0..=i32::MAX, drift in 0..=i32::MAX) {
-            let sigma = beside(PressureRise(rise), PressureRise(sigma));
-            prop_assert!(sigma.force.0 > 0 && sigma.indentation.0 > 0);
+            for sigma in [
+                beside::<Linear>(PressureRise(rise), PressureRise(sigma)),
+                beside::<With<4>>(PressureRise(rise), PressureRise(sigma)),
+                beside::<Shallow>(PressureRise(rise), PressureRise(sigma)),
+            ] {
+                prop_assert!(sigma.force.0 > 0 && sigma.indentation.0 > 0);
+            }
             prop_assert!(hypotenuse(drift, rise.saturating_abs()) >= drift);
         }
     }
