@@ -3,7 +3,7 @@
 //!
 //! A Goertek SPL06 answers with the same identity and the same coefficients, measures to 110 kPa only, and lacks the register
 //! that says which temperature sensor the coefficients are of: that reads as a sensor it must not be read with
-//! (Infineon/DPS310-Pressure-Sensor issue 20, ArduPilot pull request 32480). So a part is refused that does not name the
+//! (Infineon/DPS310-Pressure-Sensor issue 20, `ArduPilot` pull request 32480). So a part is refused that does not name the
 //! sensor on the pressure element; a DPS310 calibrated for the other one, which the datasheet allows, is refused with it.
 //!
 //! One pressure and one temperature are commanded for each sample, so that the time of each is known, and the settings

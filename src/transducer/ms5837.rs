@@ -37,7 +37,7 @@ const READ: u32 = 150;
 const VERSIONS: [u16; 2] = [0x00, 0x15];
 
 /// The sensitivity C1 is above this. The datasheets' typical values are 46372 for the 02BA and 34982 for the 30BA; the
-/// parts that ArduPilot's authors collected (pull request 29122) lie apart at 37000.
+/// parts that the authors of `ArduPilot` collected (pull request 29122) lie apart at 37000.
 const LEAST_SENSITIVITY: u16 = 37_000;
 
 /// What the part measures, pascals: 10 to 2000 mbar.

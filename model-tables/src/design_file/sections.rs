@@ -371,26 +371,23 @@ fn fits_the_air(
     let [thinnest, densest] = air_kpa();
     let air = format!("the air is {thinnest} to {densest} kPa");
     let [low, high] = range_kpa;
-    let allowed = match kind.absolute_range_kpa() {
-        Some(own) => {
-            let [lowest, highest] = in_any_air(own);
-            if low >= lowest && high <= highest {
-                return Ok(());
-            }
-            format!(
-                "gauge pressures within [{lowest}, {highest}]: the part measures {} to {} kPa absolute, and {air}",
-                own[0], own[1]
-            )
+    let allowed = if let Some(own) = kind.absolute_range_kpa() {
+        let [lowest, highest] = in_any_air(own);
+        if low >= lowest && high <= highest {
+            return Ok(());
         }
-        None => {
-            if low >= 0.0 && low <= thinnest && high > densest {
-                return Ok(());
-            }
-            format!(
-                "the two ends that the datasheet gives, kPa absolute as transducer.quantity says, from at most {thinnest} to \
-                 above {densest}: {air}"
-            )
+        format!(
+            "gauge pressures within [{lowest}, {highest}]: the part measures {} to {} kPa absolute, and {air}",
+            own[0], own[1]
+        )
+    } else {
+        if low >= 0.0 && low <= thinnest && high > densest {
+            return Ok(());
         }
+        format!(
+            "the two ends that the datasheet gives, kPa absolute as transducer.quantity says, from at most {thinnest} to \
+             above {densest}: {air}"
+        )
     };
     Err(section.refuse("range_kpa", &allowed))
 }
