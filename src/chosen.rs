@@ -41,21 +41,26 @@ pub(crate) fn transducer(port: Port) -> impl Transducer {
 
 /// Says when the next sample is due: a part on a bus measures when it is told, a converter by itself.
 pub(crate) struct Pace {
-    due: Instant,
+    /// Nothing, where a converter's ticks pace it.
+    due: Option<Instant>,
 }
 
 impl Pace {
-    pub(crate) fn new() -> Self {
-        Self { due: Instant::now() }
+    /// The pace of the transducer, or of none.
+    pub(crate) fn new(measures: bool) -> Self {
+        let ticks = measures && cfg!(transducer = "ratiometric");
+        Self {
+            due: (!ticks).then(Instant::now),
+        }
     }
 
     /// Waits until the next sample is due; time that was lost is not caught up.
     pub(crate) async fn wait(&mut self) {
-        if cfg!(transducer = "ratiometric") {
+        let Some(due) = self.due else {
             return;
-        }
+        };
         let period = Duration::from_micros(u64::from(Pipeline::<ImageDesign>::PERIOD));
-        Timer::at(self.due).await;
-        self.due = (self.due + period).max(Instant::now());
+        Timer::at(due).await;
+        self.due = Some((due + period).max(Instant::now()));
     }
 }

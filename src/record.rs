@@ -26,6 +26,9 @@ use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 /// Bytes of a record: a multiple of every write unit there is (1 to 16 bytes).
 pub const LENGTH: usize = 48;
 
+/// Bytes at the end of a record, erasures and check, that are never all blank: no memory stands so many erasures.
+pub const END: usize = 8;
+
 const MAGIC: [u8; 4] = *b"FTC\x01";
 
 /// Records are few: no table for speed.
@@ -91,6 +94,11 @@ pub fn encode(record: &Record) -> [u8; LENGTH] {
     let check = CHECK.checksum(&bytes[..LENGTH - 4]);
     bytes[LENGTH - 4..].copy_from_slice(&check.to_le_bytes());
     bytes
+}
+
+/// Whether the end of a record was never written.
+pub fn ends_blank(bytes: &[u8; LENGTH]) -> bool {
+    bytes[LENGTH - END..].iter().all(|&byte| byte == 0xFF)
 }
 
 /// What the bytes are.

@@ -2,16 +2,17 @@
 //! code. Unsafe are the section, which no start-up clears, so that any bits may lie there, and the handler's signature.
 #![allow(unsafe_code)]
 
+use crate::board::ecc;
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 use cortex_m_rt::{ExceptionFrame, exception};
-use fingertip::supervisor::{Breadcrumb, WORDS};
+use fingertip::supervisor::{Breadcrumb, Stage, WORDS};
 use fingertip::telemetry::LastFault;
 
 struct Words(UnsafeCell<MaybeUninit<[u32; WORDS]>>);
 
-// SAFETY: one core; written by the signal task, and by handlers that never return.
+// SAFETY: one core; written by the signal task, and by handlers that do not return to it.
 unsafe impl Sync for Words {}
 
 #[unsafe(link_section = ".uninit.breadcrumb")]
@@ -46,6 +47,11 @@ pub(crate) fn blame(fault: LastFault, detail: u32) {
     });
 }
 
+/// Leaves how far the start has come, for a reset that finds nothing else.
+pub(crate) fn enter(stage: Stage) {
+    blame(LastFault::None, stage as u32);
+}
+
 #[panic_handler]
 fn panicked(info: &PanicInfo<'_>) -> ! {
     cortex_m::interrupt::disable();
@@ -60,4 +66,13 @@ fn panicked(info: &PanicInfo<'_>) -> ! {
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     blame(LastFault::HardFault, frame.pc());
     cortex_m::peripheral::SCB::sys_reset()
+}
+
+#[exception]
+unsafe fn NonMaskableInt() {
+    // A place of the calibration that cannot be read is its reader's matter; nothing else is foreseen.
+    if let Err(address) = ecc::take_failure() {
+        blame(LastFault::NonMaskable, address);
+        cortex_m::peripheral::SCB::sys_reset()
+    }
 }

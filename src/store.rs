@@ -5,6 +5,11 @@
 //! the old calibration or the new one. Every record is read back before it counts. One erasure serves a slot full of
 //! saves, what is stored already is not stored again, and [`ENDURANCE`] ends it before the memory does.
 //!
+//! Memory with error correction refuses to read a unit whose programming or erasure was cut. A place with such a unit
+//! holds no record and is passed over: saves go on behind it, and the next erasure of its slot heals it. A place that
+//! may have held a whole record, newer than the one that serves, makes the state [`Stored::Unreadable`] until the next
+//! save. A record is written in order, so a place that ends blank never held one.
+//!
 //! Own code and no key-value crate: one value and no keys, so that there is nothing to collect; what is proven is the
 //! whole of it, by a sweep over every cut (`host-tests/tests/calibration_store.rs`).
 
@@ -16,7 +21,7 @@ use embedded_storage_async::nor_flash::NorFlash;
 /// Erasures of a slot: what flash is specified for at the least (DS9405 table 49: 10 000 cycles).
 pub const ENDURANCE: u32 = 10_000;
 
-/// Places tried in one slot before it is given up for the other; and times that a place is read.
+/// Places tried in one slot before it is given up for the other.
 const TRIES: u32 = 3;
 
 /// What records are for.
@@ -42,7 +47,7 @@ pub enum StoreError {
 }
 
 /// The two slots.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Store<F> {
     flash: F,
     identity: Identity,
@@ -56,8 +61,34 @@ pub struct Store<F> {
     /// The next place in it.
     next: u32,
     erasures: u32,
-    /// Some place could not be read: the record that serves may not be the last one, and none can be put behind it.
-    unreadable: bool,
+    /// Spoilt places that may have held newer records than the one that serves.
+    hidden: u32,
+    /// The memory refused to read some place.
+    refused: bool,
+}
+
+/// What a place holds.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Place {
+    Blank,
+    Record(Record),
+    /// A record that was never written to its end.
+    Cut,
+    /// Perhaps a record once: it cannot be read, or its check does not fit.
+    Spoilt,
+}
+
+/// What one slot holds.
+#[derive(Clone, Copy, Debug, Default)]
+struct Log {
+    /// Places up to the last one that is not blank.
+    used: u32,
+    /// The last record.
+    latest: Option<Record>,
+    /// Spoilt places behind it.
+    hidden: u32,
+    /// The largest count of erasures in a record.
+    erasures: u32,
 }
 
 impl<F: NorFlash> Store<F> {
@@ -78,46 +109,54 @@ impl<F: NorFlash> Store<F> {
             current: 0,
             next: 0,
             erasures: 0,
-            unreadable: false,
+            hidden: 0,
+            refused: false,
         };
-        let mut torn = false;
-        let mut used = [0; 2];
-        for which in 0..2_u32 {
-            let mut blanks = 0;
-            for place in 0..store.places() {
-                match store.read(which, place).await {
-                    // Within a log a failed save leaves fewer blanks than it tries places.
-                    Ok(Found::Blank) if blanks + 1 == TRIES => break,
-                    Ok(Found::Blank) => {
-                        blanks += 1;
-                        continue;
-                    }
-                    Ok(Found::Record(record)) => {
-                        store.erasures = store.erasures.max(record.erasures);
-                        if store
-                            .latest
-                            .is_none_or(|latest| record.sequence > latest.sequence)
-                        {
-                            store.latest = Some(record);
-                            store.home = which;
-                        }
-                    }
-                    Ok(Found::Torn) => torn = true,
-                    Err(()) => store.unreadable = true,
-                }
-                blanks = 0;
-                used[which as usize] = place + 1;
-            }
+        let logs = [store.scan(0).await, store.scan(1).await];
+        let sequence = |log: &Log| log.latest.map_or(0, |record| record.sequence);
+        let home = usize::from(sequence(&logs[1]) > sequence(&logs[0]));
+        let (serves, other) = (&logs[home], &logs[1 - home]);
+        // Saves leave a slot when it is full, so behind a slot that is not full there is no newer one; and the records
+        // of a slot are older than the first of the next.
+        let turned_over = serves.latest.is_none() || serves.used == store.places();
+        store.hidden = serves.hidden;
+        if turned_over && other.latest.is_none() {
+            store.hidden += other.hidden;
         }
+        store.latest = serves.latest;
+        store.home = home as u32;
         store.current = store.home;
-        store.next = used[store.current as usize];
+        store.next = serves.used;
+        store.erasures = serves.erasures.max(other.erasures);
         let state = match store.latest {
-            _ if store.unreadable => Stored::Unreadable,
-            None if torn => Stored::Damaged,
-            None => Stored::None,
+            Some(_) if store.hidden > 0 => Stored::Unreadable,
             Some(latest) => store.state_of(&latest),
+            None if store.refused => Stored::Unreadable,
+            None if serves.used + other.used > 0 => Stored::Damaged,
+            None => Stored::None,
         };
         (store, state)
+    }
+
+    /// Reads one slot, each place once. All of it: a place that cannot be read now may read as blank at another start,
+    /// so blanks may lie before a record.
+    async fn scan(&mut self, which: u32) -> Log {
+        let mut log = Log::default();
+        for place in 0..self.places() {
+            match self.read(which, place).await {
+                Place::Blank => continue,
+                // A slot is written from its first place on: the last record is the newest.
+                Place::Record(record) => {
+                    log.erasures = log.erasures.max(record.erasures);
+                    log.latest = Some(record);
+                    log.hidden = 0;
+                }
+                Place::Cut => {}
+                Place::Spoilt => log.hidden += 1,
+            }
+            log.used = place + 1;
+        }
+        log
     }
 
     fn state_of(&self, record: &Record) -> Stored {
@@ -164,8 +203,11 @@ impl<F: NorFlash> Store<F> {
             firmware,
             ..
         } = self.identity;
+        // Each spoilt place may hold one.
+        let passed = self.sequence().checked_add(self.hidden);
+        let sequence = passed.and_then(|passed| passed.checked_add(1));
         let record = Record {
-            sequence: self.sequence().checked_add(1).ok_or(StoreError::WornOut)?,
+            sequence: sequence.ok_or(StoreError::WornOut)?,
             design_hash,
             table_version,
             firmware,
@@ -179,11 +221,8 @@ impl<F: NorFlash> Store<F> {
                 ..*latest
             } == record
         };
-        if self.latest.as_ref().is_some_and(same) {
+        if self.hidden == 0 && self.latest.as_ref().is_some_and(same) {
             return Ok(());
-        }
-        if self.unreadable {
-            return Err(StoreError::Failed);
         }
         if self.append(record).await {
             return Ok(());
@@ -202,20 +241,21 @@ impl<F: NorFlash> Store<F> {
         let mut blank = None;
         for place in self.next..self.places().min(self.next + TRIES) {
             // A place that is not blank, or cannot be read, is passed over.
-            if self.read(self.current, place).await != Ok(Found::Blank) {
+            if self.read(self.current, place).await != Place::Blank {
                 continue;
             }
             let bytes = record::encode(&record);
             // What is read back is what the next start will read, whatever the memory says of the write.
             let _ = self.flash.write(self.offset(self.current, place), &bytes).await;
             match self.read(self.current, place).await {
-                Ok(Found::Record(found)) if found == record => {
+                Place::Record(found) if found == record => {
                     self.latest = Some(record);
+                    self.hidden = 0;
                     self.home = self.current;
                     self.next = place + 1;
                     return true;
                 }
-                Ok(Found::Blank) => blank = blank.or(Some(place)),
+                Place::Blank => blank = blank.or(Some(place)),
                 _ => {}
             }
         }
@@ -241,15 +281,25 @@ impl<F: NorFlash> Store<F> {
         Ok(())
     }
 
-    async fn read(&mut self, which: u32, place: u32) -> Result<Found, ()> {
+    async fn read(&mut self, which: u32, place: u32) -> Place {
         let mut bytes = [0; LENGTH];
         let offset = self.offset(which, place);
-        for _ in 0..TRIES {
-            if self.flash.read(offset, &mut bytes).await.is_ok() {
-                return Ok(record::decode(&bytes));
-            }
+        if self.flash.read(offset, &mut bytes).await.is_ok() {
+            return match record::decode(&bytes) {
+                Found::Blank => Place::Blank,
+                Found::Record(record) => Place::Record(record),
+                Found::Torn if record::ends_blank(&bytes) => Place::Cut,
+                Found::Torn => Place::Spoilt,
+            };
         }
-        Err(())
+        self.refused = true;
+        let end = LENGTH - record::END;
+        let last = self.flash.read(offset + end as u32, &mut bytes[end..]).await;
+        if last.is_ok() && record::ends_blank(&bytes) {
+            Place::Cut
+        } else {
+            Place::Spoilt
+        }
     }
 
     const fn places(&self) -> u32 {

@@ -16,7 +16,8 @@ use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 /// A run that lasted this long was a good one, microseconds: later resets are counted from 1.
 pub const GOOD_RUN: u64 = 10_000_000;
 
-/// Resets in a row, each before [`GOOD_RUN`] was over, after which nothing is measured any more.
+/// Resets in a row, each before [`GOOD_RUN`] was over, after which nothing is measured any more: neither the store
+/// nor the transducer is touched, as one of them may be what hangs.
 pub const RESET_LIMIT: u8 = 5;
 
 /// The tasks that must report, and how often.
@@ -51,12 +52,25 @@ impl<const TASKS: usize> Roster<TASKS> {
     }
 }
 
+/// How far a start came: what a hang without another trace is told by.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Stage {
+    /// It is over: samples come.
+    Running = 0,
+    /// Clocks and peripherals are set up.
+    Board = 1,
+    /// The stored calibration is read.
+    Store = 2,
+    /// The first sample is awaited.
+    Transducer = 3,
+}
+
 /// What a run leaves for the next one. In memory that no start-up clears, so any bits may lie there first.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Breadcrumb {
     /// What went wrong, and where.
     pub fault: LastFault,
-    /// Which task, line or address.
+    /// Which task, line or address; the [`Stage`] as long as nothing went wrong.
     pub detail: u32,
     /// Resets in a row that nobody asked for.
     pub resets: u8,
@@ -137,9 +151,10 @@ impl Breadcrumb {
             ResetCause::PowerOn | ResetCause::BrownOut | ResetCause::Pin
         );
         let before = found.filter(|_| cause != ResetCause::PowerOn).unwrap_or_default();
-        let fault = match (before.fault, cause) {
-            (LastFault::None, ResetCause::Watchdog) => LastFault::Hang,
-            (fault, _) => fault,
+        let (fault, detail) = match (before.fault, cause) {
+            (LastFault::None, ResetCause::Watchdog) => (LastFault::Hang, before.detail),
+            (LastFault::None, _) => (LastFault::None, 0),
+            (fault, _) => (fault, before.detail),
         };
         let resets = match (asked, before.good) {
             (true, _) => 0,
@@ -148,12 +163,12 @@ impl Breadcrumb {
         };
         Start {
             fault,
-            detail: before.detail,
+            detail,
             kept: before.zero.filter(|_| before.design_hash == design_hash),
             give_up: resets > RESET_LIMIT,
             crumb: Self {
                 fault: LastFault::None,
-                detail: 0,
+                detail: Stage::Board as u32,
                 resets,
                 good: false,
                 design_hash,
@@ -168,7 +183,7 @@ impl Breadcrumb {
 pub struct Start {
     /// What ended the run before.
     pub fault: LastFault,
-    /// Which task, line or address.
+    /// Which task, line, address or stage.
     pub detail: u32,
     /// The zero that served then, if it is of this design.
     pub kept: Option<Zero>,
@@ -231,6 +246,29 @@ mod tests {
     }
 
     #[test]
+    fn a_hang_while_it_starts_says_where() {
+        let first = Breadcrumb::start(None, ResetCause::PowerOn, 1);
+        let again = Breadcrumb::start(Some(first.crumb), ResetCause::Watchdog, 1);
+        assert_eq!(
+            (again.fault, again.detail),
+            (LastFault::Hang, Stage::Board as u32)
+        );
+        let left = Breadcrumb {
+            detail: Stage::Store as u32,
+            ..again.crumb
+        };
+        let third = Breadcrumb::start(Some(left), ResetCause::Watchdog, 1);
+        assert_eq!(
+            (third.fault, third.detail),
+            (LastFault::Hang, Stage::Store as u32)
+        );
+        assert_eq!(third.crumb.resets, 2);
+        // A button is no hang, wherever it was pressed.
+        let pressed = Breadcrumb::start(Some(left), ResetCause::Pin, 1);
+        assert_eq!((pressed.fault, pressed.detail), (LastFault::None, 0));
+    }
+
+    #[test]
     fn power_and_the_button_start_afresh() {
         let start = Breadcrumb::start(Some(CRUMB), ResetCause::PowerOn, CRUMB.design_hash);
         assert_eq!(
@@ -256,7 +294,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_kept_is_found(fault in 0..5_usize, detail in any::<u32>(), resets in any::<u8>(), flags in any::<[bool; 3]>(), hash in any::<u64>(), zero in any::<i32>()) {
+        fn what_is_kept_is_found(fault in 0..LastFault::CODES.len(), detail in any::<u32>(), resets in any::<u8>(), flags in any::<[bool; 3]>(), hash in any::<u64>(), zero in any::<i32>()) {
             let crumb = Breadcrumb {
                 fault: LastFault::CODES[fault].0,
                 detail,

@@ -1,7 +1,7 @@
 //! The tasks of the firmware: [`signal`] makes reports, [`send`] puts them on the line, [`listen`] takes commands from
 //! it, [`remember`] stores the calibration. The first one feeds the watchdog, while all four report.
 
-use crate::board::{Board, Clock, Ears, Line, Memory, SLOT, Watchdog};
+use crate::board::{self, Board, Clock, Ears, Line, Memory, SLOT, Watchdog};
 use crate::chosen::{self, Pace};
 use crate::retained;
 use core::cell::RefCell;
@@ -18,11 +18,11 @@ use fingertip::design::Design;
 use fingertip::image::ImageDesign;
 use fingertip::outbox::Outbox;
 use fingertip::pipeline::Pipeline;
-use fingertip::report::{Microseconds, Report, Status};
+use fingertip::report::{Fault, Microseconds, Report, Status};
 use fingertip::station::{Beginning, Station, ToStore};
 use fingertip::store::{Identity, Store, StoreError};
-use fingertip::supervisor::{Breadcrumb, GOOD_RUN, Roster};
-use fingertip::telemetry::{Encoded, LastFault, Message};
+use fingertip::supervisor::{Breadcrumb, GOOD_RUN, Roster, Stage};
+use fingertip::telemetry::{Encoded, LastFault, Message, Stored};
 use fingertip::transducer::Transducer;
 use fingertip::transducer::keeper::Keeper;
 use fingertip::wire::Deframer;
@@ -89,29 +89,38 @@ fn alive(task: usize, clock: Clock) {
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let board = Board::take();
+    let constants = ImageDesign::CONSTANTS;
+    // Before anything that can hang, so that every reset is counted.
+    let reset_cause = board::begin();
+    let start = Breadcrumb::start(retained::read(), reset_cause, constants.hash);
+    retained::write(&start.crumb);
+    let board = Board::take(start.give_up);
     let number = |text: &str| text.parse().unwrap_or(u8::MAX);
     let firmware = [
         number(env!("CARGO_PKG_VERSION_MAJOR")),
         number(env!("CARGO_PKG_VERSION_MINOR")),
         number(env!("CARGO_PKG_VERSION_PATCH")),
     ];
-    let constants = ImageDesign::CONSTANTS;
     let identity = Identity {
         design_hash: constants.hash,
         table_version: constants.table_version,
         firmware,
         range: constants.transducer.range,
     };
-    let (store, stored) = Store::open(board.memory, SLOT, identity).await;
-    let start = Breadcrumb::start(retained::read(), board.reset_cause, constants.hash);
-    retained::write(&start.crumb);
+    let (store, stored) = if start.give_up {
+        (None, Stored::Unreadable)
+    } else {
+        retained::enter(Stage::Store);
+        let (store, stored) = Store::open(board.memory, SLOT, identity).await;
+        (Some(store), stored)
+    };
+    retained::enter(Stage::Transducer);
     let beginning = Beginning {
-        reset_cause: board.reset_cause,
+        reset_cause,
         start,
         stored,
-        stored_sequence: store.sequence(),
-        calibration: store.calibration(),
+        stored_sequence: store.as_ref().map_or(0, Store::sequence),
+        calibration: store.as_ref().and_then(Store::calibration),
         clock_failed: !board.crystal,
         firmware,
     };
@@ -120,7 +129,7 @@ async fn main(spawner: Spawner) {
         env!("CARGO_PKG_VERSION"),
         constants.name,
         constants.hash,
-        defmt::Display2Format(&board.reset_cause)
+        defmt::Display2Format(&reset_cause)
     );
     let clock = board.clock;
     let waiting = OUTBOX.init_with(|| Waiting {
@@ -130,29 +139,36 @@ async fn main(spawner: Spawner) {
     spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
     spawner.spawn(listen(board.ears, clock).expect("spawned once"));
     spawner.spawn(remember(store, clock).expect("spawned once"));
-    let transducer = chosen::transducer(board.port);
+    let transducer = board.port.map(chosen::transducer);
     signal(clock, transducer, waiting, board.watchdog, &beginning).await
 }
 
 /// Turns samples into reports, and answers commands. Period: one sample, 1 ms of a converter. Deadline: the next one;
 /// when late, samples are lost, which is reported and counted. Feeds the watchdog between samples or the reasons why
-/// there are none, as long as the other tasks report too; who does not is left for the next run to say.
+/// there are none, as long as the other tasks report too; who does not is left for the next run to say. Without a
+/// transducer it measures nothing and says so at the same pace.
 async fn signal(
     clock: Clock,
-    transducer: impl Transducer,
+    transducer: Option<impl Transducer>,
     waiting: &'static Waiting,
     mut watchdog: Watchdog,
     beginning: &Beginning,
 ) -> ! {
     let mut station = Station::<ImageDesign>::new(beginning);
-    let mut crumb = beginning.start.crumb;
+    let mut crumb = Breadcrumb {
+        detail: Stage::Running as u32,
+        ..beginning.start.crumb
+    };
     let mut log = Log::default();
-    let mut keeper = Keeper::new(transducer, Delay);
-    let mut pace = Pace::new();
+    let mut pace = Pace::new(transducer.is_some());
+    let mut keeper = transducer.map(|transducer| Keeper::new(transducer, Delay));
     let (mut last_sample, mut next_meal, mut next_note) = (None, 0, 0);
     loop {
         pace.wait().await;
-        let sample = keeper.next().await;
+        let sample = match &mut keeper {
+            Some(keeper) => keeper.next().await,
+            None => Err(Fault::ResetLoop),
+        };
         let now = clock.now();
         if now.0 >= next_meal && waiting.frames.borrow().is_empty() {
             // All that was put there before was taken.
@@ -252,14 +268,19 @@ fn refuse() {
     );
 }
 
-/// Stores the calibration. Period: when asked for. Deadline: none; other tasks run meanwhile.
+/// Stores the calibration. Period: when asked for. Deadline: none; other tasks run meanwhile. Without a store every save
+/// fails.
 #[embassy_executor::task]
-async fn remember(mut store: Store<Memory>, clock: Clock) {
+async fn remember(mut store: Option<Store<Memory>>, clock: Clock) {
     loop {
         alive(REMEMBER, clock);
         if let Ok(ToStore(calibration)) = with_timeout(IDLE, TO_STORE.receive()).await {
-            let result = store.save(calibration).await;
-            STORED.send((result, store.sequence())).await;
+            let result = match &mut store {
+                Some(store) => store.save(calibration).await,
+                None => Err(StoreError::Failed),
+            };
+            let sequence = store.as_ref().map_or(0, Store::sequence);
+            STORED.send((result, sequence)).await;
         }
     }
 }

@@ -76,7 +76,7 @@ pub enum Stored {
     OtherDesign,
     /// There is something, and none of it is whole.
     Damaged,
-    /// The memory cannot be read.
+    /// A place that cannot be read may hold a later one than the record that serves, if any does.
     Unreadable,
 }
 
@@ -103,18 +103,22 @@ pub enum LastFault {
     Panic,
     /// The core met what it cannot execute: the address.
     HardFault,
-    /// The watchdog was not fed, and no task was seen to be late: what feeds it hung.
+    /// The watchdog was not fed, and no task was seen to be late: what feeds it hung, or the start did, as the code of a
+    /// [`Stage`](crate::supervisor::Stage) tells.
     Hang,
+    /// The chip raised its non-maskable interrupt: the address in flash that its error correction gave up, or 0.
+    NonMaskable,
 }
 
 impl LastFault {
     /// Every kind with its code in telemetry.
-    pub const CODES: [(Self, u8); 5] = [
+    pub const CODES: [(Self, u8); 6] = [
         (Self::None, 0),
         (Self::Late, 1),
         (Self::Panic, 2),
         (Self::HardFault, 3),
         (Self::Hang, 4),
+        (Self::NonMaskable, 5),
     ];
 }
 

@@ -23,7 +23,7 @@ OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy"
             "memory failed"]
 CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
 STORED = ["none", "serves", "another design's", "damaged", "unreadable"]
-LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang"]
+LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang", "non-maskable interrupt"]
 LENGTHS = {1: 42, 2: 15, 3: 61, 4: 20}
 
 

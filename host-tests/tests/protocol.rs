@@ -217,7 +217,7 @@ fn the_reader_in_python_has_a_word_for_every_code() {
     for ((last_fault, _), word) in
         LastFault::CODES
             .into_iter()
-            .zip(["nothing", "late", "panic", "hard fault", "hang"])
+            .zip(["nothing", "late", "panic", "hard fault", "hang", "non-maskable"])
     {
         let hello = Hello {
             last_fault,

@@ -115,8 +115,8 @@ impl Clock {
 pub(crate) struct Board {
     /// The time, from here on.
     pub(crate) clock: Clock,
-    /// What the transducer is on.
-    pub(crate) port: Port,
+    /// What the transducer is on, if anything is to be measured.
+    pub(crate) port: Option<Port>,
     /// The way out for frames.
     pub(crate) line: Line,
     /// The way in for commands.
@@ -125,8 +125,6 @@ pub(crate) struct Board {
     pub(crate) memory: Memory,
     /// Running from here on.
     pub(crate) watchdog: Watchdog,
-    /// Why the chip was reset.
-    pub(crate) reset_cause: ResetCause,
     /// Whether the crystal runs; the chip's own oscillator, 1 % off, has taken its place if not.
     pub(crate) crystal: bool,
 }
@@ -142,9 +140,9 @@ pub(crate) type Port = I2cBus<I2c1>;
 impl Board {
     /// Sets up clocks, pins and peripherals. Called once; all failures in here are faults of this file, found by
     /// running the image once.
-    pub(crate) fn take() -> Self {
-        // Before anything that can hang. Until it is set below, it is fed for half a second (RM0090 21.3.3).
-        pac::IWDG.kr().write(|w| w.set_key(pac::iwdg::vals::Key::START));
+    ///
+    /// After `gave_up` nothing is measured, and what the transducer is on is left alone.
+    pub(crate) fn take(gave_up: bool) -> Self {
         let crystal = crystal_runs();
         let mut config = Config::default();
         config.rcc.hse = crystal.then_some(Hse {
@@ -182,15 +180,15 @@ impl Board {
         watchdog.unleash();
 
         #[cfg(transducer = "ratiometric")]
-        let port = Converter::new(Adc::new(peripherals.ADC1));
+        let port = (!gave_up).then(|| Converter::new(Adc::new(peripherals.ADC1)));
         #[cfg(not(transducer = "ratiometric"))]
-        let port = I2cBus(I2c1 {
+        let port = (!gave_up).then_some(I2cBus(I2c1 {
             i2c: peripherals.I2C1,
             clock: peripherals.PB8,
             data: peripherals.PB9,
             sender: peripherals.DMA1_CH6,
             receiver: peripherals.DMA1_CH0,
-        });
+        }));
 
         let mut serial = usart::Config::default();
         serial.baudrate = BAUD;
@@ -216,15 +214,16 @@ impl Board {
             ears: ears.into_ring_buffered(HEARD.take()),
             memory: Patient::new(flash.bank2_region1, 0),
             watchdog,
-            reset_cause: take_reset_cause(),
             crystal,
         }
     }
 }
 
-/// Reads and clears the flags of the last reset. Every internal reset also pulls the pin, so that one is
+/// Starts the watchdog, and reads and clears the flags of the last reset: all that is done before that reset is counted.
+/// Until it is set in [`Board::take`], the watchdog is fed for half a second (RM0090 21.3.3). Every internal reset also pulls the pin, so that one is
 /// asked last (RM0090 6.1.1).
-fn take_reset_cause() -> ResetCause {
+pub(crate) fn begin() -> ResetCause {
+    pac::IWDG.kr().write(|w| w.set_key(pac::iwdg::vals::Key::START));
     let flags = pac::RCC.csr().read();
     pac::RCC.csr().modify(|register| register.set_rmvf(true));
     if flags.wdgrstf() || flags.wwdgrstf() {

@@ -89,7 +89,7 @@ pub(crate) type Memory = Patient<Bank1Region<'static, flash::Async>>;
 pub(crate) const SLOT: u32 = 2 * 1024;
 
 /// The first of them, from the start of the flash.
-const CALIBRATION: u32 = 256 * 1024 - 2 * SLOT;
+pub(super) const CALIBRATION: u32 = 256 * 1024 - 2 * SLOT;
 
 /// Resets the chip unless it is fed.
 pub(crate) type Watchdog = IndependentWatchdog<'static, IWDG>;
@@ -114,8 +114,8 @@ impl Clock {
 pub(crate) struct Board {
     /// The time, from here on.
     pub(crate) clock: Clock,
-    /// What the transducer is on.
-    pub(crate) port: Port,
+    /// What the transducer is on, if anything is to be measured.
+    pub(crate) port: Option<Port>,
     /// The way out for frames.
     pub(crate) line: Line,
     /// The way in for commands.
@@ -124,8 +124,6 @@ pub(crate) struct Board {
     pub(crate) memory: Memory,
     /// Running from here on.
     pub(crate) watchdog: Watchdog,
-    /// Why the chip was reset.
-    pub(crate) reset_cause: ResetCause,
     /// Always: there is none that could fail.
     pub(crate) crystal: bool,
 }
@@ -141,9 +139,9 @@ pub(crate) type Port = I2cBus<I2c1>;
 impl Board {
     /// Sets up clocks, pins and peripherals. Called once; all failures in here are faults of this file, found by
     /// running the image once.
-    pub(crate) fn take() -> Self {
-        // Before anything that can hang. Until it is set below, it is fed for half a second (RM0394 36.3.2).
-        pac::IWDG.kr().write(|w| w.set_key(pac::iwdg::vals::Key::START));
+    ///
+    /// After `gave_up` nothing is measured, and what the transducer is on is left alone.
+    pub(crate) fn take(gave_up: bool) -> Self {
         let mut config = Config::default();
         config.rcc.hsi = true;
         config.rcc.pll = Some(Pll {
@@ -167,15 +165,15 @@ impl Board {
         watchdog.unleash();
 
         #[cfg(transducer = "ratiometric")]
-        let port = Converter::new(Adc::new(peripherals.ADC1));
+        let port = (!gave_up).then(|| Converter::new(Adc::new(peripherals.ADC1)));
         #[cfg(not(transducer = "ratiometric"))]
-        let port = I2cBus(I2c1 {
+        let port = (!gave_up).then_some(I2cBus(I2c1 {
             i2c: peripherals.I2C1,
             clock: peripherals.PB6,
             data: peripherals.PB7,
             sender: peripherals.DMA2_CH7,
             receiver: peripherals.DMA2_CH6,
-        });
+        }));
 
         let mut serial = usart::Config::default();
         serial.baudrate = BAUD;
@@ -199,15 +197,16 @@ impl Board {
             ears: ears.into_ring_buffered(HEARD.take()),
             memory: Patient::new(flash.bank1_region, CALIBRATION),
             watchdog,
-            reset_cause: take_reset_cause(),
             crystal: true,
         }
     }
 }
 
-/// Reads and clears the flags of the last reset. Every internal reset also pulls the pin, so that one is
+/// Starts the watchdog, and reads and clears the flags of the last reset: all that is done before that reset is counted.
+/// Until it is set in [`Board::take`], the watchdog is fed for half a second (RM0394 36.3.2). Every internal reset also pulls the pin, so that one is
 /// asked last, and a brown-out is a power-on too (RM0394 6.1.1).
-fn take_reset_cause() -> ResetCause {
+pub(crate) fn begin() -> ResetCause {
+    pac::IWDG.kr().write(|w| w.set_key(pac::iwdg::vals::Key::START));
     let flags = pac::RCC.csr().read();
     pac::RCC.csr().modify(|register| register.set_rmvf(true));
     if flags.iwdgrstf() || flags.wwdgrstf() {
