@@ -4,7 +4,8 @@
 use crate::{design, firmware};
 use emulator::bench;
 use emulator::record::{Record, Recorder, Row};
-use emulator::scenario::Scenario;
+use emulator::scenario::{Event, Happening, Scenario};
+use fingertip::command::{CommandKind, Outcome};
 use fingertip::report::{Fault, Status};
 use fingertip::supervisor::RESET_LIMIT;
 use fingertip::telemetry::{Hello, LastFault, ResetCause};
@@ -20,6 +21,14 @@ const PANICS: [(&str, &str); 4] = [
 ];
 /// All resets are over, seconds.
 const OVER: f64 = 0.2;
+/// What the host asks of the board that measures nothing, a tenth of a second apart, and what comes of it.
+const ASKED: [(Happening, CommandKind, Outcome); 5] = [
+    (Happening::Tare, CommandKind::Tare, Outcome::NoReading),
+    (Happening::Undo, CommandKind::Undo, Outcome::NothingToUndo),
+    (Happening::Save, CommandKind::Save, Outcome::NoReading),
+    (Happening::Info, CommandKind::Info, Outcome::Done),
+    (Happening::SelfTest, CommandKind::SelfTest, Outcome::Done),
+];
 
 /// `B.W` at an address to another (ARMv7-M ARM A7.7.12, encoding T4), within 16 MB.
 fn branch(at: u64, to: u64) -> [u16; 2] {
@@ -41,7 +50,15 @@ fn hello_with(instructions: [u16; 2]) -> Hello {
     let image = firmware()
         .with_code(entry(), instructions)
         .expect("it is in a section");
-    let scenario = Scenario::named("press-hold-release").expect("it is shipped");
+    let mut scenario = Scenario::named("press-hold-release").expect("it is shipped");
+    scenario.event = (4..)
+        .zip(ASKED)
+        .map(|(tenth, (is, ..))| Event {
+            at_ms: f64::from(100 * tenth),
+            is,
+            for_ms: None,
+        })
+        .collect();
     let plant = design()
         .plant(scenario)
         .expect("the default design can be pressed");
@@ -60,6 +77,13 @@ fn hello_with(instructions: [u16; 2]) -> Hello {
     for row in after {
         assert_eq!(row.status, Status::Fault(Fault::ResetLoop), "{row:?}");
     }
+    let answers = record.answers.iter();
+    assert_eq!(
+        answers
+            .map(|answer| (answer.command, answer.outcome))
+            .collect::<Vec<_>>(),
+        ASKED.map(|(_, command, outcome)| (command, outcome))
+    );
     let hello = *record.hellos.last().expect("it greets");
     assert_eq!(
         (hello.reset_cause, hello.resets_in_a_row),
