@@ -73,11 +73,15 @@ pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+/// The design of a build that asks for none.
+pub fn shipped_default() -> PathBuf {
+    workspace().join("model-tables/designs/index-fingertip.toml")
+}
+
 /// The design that the image is built for when none is asked for: `FINGERTIP_DESIGN`, which is relative to the
 /// workspace, or the index fingertip.
 pub fn default_path() -> PathBuf {
-    let asked = std::env::var_os("FINGERTIP_DESIGN").filter(|path| !path.is_empty());
-    workspace().join(asked.map_or("model-tables/designs/index-fingertip.toml".into(), PathBuf::from))
+    std::env::var_os("FINGERTIP_DESIGN").map_or_else(shipped_default, |asked| workspace().join(asked))
 }
 
 impl FingertipDesign {

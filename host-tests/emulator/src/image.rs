@@ -1,6 +1,6 @@
 //! The firmware image: built by asking cargo, unmodified, and read for its symbols and sizes.
 
-use crate::fingertip_design::workspace;
+use crate::fingertip_design::{shipped_default, workspace};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SymbolKind};
 use std::fmt;
 use std::io::Read;
@@ -28,6 +28,8 @@ pub struct Image {
 pub enum ImageError {
     /// The Rust target is missing and could not be added.
     Target(String),
+    /// The design's path is not UTF-8: cargo takes the variable that names it for unset.
+    DesignPath(PathBuf),
     /// cargo could not be started.
     Cargo(std::io::Error),
     /// cargo did not build it. It has said why.
@@ -61,6 +63,11 @@ impl fmt::Display for ImageError {
             Self::Target(why) => write!(
                 f,
                 "the Rust target {TARGET} is missing and cannot be added ({why}): `rustup target add {TARGET}`"
+            ),
+            Self::DesignPath(path) => write!(
+                f,
+                "{}: the path of a design must be UTF-8: rename the file or its folder",
+                path.display()
             ),
             Self::Cargo(error) => write!(f, "cannot start cargo: {error}"),
             Self::Build { binary } => write!(f, "the image `{binary}` does not build, see above"),
@@ -121,7 +128,14 @@ impl Image {
             .arg("--message-format=json-render-diagnostics")
             .stdout(Stdio::piped());
         if let Some(design) = design {
-            cargo.env("FINGERTIP_DESIGN", design);
+            if is_shipped_default(design) {
+                // The image of a build that asks for no design.
+                cargo.env_remove("FINGERTIP_DESIGN");
+            } else if design.to_str().is_some() {
+                cargo.env("FINGERTIP_DESIGN", design);
+            } else {
+                return Err(ImageError::DesignPath(design.to_owned()));
+            }
         }
         if let Some(board) = board {
             cargo.args(["--no-default-features", "--features", board]);
@@ -299,6 +313,11 @@ fn branch_with_link([first, second]: [u16; 2], at: u64) -> Option<u64> {
     let offset =
         -(sign << 24) | i1 << 23 | i2 << 22 | i32::from(first & 0x3ff) << 12 | i32::from(second & 0x7ff) << 1;
     Some(at.wrapping_add(4).wrapping_add_signed(i64::from(offset)))
+}
+
+fn is_shipped_default(design: &Path) -> bool {
+    let real = |path: &Path| path.canonicalize().ok();
+    real(design).is_some_and(|design| Some(design) == real(&shipped_default()))
 }
 
 /// The cargo that runs this, or the one in the path.
