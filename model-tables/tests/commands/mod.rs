@@ -7,20 +7,20 @@ use std::process;
 use toml::de::DeTable;
 
 /// The folder of the workspace.
-pub fn workspace() -> &'static Path {
+pub(crate) fn workspace() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .expect("the package lies in the workspace")
 }
 
 /// A document's path in the workspace, and its text.
-pub struct Document {
-    pub path: String,
-    pub text: String,
+pub(crate) struct Document {
+    pub(crate) path: String,
+    pub(crate) text: String,
 }
 
 /// Every document but those of what has been.
-pub fn documents() -> Vec<Document> {
+pub(crate) fn documents() -> Vec<Document> {
     fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in fs::read_dir(folder).expect("a folder").flatten() {
             let (path, name) = (entry.path(), entry.file_name());
@@ -53,7 +53,7 @@ pub fn documents() -> Vec<Document> {
 }
 
 /// What a document shows, in its order.
-pub enum Shown {
+pub(crate) enum Shown {
     /// A fenced block that is a file: its name and its text.
     File(String, String),
     /// A command of a fenced block of `sh`.
@@ -64,13 +64,13 @@ pub enum Shown {
 
 /// A command line.
 #[derive(Clone)]
-pub struct Command {
+pub(crate) struct Command {
     /// As it stands, with single spaces.
-    pub line: String,
+    pub(crate) line: String,
     /// Variables set for it.
-    pub variables: Vec<(String, String)>,
+    pub(crate) variables: Vec<(String, String)>,
     /// The program and its arguments.
-    pub words: Vec<String>,
+    pub(crate) words: Vec<String>,
 }
 
 /// Programs whose name begins a command.
@@ -109,7 +109,7 @@ impl Command {
 
 impl Document {
     /// Files and commands.
-    pub fn shown(&self) -> Vec<Shown> {
+    pub(crate) fn shown(&self) -> Vec<Shown> {
         let mut shown = vec![];
         let (mut lines, mut prose) = (self.text.lines(), String::new());
         while let Some(line) = lines.next() {
@@ -149,7 +149,7 @@ fn mentions(prose: &str, shown: &mut Vec<Shown>) {
 }
 
 /// The arguments of `cargo` with the alias put in, as `.cargo/config.toml` has it.
-pub fn resolved(arguments: &[String]) -> Vec<String> {
+pub(crate) fn resolved(arguments: &[String]) -> Vec<String> {
     let text = fs::read_to_string(workspace().join(".cargo/config.toml")).expect("it is there");
     let config = DeTable::parse(&text).expect("cargo reads it");
     let aliases = config.get_ref()["alias"].get_ref();
@@ -175,7 +175,7 @@ pub fn resolved(arguments: &[String]) -> Vec<String> {
 }
 
 /// The arguments before `--`, and those after it.
-pub fn split(arguments: &[String]) -> (&[String], &[String]) {
+pub(crate) fn split(arguments: &[String]) -> (&[String], &[String]) {
     match arguments.iter().position(|argument| argument == "--") {
         Some(at) => (&arguments[..at], &arguments[at + 1..]),
         None => (arguments, &[]),
@@ -183,7 +183,7 @@ pub fn split(arguments: &[String]) -> (&[String], &[String]) {
 }
 
 /// The value of an option.
-pub fn value<'a>(arguments: &'a [String], option: &str) -> Option<&'a str> {
+pub(crate) fn value<'a>(arguments: &'a [String], option: &str) -> Option<&'a str> {
     let at = arguments.iter().position(|argument| argument == option)?;
     arguments.get(at + 1).map(String::as_str)
 }
@@ -233,7 +233,7 @@ fn packages() -> Vec<Package> {
 ///
 /// # Panics
 /// If one does not, or this does not know an option.
-pub fn assert_names_exist(line: &str, arguments: &[String]) {
+pub(crate) fn assert_names_exist(line: &str, arguments: &[String]) {
     let (arguments, tests) = split(arguments);
     let (subcommand, options) = arguments.split_first().expect("a subcommand");
     assert!(
@@ -302,7 +302,7 @@ pub fn assert_names_exist(line: &str, arguments: &[String]) {
 ///
 /// # Panics
 /// If it is for none or several.
-pub fn assert_one_chip(line: &str, arguments: &[String]) {
+pub(crate) fn assert_one_chip(line: &str, arguments: &[String]) {
     let (arguments, _) = split(arguments);
     let mut tree = process::Command::new(env!("CARGO"));
     tree.args([
