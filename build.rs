@@ -27,15 +27,17 @@ fn main() {
 }
 
 fn build() -> Result<(), String> {
-    if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
+    let for_the_chip = env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none");
+    if for_the_chip {
         link_for_the_chip()?;
     }
     let asked = env::var_os("FINGERTIP_DESIGN");
     let design = design_path(asked.as_deref())?;
     println!("cargo::rerun-if-changed={design}");
-    if asked.is_some() {
-        // Cargo compares dates alone: a file with an older date in the design's place would go unnoticed. What does
-        // not exist is always changed, so that this runs, and sees, at every build.
+    if for_the_chip || asked.is_some() {
+        // Cargo compares dates alone, and takes a variable that is not UTF-8 for unset: an older file in the design's
+        // place, or such a path, would go unnoticed. What does not exist is always changed, so that this runs, and
+        // sees, at every build: 7 s of a processor for an image.
         println!("cargo::rerun-if-changed={design}/always");
     }
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
@@ -50,7 +52,6 @@ fn design_path(asked: Option<&OsStr>) -> Result<&str, String> {
         return Ok(DEFAULT_DESIGN);
     };
     let path = asked.to_str().ok_or_else(|| {
-        // Cargo takes such a value for none.
         format!(
             "FINGERTIP_DESIGN={} is not UTF-8: rename the file or its folder",
             asked.display()

@@ -73,15 +73,11 @@ pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The design of a build that asks for none.
-pub fn shipped_default() -> PathBuf {
-    workspace().join("model-tables/designs/index-fingertip.toml")
-}
-
 /// The design that the image is built for when none is asked for: `FINGERTIP_DESIGN`, which is relative to the
 /// workspace, or the index fingertip.
 pub fn default_path() -> PathBuf {
-    std::env::var_os("FINGERTIP_DESIGN").map_or_else(shipped_default, |asked| workspace().join(asked))
+    let asked = std::env::var_os("FINGERTIP_DESIGN");
+    workspace().join(asked.unwrap_or_else(|| "model-tables/designs/index-fingertip.toml".into()))
 }
 
 impl FingertipDesign {

@@ -1,6 +1,6 @@
 //! The firmware image: built by asking cargo, unmodified, and read for its symbols and sizes.
 
-use crate::fingertip_design::{shipped_default, workspace};
+use crate::fingertip_design::workspace;
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SymbolKind};
 use std::fmt;
 use std::io::Read;
@@ -28,7 +28,7 @@ pub struct Image {
 pub enum ImageError {
     /// The Rust target is missing and could not be added.
     Target(String),
-    /// The design's path is not UTF-8: cargo takes the variable that names it for unset.
+    /// The design's path is not UTF-8, and the build takes no other.
     DesignPath(PathBuf),
     /// cargo could not be started.
     Cargo(std::io::Error),
@@ -128,14 +128,10 @@ impl Image {
             .arg("--message-format=json-render-diagnostics")
             .stdout(Stdio::piped());
         if let Some(design) = design {
-            if is_shipped_default(design) {
-                // The image of a build that asks for no design.
-                cargo.env_remove("FINGERTIP_DESIGN");
-            } else if design.to_str().is_some() {
-                cargo.env("FINGERTIP_DESIGN", design);
-            } else {
-                return Err(ImageError::DesignPath(design.to_owned()));
-            }
+            let design = design
+                .to_str()
+                .ok_or_else(|| ImageError::DesignPath(design.to_owned()))?;
+            cargo.env("FINGERTIP_DESIGN", design);
         }
         if let Some(board) = board {
             cargo.args(["--no-default-features", "--features", board]);
@@ -313,11 +309,6 @@ fn branch_with_link([first, second]: [u16; 2], at: u64) -> Option<u64> {
     let offset =
         -(sign << 24) | i1 << 23 | i2 << 22 | i32::from(first & 0x3ff) << 12 | i32::from(second & 0x7ff) << 1;
     Some(at.wrapping_add(4).wrapping_add_signed(i64::from(offset)))
-}
-
-fn is_shipped_default(design: &Path) -> bool {
-    let real = |path: &Path| path.canonicalize().ok();
-    real(design).is_some_and(|design| Some(design) == real(&shipped_default()))
 }
 
 /// The cargo that runs this, or the one in the path.
