@@ -1,8 +1,12 @@
 use super::*;
+use crate::pressure::Pressure;
 use crate::supervisor::Breadcrumb;
 use crate::test_design::Linear;
 use crate::touch::Touch;
 use crate::transducer::Millipascals;
+use model_tables::constants::{DesignConstants, TransducerKind};
+use model_tables::table::Reading;
+use model_tables::units::PressureRise;
 use proptest::prelude::*;
 
 const BEGINNING: Beginning = Beginning {
@@ -224,24 +228,104 @@ fn a_self_test_names_what_it_finds() {
     assert_eq!(silent.answers()[0].2, findings::NO_READING | findings::NOT_STORED);
 }
 
-#[test]
-fn after_too_many_resets_it_measures_nothing_and_still_answers() {
+fn given_up() -> Bench {
+    let zero = Zero {
+        pressure: Pressure::from_pascals(20_000, Linear::PRESSURE_FRACTION_BITS),
+        verified: true,
+    };
     let mut bench = Bench::new(&Beginning {
         reset_cause: ResetCause::Watchdog,
         start: Start {
             give_up: true,
+            kept: Some(zero),
             ..BEGINNING.start
         },
         ..BEGINNING
     });
     bench.steps(500, 20_000.0);
-    assert!(bench.said.iter().all(|message| match message {
+    bench
+}
+
+#[test]
+fn after_too_many_resets_it_measures_nothing() {
+    assert!(given_up().said.iter().all(|message| match message {
         Message::Report { report, .. } => report.outcome == Err(Fault::ResetLoop),
         _ => true,
     }));
-    bench.said.clear();
-    bench.ask(Command::Info);
-    assert_eq!(bench.answers(), [(CommandKind::Info, Outcome::Done, 0)]);
+}
+
+#[test]
+fn after_too_many_resets_every_command_is_answered() {
+    let found = findings::NO_READING | findings::NOT_STORED;
+    for (command, outcome, findings) in [
+        (Command::Tare, Outcome::NoReading, 0),
+        (Command::Undo, Outcome::NothingToUndo, 0),
+        (Command::Save { gain: None }, Outcome::NoReading, 0),
+        (Command::Info, Outcome::Done, 0),
+        (Command::SelfTest { indentation: 0 }, Outcome::Done, found),
+        (Command::Rate { every: 10 }, Outcome::Done, 0),
+        (Command::Forget, Outcome::Done, 0),
+    ] {
+        let mut bench = given_up();
+        bench.said.clear();
+        if bench.ask(command).is_some() {
+            bench.stored(Ok(()));
+        }
+        bench.steps(2_500, 20_000.0);
+        assert_eq!(bench.answers(), [(command.kind(), outcome, findings)]);
+    }
+}
+
+/// The linear fingertip with another transducer, 0 to 3.
+struct WithTransducer<const N: usize>;
+
+impl<const N: usize> Design for WithTransducer<N> {
+    const CONSTANTS: DesignConstants = DesignConstants {
+        transducer: model_tables::constants::Transducer {
+            kind: [
+                Linear::CONSTANTS.transducer.kind,
+                TransducerKind::Abp2 {
+                    address: 0x28,
+                    counts: [1_677_722, 15_099_494],
+                },
+                TransducerKind::Ms5837 { address: 0x76 },
+                TransducerKind::Dps310 { address: 0x77 },
+            ][N],
+            ..Linear::CONSTANTS.transducer
+        },
+        ..Linear::CONSTANTS
+    };
+    const PRESSURE_FRACTION_BITS: u32 = Linear::PRESSURE_FRACTION_BITS;
+    const LAST_RISE: PressureRise = Linear::LAST_RISE;
+
+    fn lookup(rise: PressureRise) -> Reading {
+        Linear::lookup(rise)
+    }
+}
+
+/// The report periods of two hellos: the first, and one at every tenth report.
+fn greeted_periods<D: Design>() -> [u32; 2] {
+    let mut station = Station::<D>::new(&BEGINNING);
+    let mut greeted = vec![];
+    let mut hear = |message: &Message| {
+        if let Message::Hello(hello) = message {
+            greeted.push(hello.report_period);
+        }
+    };
+    station.step(Microseconds(0), Err(Fault::SensorAbsent), &mut hear);
+    for command in [Command::Rate { every: 10 }, Command::Info] {
+        station.request(Microseconds(1), Request { sequence: 1, command }, &mut hear);
+    }
+    greeted.try_into().expect("two hellos")
+}
+
+/// As the README's table of transducers has them.
+#[test]
+fn the_hello_has_the_report_period_of_the_transducer() {
+    assert_eq!(greeted_periods::<WithTransducer<0>>(), [1_000, 10_000]);
+    assert_eq!(greeted_periods::<WithTransducer<1>>(), [8_000, 80_000]);
+    assert_eq!(greeted_periods::<WithTransducer<2>>(), [7_000, 70_000]);
+    assert_eq!(greeted_periods::<WithTransducer<3>>(), [14_000, 140_000]);
 }
 
 #[test]

@@ -76,8 +76,8 @@ pub fn workspace() -> PathBuf {
 /// The design that the image is built for when none is asked for: `FINGERTIP_DESIGN`, which is relative to the
 /// workspace, or the index fingertip.
 pub fn default_path() -> PathBuf {
-    let asked = std::env::var_os("FINGERTIP_DESIGN").filter(|path| !path.is_empty());
-    workspace().join(asked.map_or("model-tables/designs/index-fingertip.toml".into(), PathBuf::from))
+    let asked = std::env::var_os("FINGERTIP_DESIGN");
+    workspace().join(asked.unwrap_or_else(|| "model-tables/designs/index-fingertip.toml".into()))
 }
 
 impl FingertipDesign {

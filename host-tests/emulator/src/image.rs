@@ -28,6 +28,8 @@ pub struct Image {
 pub enum ImageError {
     /// The Rust target is missing and could not be added.
     Target(String),
+    /// The design's path is not UTF-8, and the build takes no other.
+    DesignPath(PathBuf),
     /// cargo could not be started.
     Cargo(std::io::Error),
     /// cargo did not build it. It has said why.
@@ -61,6 +63,11 @@ impl fmt::Display for ImageError {
             Self::Target(why) => write!(
                 f,
                 "the Rust target {TARGET} is missing and cannot be added ({why}): `rustup target add {TARGET}`"
+            ),
+            Self::DesignPath(path) => write!(
+                f,
+                "{}: the path of a design must be UTF-8: rename the file or its folder",
+                path.display()
             ),
             Self::Cargo(error) => write!(f, "cannot start cargo: {error}"),
             Self::Build { binary } => write!(f, "the image `{binary}` does not build, see above"),
@@ -121,6 +128,9 @@ impl Image {
             .arg("--message-format=json-render-diagnostics")
             .stdout(Stdio::piped());
         if let Some(design) = design {
+            let design = design
+                .to_str()
+                .ok_or_else(|| ImageError::DesignPath(design.to_owned()))?;
             cargo.env("FINGERTIP_DESIGN", design);
         }
         if let Some(board) = board {

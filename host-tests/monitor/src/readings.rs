@@ -7,8 +7,11 @@ use fingertip::touch::Touch;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// A report this old is no longer the fingertip's state.
+/// A report older than this is no longer the fingertip's state. Of a board that sends few reports: one older than
+/// [`MISSED`] of the periods in its hello, where that is longer.
 pub const STALE: Duration = Duration::from_millis(500);
+/// Reports missed in a row.
+const MISSED: u32 = 3;
 /// How far the history reaches back, seconds of the board's clock.
 pub const HISTORY: f64 = 10.0;
 /// Between points of the history, seconds.
@@ -194,8 +197,10 @@ impl Monitor {
 
     /// The latest report, unless it is stale.
     pub fn latest(&self, now: Duration) -> Option<Reading> {
+        let period = self.hello.map_or(0, |hello| hello.report_period);
+        let stale = STALE.max(MISSED * Duration::from_micros(period.into()));
         self.latest
-            .filter(|(_, came)| now.saturating_sub(*came) < STALE)
+            .filter(|(_, came)| now.saturating_sub(*came) < stale)
             .map(|(reading, _)| reading)
     }
 

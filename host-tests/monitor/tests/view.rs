@@ -139,6 +139,28 @@ fn a_force_that_is_not_ok_is_refused_with_its_reason() {
     }
 }
 
+/// Every hundredth report of a DPS310.
+#[test]
+fn a_report_of_a_board_that_sends_few_is_shown_until_three_are_missing() {
+    let mut monitor = connected();
+    let hello = Message::Hello(Hello {
+        report_period: 1_400_000,
+        ..Hello::default()
+    });
+    hear(
+        &mut monitor,
+        0,
+        NOW,
+        &[hello, report(0, Ok(measurement(Warnings::NONE)))],
+    );
+    let force = |milliseconds| {
+        let screen = screen(&monitor, NOW + Duration::from_millis(milliseconds));
+        line(&screen, "force").to_owned()
+    };
+    assert!(force(4_199).contains("1.2345 N"));
+    assert!(force(4_200).contains("not shown: no report"));
+}
+
 #[test]
 fn a_report_that_is_old_or_of_a_lost_board_is_not_shown() {
     let mut monitor = connected();

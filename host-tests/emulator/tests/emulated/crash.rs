@@ -5,7 +5,8 @@ use crate::{design, firmware};
 use emulator::bench;
 use emulator::inlined;
 use emulator::record::{Record, Recorder, Row};
-use emulator::scenario::Scenario;
+use emulator::scenario::{Event, Happening, Scenario};
+use fingertip::command::{CommandKind, Outcome};
 use fingertip::report::{Fault, Status};
 use fingertip::supervisor::{RESET_LIMIT, Stage};
 use fingertip::telemetry::{Hello, LastFault, ResetCause};
@@ -27,6 +28,14 @@ const OVER: f64 = 0.2;
 const HANGS_OVER: f64 = 1.5;
 /// The run goes on for this long, seconds.
 const AFTER: f64 = 0.8;
+/// What the host asks of the board that measures nothing, a tenth of a second apart, and what comes of it.
+const ASKED: [(Happening, CommandKind, Outcome); 5] = [
+    (Happening::Tare, CommandKind::Tare, Outcome::NoReading),
+    (Happening::Undo, CommandKind::Undo, Outcome::NothingToUndo),
+    (Happening::Save, CommandKind::Save, Outcome::NoReading),
+    (Happening::Info, CommandKind::Info, Outcome::Done),
+    (Happening::SelfTest, CommandKind::SelfTest, Outcome::Done),
+];
 
 /// `B.W` at an address to another (ARMv7-M ARM A7.7.12, encoding T4), within 16 MB.
 fn branch(at: u64, to: u64) -> [u16; 2] {
@@ -48,7 +57,15 @@ fn hello_with(address: u64, instructions: [u16; 2], over: f64, cause: ResetCause
     let image = firmware()
         .with_code(address, instructions)
         .expect("it is in a section");
-    let scenario = Scenario::named("press-hold-release").expect("it is shipped");
+    let mut scenario = Scenario::named("press-hold-release").expect("it is shipped");
+    scenario.event = (1..)
+        .zip(ASKED)
+        .map(|(tenth, (is, ..))| Event {
+            at_ms: over * 1e3 + f64::from(100 * tenth),
+            is,
+            for_ms: None,
+        })
+        .collect();
     let plant = design()
         .plant(scenario)
         .expect("the default design can be pressed");
@@ -67,6 +84,13 @@ fn hello_with(address: u64, instructions: [u16; 2], over: f64, cause: ResetCause
     for row in after {
         assert_eq!(row.status, Status::Fault(Fault::ResetLoop), "{row:?}");
     }
+    let answers = record.answers.iter();
+    assert_eq!(
+        answers
+            .map(|answer| (answer.command, answer.outcome))
+            .collect::<Vec<_>>(),
+        ASKED.map(|(_, command, outcome)| (command, outcome))
+    );
     let hello = *record.hellos.last().expect("it greets");
     assert_eq!(
         (hello.reset_cause, hello.resets_in_a_row),
