@@ -3,7 +3,7 @@
 
 use crate::abp2::Abp2;
 use crate::ms5837::Ms5837;
-use crate::transducer::{AIR, Part, Transducer, Wiring};
+use crate::transducer::{Part, Transducer, Wiring};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rigless::chip::Timeline;
@@ -82,7 +82,8 @@ impl Sensor {
         })
     }
 
-    /// The pressure on the part, pascals absolute, and what is wrong with its wires. A stuck part feels nothing.
+    /// The pressure on the part, pascals, gauge or absolute as it measures, and what is wrong with its wires. A stuck part
+    /// feels nothing.
     pub(crate) fn set(&mut self, pascals: f64, wiring: Wiring) {
         let late = match wiring {
             Wiring::Slow => None,
@@ -96,7 +97,7 @@ impl Sensor {
             Chip::Abp2(chip) => {
                 chip.late = late;
                 if feels {
-                    chip.pascals = pascals - AIR;
+                    chip.pascals = pascals;
                 }
             }
             Chip::Ms5837(chip) => {
