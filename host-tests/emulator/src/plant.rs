@@ -67,6 +67,12 @@ impl Plant {
         }
     }
 
+    /// The same with another transducer in its fluid.
+    #[must_use]
+    pub fn with_transducer(self, transducer: Transducer) -> Self {
+        Self { transducer, ..self }
+    }
+
     /// What the transducer measures of the untouched fingertip in air of a pressure, both in pascals.
     pub fn rest_in(&self, air: f64) -> f64 {
         self.transducer.measured(self.rest_pressure, air)

@@ -32,6 +32,10 @@ pub enum Part {
     Abp2(u8, [u32; 2]),
     /// An MS5837-02BA on the bus, at this address.
     Ms5837(u8),
+    /// In the place of the one before, its sister of 30 bar with the same version in its words.
+    Ms5837ThirtyBar(u8),
+    /// In a DPS310's place a Goertek SPL06: the same identity, and no register for the source of its coefficients.
+    Spl06(u8),
 }
 
 /// What the transducer does to the board at an instant.
@@ -107,9 +111,9 @@ impl Transducer {
     pub fn period(&self) -> f64 {
         let microseconds = match self.part {
             Part::Analogue => fingertip::counts::PERIOD,
-            Part::Dps310(_) => transducer::dps310::PERIOD,
+            Part::Dps310(_) | Part::Spl06(_) => transducer::dps310::PERIOD,
             Part::Abp2(..) => transducer::abp2::PERIOD,
-            Part::Ms5837(_) => transducer::ms5837::PERIOD,
+            Part::Ms5837(_) | Part::Ms5837ThirtyBar(_) => transducer::ms5837::PERIOD,
         };
         f64::from(microseconds) * 1e-6
     }
