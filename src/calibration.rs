@@ -3,6 +3,7 @@
 use crate::pressure::{Pressure, Scale, saturate};
 use crate::temperature;
 use crate::transducer::{Centidegrees, Millipascals};
+use model_tables::constants::Quantity;
 use model_tables::units::PressureRise;
 
 /// Largest gain trim that is believed, parts in a million: 10 %.
@@ -33,11 +34,12 @@ impl Calibration {
             && self.gain.unsigned_abs() <= LARGEST_GAIN.unsigned_abs()
     }
 
-    /// This with a new zero; where the old one was at another temperature, the two give the coefficient.
+    /// This with a new zero; where the old one was at another temperature, the two give the coefficient. Not of an absolute
+    /// transducer: between its two zeros the air changed too, and what of the difference is temperature cannot be told.
     #[must_use]
-    pub fn rezeroed(self, zero: Millipascals, temperature: Option<Centidegrees>) -> Self {
+    pub fn rezeroed(self, zero: Millipascals, temperature: Option<Centidegrees>, quantity: Quantity) -> Self {
         let coefficient = match (self.zero, self.temperature, temperature) {
-            (Some(before), Some(then), Some(now)) => {
+            (Some(before), Some(then), Some(now)) if quantity == Quantity::Gauge => {
                 temperature::coefficient([before, zero], [then, now]).unwrap_or(self.coefficient)
             }
             _ => self.coefficient,
@@ -90,15 +92,38 @@ mod tests {
 
     #[test]
     fn a_second_zero_at_another_temperature_gives_the_coefficient() {
-        let cold = Calibration::default().rezeroed(Millipascals(2_000_000), Some(Centidegrees(2_000)));
+        let rezeroed = |calibration: Calibration, zero, temperature| {
+            calibration.rezeroed(
+                Millipascals(zero),
+                Some(Centidegrees(temperature)),
+                Quantity::Gauge,
+            )
+        };
+        let cold = rezeroed(Calibration::default(), 2_000_000, 2_000);
         assert_eq!(cold.coefficient, 0);
-        let warm = cold.rezeroed(Millipascals(2_020_000), Some(Centidegrees(3_000)));
+        let warm = rezeroed(cold, 2_020_000, 3_000);
         assert_eq!(
             (warm.coefficient, warm.temperature),
             (2_000, Some(Centidegrees(3_000)))
         );
-        let same = warm.rezeroed(Millipascals(2_021_000), Some(Centidegrees(3_010)));
+        let same = rezeroed(warm, 2_021_000, 3_010);
         assert_eq!(same.coefficient, 2_000);
+    }
+
+    #[test]
+    fn two_zeros_of_an_absolute_transducer_say_nothing_of_temperature() {
+        let zeroed = |calibration: Calibration, zero, temperature| {
+            calibration.rezeroed(
+                Millipascals(zero),
+                Some(Centidegrees(temperature)),
+                Quantity::Absolute,
+            )
+        };
+        // 10 K and 3 hPa of weather apart.
+        let cold = zeroed(Calibration::default(), 101_300_000, 2_000);
+        let warm = zeroed(cold, 101_600_000, 3_000);
+        assert_eq!(warm.coefficient, 0);
+        assert_eq!(warm.zero, Some(Millipascals(101_600_000)));
     }
 
     #[test]

@@ -10,8 +10,7 @@
 
 use crate::report::Microseconds;
 use crate::touch::{Thresholds, Touch};
-use crate::transducer::Quantity;
-use model_tables::constants::DesignConstants;
+use model_tables::constants::{DesignConstants, Quantity};
 use model_tables::units::PressureRise;
 
 /// Untouched for this long before it follows, microseconds: a release is over by then.
@@ -59,9 +58,11 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// The pace for a design; `far` bounds every zero.
-    pub const fn of(constants: &DesignConstants, fraction_bits: u32, far: i32) -> Self {
-        let (rate, sigma) = match Quantity::of(&constants.transducer.kind) {
+    /// The pace for a design; `reach` is how far the zero may move, counts.
+    pub const fn of(constants: &DesignConstants, fraction_bits: u32, reach: i32) -> Self {
+        // A step more stays within the word of the offset.
+        let longest = i32::MAX / 2;
+        let (rate, sigma) = match constants.transducer.quantity {
             Quantity::Gauge => (GAUGE_RATE, GAUGE_SIGMA),
             Quantity::Absolute => (ABSOLUTE_RATE, ABSOLUTE_SIGMA),
         };
@@ -70,7 +71,7 @@ impl Pace {
         Self {
             band: [lowest, thresholds.release.0],
             rate: per_microsecond(rate, fraction_bits, 1_000_000),
-            reach: far,
+            reach: if reach < longest { reach } else { longest },
             sigma: per_microsecond(sigma, fraction_bits, 3_600_000_000),
             touch: thresholds.touch.0,
         }

@@ -1,7 +1,10 @@
 //! Is the fluid still what the model was solved for? Suspicions, latched until someone clears them.
 //!
 //! - A **leak** lowers the rest pressure. The zero that is followed, or a reading that stays below it, falls under the
-//!   reference by more than drift explains.
+//!   lowest zero to be expected by more than drift explains. To a gauge transducer that is the zero that was stored, or
+//!   the design's. To an absolute one a leak, the weather and a climb look alike: only below the rest pressure in the
+//!   thinnest air is it none of these. So it tells a leak where the fingertip rests far above the air, and is silent
+//!   where it rests near it.
 //! - A **bubble** makes the fingertip softer, most of all at a light touch, where the pressure barely rises at first.
 //!   Pressure alone cannot tell that from a lighter touch, so it is judged only when someone says how deep the
 //!   fingertip is pressed (a self-test against a stop).
@@ -9,8 +12,7 @@
 use crate::pressure::Pressure;
 use crate::report::{Microseconds, Warnings};
 use crate::touch::Touch;
-use crate::transducer::Quantity;
-use model_tables::constants::DesignConstants;
+use model_tables::constants::{DesignConstants, Quantity};
 use model_tables::units::{Nanometres, PressureRise};
 
 /// Fallen by this share of the rest pressure, as a divisor, it is a leak.
@@ -18,9 +20,6 @@ const SHARE: i32 = 8;
 
 /// But by no less than this, in grains of the transducer.
 const LEAST_GRAINS: i64 = 10;
-
-/// And for an absolute transducer by this much more, pascals: the deepest low that passes, 50 hPa.
-const WEATHER: i32 = 5_000;
 
 /// Below zero for this long it is no flutter, microseconds.
 const STANDS: u64 = 1_000_000;
@@ -32,24 +31,24 @@ const SOFT_PERMILLE: i64 = 850;
 /// What a leak is compared with, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Fall {
-    /// Further below the reference: a leak.
+    /// Further below the lowest zero to be expected: a leak.
     pub leak: i32,
 }
 
 impl Fall {
-    /// The fall that is a leak for a design.
-    pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
+    /// The fall that is a leak for a design; `far` is what the transducer's offset may be, counts. A stored zero has it
+    /// in it, the thinnest air has not.
+    pub const fn of(constants: &DesignConstants, fraction_bits: u32, far: i32) -> Self {
         let share = constants.rest_pressure / SHARE;
-        let weather = match Quantity::of(&constants.transducer.kind) {
-            Quantity::Gauge => 0,
-            Quantity::Absolute => WEATHER,
-        };
         let grains = constants.transducer.grain() * LEAST_GRAINS;
         let share = share as i64 * 1000;
         let least = if share > grains { share } else { grains };
-        let leak = least + weather as i64 * 1000;
+        let leak = Pressure::from_millipascals(least, fraction_bits).0;
         Self {
-            leak: Pressure::from_millipascals(leak, fraction_bits).0,
+            leak: match constants.transducer.quantity {
+                Quantity::Gauge => leak,
+                Quantity::Absolute => leak.saturating_add(far),
+            },
         }
     }
 }
@@ -82,10 +81,10 @@ impl Fluid {
         *self = Self::new(self.fall);
     }
 
-    /// One reading later: the rise over the zero that serves, and how far that zero lies over the reference.
+    /// One reading later: the rise over the zero that serves, and how far that zero lies over the lowest to be expected.
     #[inline]
-    pub fn step(&mut self, time: Microseconds, rise: PressureRise, zero_over_reference: i32, touch: Touch) {
-        let over = zero_over_reference.saturating_add(rise.0.min(0));
+    pub fn step(&mut self, time: Microseconds, rise: PressureRise, zero_over_lowest: i32, touch: Touch) {
+        let over = zero_over_lowest.saturating_add(rise.0.min(0));
         if touch != Touch::Untouched || over >= -self.fall.leak {
             self.below_since = None;
             return;
@@ -113,7 +112,7 @@ mod tests {
     use crate::test_design::Linear;
 
     fn fluid() -> Fluid {
-        Fluid::new(Fall::of(&Linear::CONSTANTS, 8))
+        Fluid::new(Fall::of(&Linear::CONSTANTS, 8, 2_500 << 8))
     }
 
     fn leaks(rise: i32, over: i32, touch: Touch) -> bool {

@@ -9,7 +9,8 @@ use crate::fluid::{Fall, Fluid};
 use crate::pressure::{Pressure, Scale};
 use crate::report::{Fault, Measurement, Microseconds, Report, Warnings};
 use crate::stuck::StuckDetector;
-use crate::tare::{Gates, StartUp, Tare, TareRefusal, Zero};
+use crate::tare::gates::Gates;
+use crate::tare::{StartUp, Tare, TareRefusal, Zero};
 use crate::temperature::Temperature;
 use crate::touch::{Thresholds, Touch, TouchDetector};
 use crate::transducer::{self, Centidegrees, Millipascals, Sample};
@@ -51,10 +52,10 @@ impl<D: Design> Pipeline<D> {
     const GATES: Gates = Gates::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
     const LEAPS: Leaps = Leaps::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::PERIOD);
     const THRESHOLDS: Thresholds = Thresholds::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
-    const PACE: Pace = Pace::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.far);
-    const FALL: Fall = Fall::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
+    const PACE: Pace = Pace::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.travel());
+    const FALL: Fall = Fall::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.far);
     const UNCERTAINTY: Uncertainty =
-        Uncertainty::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.far);
+        Uncertainty::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.reach());
 
     /// A signal path that has seen nothing yet, with what is stored of this fingertip. `standing` qualifies every
     /// reading.
@@ -140,7 +141,7 @@ impl<D: Design> Pipeline<D> {
         self.touch = touch;
         self.drift.step(time, rise, touch);
         let (drifted, aged) = self.drift.missed(time, touch);
-        self.fluid.step(time, rise, self.zero_over_reference(), touch);
+        self.fluid.step(time, rise, self.zero_over_lowest(), touch);
 
         let missed = self.temperature.missed();
         let warnings = warnings
@@ -169,14 +170,11 @@ impl<D: Design> Pipeline<D> {
         self.filter.interrupt();
     }
 
-    fn zero_over_reference(&self) -> i32 {
-        let zero = self
-            .tare
-            .zero()
-            .map_or(self.tare.reference(), |zero| zero.pressure);
+    fn zero_over_lowest(&self) -> i32 {
+        let zero = self.tare.zero().map_or(self.tare.lowest(), |zero| zero.pressure);
         zero.0
             .saturating_add(self.drift.counts())
-            .saturating_sub(self.tare.reference().0)
+            .saturating_sub(self.tare.lowest().0)
     }
 
     /// Someone says that nothing presses: takes a new zero if it may be one. What came of it is asked with
@@ -185,7 +183,8 @@ impl<D: Design> Pipeline<D> {
     /// # Errors
     /// [`TareRefusal`] when that is plain at once.
     pub fn tare(&mut self) -> Result<(), TareRefusal> {
-        self.tare.command()
+        let (_, aged) = self.drift.missed(self.measured, self.touch);
+        self.tare.command(aged)
     }
 
     /// Takes back the last commanded zero.
@@ -216,11 +215,12 @@ impl<D: Design> Pipeline<D> {
         // 2^33 * 1000.
         let millipascals = (counts * 1000) >> D::PRESSURE_FRACTION_BITS;
         let zero = Millipascals(i32::try_from(millipascals).ok()?);
-        Some(self.calibration.rezeroed(zero, self.celsius))
+        let quantity = D::CONSTANTS.transducer.quantity;
+        Some(self.calibration.rezeroed(zero, self.celsius, quantity))
     }
 
-    /// The calibration was stored, and is what the next zero is compared with; nothing: what was stored is void, and the
-    /// design's rest pressure is.
+    /// The calibration was stored, and is what the next zero of a gauge transducer is compared with; nothing: what was
+    /// stored is void, and the design's rest pressure is.
     pub fn calibrated(&mut self, calibration: Option<Calibration>) {
         self.standing = self.standing.without(Warnings::CALIBRATION_REFUSED);
         self.fluid.clear();
@@ -254,5 +254,7 @@ impl<D: Design> Pipeline<D> {
     }
 }
 
+#[cfg(test)]
+mod air;
 #[cfg(test)]
 mod tests;

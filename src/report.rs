@@ -15,7 +15,7 @@ pub enum Fault {
     SensorOpen,
     /// The transducer's line rests at or below the bottom of its window: a short to ground, or no supply.
     SensorShort,
-    /// The zero is not taken yet.
+    /// There is no zero yet: the first one is being taken, or an absolute transducer could take none.
     Zeroing,
     /// The filter is filling again after a gap.
     Settling,
@@ -118,12 +118,13 @@ impl Warnings {
     pub const NONE: Self = Self(0);
     /// Beyond the tables' or the transducer's range: force and indentation are lower bounds.
     pub const SATURATED: Self = Self(1);
-    /// The zero was not measured at rest since power-up but is the design's: all values may be offset.
+    /// The zero is not known to be of rest: it is the stored or the design's, or an absolute transducer's first, which may
+    /// hold a press. All values may be offset.
     pub const ZERO_UNVERIFIED: Self = Self(2);
     /// The pressure is below the zero by more than noise: a leak, or a zero taken while pressed. Force and
     /// indentation are 0 but too low by the unknown offset.
     pub const BELOW_ZERO: Self = Self(4);
-    /// The rest pressure fell further than drift explains: fluid is lost, and the tables are for more of it. Latched.
+    /// The rest pressure fell further than drift, or the thinnest air, explains: fluid is lost, and the tables are for more of it. Latched.
     pub const LEAK_SUSPECTED: Self = Self(8);
     /// The fingertip was softer than its model at a known indentation: air in the fluid. Latched.
     pub const BUBBLE_SUSPECTED: Self = Self(16);
@@ -230,7 +231,8 @@ pub struct Measurement {
     pub warnings: Warnings,
 }
 
-/// One standard deviation of each value, >= 0; the end of the word also stands for more.
+/// One standard deviation of each value, >= 0, and above 0 for force and indentation; the end of the word also stands for
+/// more.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Sigma {
     /// Of the pressure rise.

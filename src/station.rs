@@ -119,7 +119,11 @@ impl<D: Design> Station<D> {
         let calibration = beginning.calibration.unwrap_or_default();
         Self {
             counters: Counters::default(),
-            pipeline: Pipeline::new(StartUp::after(reset_cause, start.kept), calibration, standing),
+            pipeline: Pipeline::new(
+                StartUp::after(reset_cause, start.kept, D::CONSTANTS.transducer.quantity),
+                calibration,
+                standing,
+            ),
             hello: Hello {
                 firmware: beginning.firmware,
                 reset_cause,

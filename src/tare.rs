@@ -1,4 +1,4 @@
-//! Gauge pressure -> pressure rise over the zero, and where that zero may come from.
+//! Pressure -> pressure rise over the zero, and where that zero may come from.
 //!
 //! A zero taken on a pressed fingertip reads every later press too low, so there are two ways to one, both gated:
 //!
@@ -12,15 +12,28 @@
 //! After a reset that nobody saw coming the hand may be holding something: nothing is measured, the zero from
 //! before the reset serves, or else the reference, unverified.
 //!
-//! An absolute transducer has the weather in its zero, so near means nothing for it: it starts with what it
-//! measures, within `far` of the reference, and says "zero unverified" until it is told that nothing presses.
+//! # Absolute transducers
+//!
+//! They have the air in their zero, 60 to 108 kPa of it ([`AIR`](model_tables::constants::AIR)), and a press cannot be
+//! told from denser air. So no single zero is to be expected, neither the design's nor a stored one: any within
+//! [`Gates::expected`] may be, and only someone who says that nothing presses verifies it.
+//!
+//! | | gauge | absolute |
+//! |---|---|---|
+//! | start by a person or the supply | a quiet window near the reference: verified | a verified zero that is kept; else a quiet window within the bounds: unverified |
+//! | none within [`PATIENCE`] | the reference, unverified | no zero: [`Fault::Zeroing`] until one comes, or a command |
+//! | a reset nobody saw coming, a zero is kept | it serves as it was | it serves as it was: the air has not moved meanwhile |
+//! | the same, none is kept | the reference, unverified | no zero: [`Fault::Zeroing`] until a command; the tip may be pressed |
+//! | command over a verified zero | refused from a touch up | the same, until the zero is aged: denser air reads as a touch |
+//! | command over another zero, or none | a stored zero objects beyond `near` | nothing stored objects: the air moved |
 
+pub mod gates;
+
+use self::gates::Gates;
 use crate::pressure::{Pressure, saturate};
 use crate::report::{Fault, Microseconds, Warnings};
 use crate::telemetry::ResetCause;
-use crate::touch::Thresholds;
-use crate::transducer::Quantity;
-use model_tables::constants::DesignConstants;
+use model_tables::constants::Quantity;
 use model_tables::units::PressureRise;
 
 /// How long a window is, microseconds: longer than any hum, shorter than patience.
@@ -29,82 +42,12 @@ pub const WINDOW: u64 = 256_000;
 /// How long a good window is waited for, microseconds.
 pub const PATIENCE: u64 = 2_000_000;
 
-/// How far a zero at start-up may lie from the reference, ten-thousandths of the transducer's range: what the offset of a
-/// compensated gauge bridge wanders between one day and another.
-const NEAR_PERMYRIAD: i64 = 25;
-
-/// How far any zero may lie from the reference, thousandths of the transducer's range: the offset that NXP allows an
-/// MPX5100 (2.5 % of full scale, 0 to 85 degC).
-const FAR_PERMILLE: i64 = 25;
-
-/// The same for an absolute transducer, pascals: 3000 m of altitude.
-const FAR_ABSOLUTE: i32 = 30_000;
-
-/// How far apart the lowest and the highest sample of a window may lie, in standard deviations of one sample.
-/// White noise of that size spreads over 5.6 of them in 256 draws, over more than 9 once in 10^16 windows.
-const QUIET_DEVIATIONS: i64 = 10;
-
-/// What a window is compared with.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct Gates {
-    /// The zero to be expected: stored, or the design's rest pressure.
-    pub reference: Pressure,
-    /// Whether the reference was stored by someone who saw the fingertip untouched.
-    pub stored: bool,
-    /// How far from it a zero may lie that nobody vouches for, counts, >= 0.
-    pub near: i32,
-    /// How far from it any zero may lie, counts, >= 0.
-    pub far: i32,
-    /// How far a quiet window may spread, counts, >= 0.
-    pub quiet: i32,
-    /// The rise from which on the fingertip is touched.
-    pub touch: PressureRise,
-    /// The weather is in the pressure.
-    pub absolute: bool,
-}
-
-impl Gates {
-    /// The gates of a design without a stored calibration.
-    pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
-        let transducer = &constants.transducer;
-        let range = transducer.range[1] as i64 - transducer.range[0] as i64;
-        let grain = transducer.grain();
-        let absolute = matches!(Quantity::of(&transducer.kind), Quantity::Absolute);
-        let near = range * NEAR_PERMYRIAD / 10;
-        Self {
-            reference: Pressure::from_pascals(constants.rest_pressure, fraction_bits),
-            stored: false,
-            near: Pressure::from_millipascals(near, fraction_bits).0,
-            far: if absolute {
-                Pressure::from_pascals(FAR_ABSOLUTE, fraction_bits).0
-            } else {
-                Pressure::from_millipascals(range * FAR_PERMILLE, fraction_bits).0
-            },
-            quiet: Pressure::from_millipascals(grain * QUIET_DEVIATIONS, fraction_bits).0,
-            touch: Thresholds::of(constants, fraction_bits).touch,
-            absolute,
-        }
-    }
-
-    /// The same with a stored zero for the reference.
-    #[must_use]
-    pub const fn with_stored(mut self, zero: Pressure) -> Self {
-        self.reference = zero;
-        self.stored = true;
-        self
-    }
-
-    fn within(&self, zero: Pressure, reach: i32) -> bool {
-        zero.0.abs_diff(self.reference.0) <= reach.unsigned_abs()
-    }
-}
-
 /// Where the zero comes from at start-up.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum StartUp {
     /// Measured, if the gates let it.
     Measured,
-    /// The reference.
+    /// The reference, if there is one.
     Stored,
     /// The zero that served before the reset, and whether it was verified.
     Kept(Zero),
@@ -112,9 +55,11 @@ pub enum StartUp {
 
 impl StartUp {
     /// Someone switched the power on or pressed the button, and can be asked to leave the fingertip alone;
-    /// a watchdog asks nobody. `kept` is the zero from before the reset, if it survived.
-    pub const fn after(cause: ResetCause, kept: Option<Zero>) -> Self {
+    /// a watchdog asks nobody. `kept` is the zero from before the reset, if it survived. An absolute transducer could not
+    /// verify another one, so a verified one serves on whatever the cause.
+    pub const fn after(cause: ResetCause, kept: Option<Zero>, quantity: Quantity) -> Self {
         match (cause, kept) {
+            (_, Some(zero)) if zero.verified && matches!(quantity, Quantity::Absolute) => Self::Kept(zero),
             (ResetCause::PowerOn | ResetCause::Pin | ResetCause::BrownOut, _) => Self::Measured,
             (_, Some(zero)) => Self::Kept(zero),
             (_, None) => Self::Stored,
@@ -165,6 +110,13 @@ pub struct Tare {
 
 #[derive(Clone, Debug)]
 struct Measuring {
+    /// Someone says that nothing presses, and waits for an answer.
+    commanded: bool,
+    /// A start whose [`PATIENCE`] ended without a zero: it goes on for want of one, gives way to a command and resumes
+    /// where that fails.
+    overdue: bool,
+    /// The zero that serves has aged: its rise may be the air's.
+    aged: bool,
     since: Option<Microseconds>,
     /// Why the last window was no good.
     objection: TareRefusal,
@@ -208,7 +160,11 @@ impl Window {
 }
 
 impl Measuring {
+    /// At start-up.
     const NEW: Self = Self {
+        commanded: false,
+        overdue: false,
+        aged: false,
         since: None,
         objection: TareRefusal::NoReading,
         window: Window::EMPTY,
@@ -220,7 +176,7 @@ impl Tare {
     pub const fn new(gates: Gates, start_up: StartUp) -> Self {
         let zero = match start_up {
             StartUp::Measured => None,
-            StartUp::Stored => Some(Self::unverified(&gates)),
+            StartUp::Stored => gates.fallback(),
             StartUp::Kept(zero) => Some(zero),
         };
         Self {
@@ -228,22 +184,15 @@ impl Tare {
             zero,
             anchor: match zero {
                 Some(zero) => zero.pressure,
-                None => gates.reference,
+                None => gates.expected[0],
             },
             previous: None,
-            measuring: match zero {
-                None => Some(Measuring::NEW),
-                Some(_) => None,
+            measuring: match start_up {
+                StartUp::Measured => Some(Measuring::NEW),
+                StartUp::Stored | StartUp::Kept(_) => None,
             },
             answer: None,
             moved: zero.is_some(),
-        }
-    }
-
-    const fn unverified(gates: &Gates) -> Zero {
-        Zero {
-            pressure: gates.reference,
-            verified: false,
         }
     }
 
@@ -252,9 +201,9 @@ impl Tare {
         self.zero
     }
 
-    /// The zero to be expected.
-    pub const fn reference(&self) -> Pressure {
-        self.gates.reference
+    /// The lowest zero to be expected.
+    pub const fn lowest(&self) -> Pressure {
+        self.gates.expected[0]
     }
 
     /// A new reference: something was stored, or is void. The zero that serves stays.
@@ -293,23 +242,36 @@ impl Tare {
             measuring.window = Window::EMPTY;
             let since = *measuring.since.get_or_insert(time);
             let tired = time.0.saturating_sub(since.0) >= PATIENCE;
-            if tired && self.zero.is_some() {
+            if tired && measuring.commanded {
                 self.give_up();
             }
         }
     }
 
     /// Someone says that nothing presses: takes a new zero if the gates let it. The answer comes through
-    /// [`Tare::take_answer`] within [`PATIENCE`] of the next sample.
+    /// [`Tare::take_answer`] within [`PATIENCE`] of the next sample. `aged`: the zero that serves could not be followed
+    /// for so long that drift may pass for a touch; to an absolute transducer it then tells no touch any more.
     ///
     /// # Errors
     /// [`TareRefusal::Busy`].
-    pub fn command(&mut self) -> Result<(), TareRefusal> {
-        if self.measuring.is_some() {
+    pub fn command(&mut self, aged: bool) -> Result<(), TareRefusal> {
+        if self.is_busy() {
             return Err(TareRefusal::Busy);
         }
-        self.measuring = Some(Measuring::NEW);
+        self.measuring = Some(Measuring {
+            commanded: true,
+            overdue: self.measuring.is_some(),
+            aged,
+            ..Measuring::NEW
+        });
         Ok(())
+    }
+
+    /// Whether a zero is being measured, which ends within [`PATIENCE`].
+    fn is_busy(&self) -> bool {
+        self.measuring
+            .as_ref()
+            .is_some_and(|measuring| measuring.commanded || !measuring.overdue)
     }
 
     /// Takes back the last commanded zero.
@@ -317,7 +279,7 @@ impl Tare {
     /// # Errors
     /// [`TareRefusal::NothingToUndo`], [`TareRefusal::Busy`].
     pub fn undo(&mut self) -> Result<(), TareRefusal> {
-        if self.measuring.is_some() {
+        if self.is_busy() {
             return Err(TareRefusal::Busy);
         }
         let previous = self.previous.take().ok_or(TareRefusal::NothingToUndo)?;
@@ -344,16 +306,17 @@ impl Tare {
             return;
         };
         let since = *measuring.since.get_or_insert(time);
+        let (commanded, aged) = (measuring.commanded, measuring.aged);
         if let Some((mean, spread)) = measuring.window.add(time, pressure) {
             measuring.window = Window::EMPTY;
             let judged = if spread > self.gates.quiet {
                 Err(TareRefusal::Restless)
             } else {
-                self.judge(mean, drift)
+                self.judge(mean, drift, commanded, aged)
             };
             match judged {
                 Ok(zero) => {
-                    self.accept(zero, drift);
+                    self.accept(zero, drift, commanded);
                     return;
                 }
                 Err(objection) => {
@@ -369,19 +332,20 @@ impl Tare {
     }
 
     /// Whether the mean of a quiet window may be the zero.
-    fn judge(&self, mean: Pressure, drift: i32) -> Result<Zero, TareRefusal> {
+    fn judge(&self, mean: Pressure, drift: i32, commanded: bool, aged: bool) -> Result<Zero, TareRefusal> {
         let gates = &self.gates;
         let verified = |verified| Zero {
             pressure: mean,
             verified,
         };
         let judged = match self.zero {
+            // Of an absolute transducer the bounds alone object, whoever asks.
+            None if gates.absolute => Ok(verified(commanded)),
             // At start-up.
-            None if gates.absolute => Ok(verified(false)),
             None if gates.within(mean, gates.near) => Ok(verified(true)),
             None => Err(TareRefusal::Touched),
             // On command, over a zero that tells a touch.
-            Some(zero) if zero.verified => {
+            Some(zero) if zero.verified && !(aged && gates.absolute) => {
                 let anchor = i64::from(self.anchor.0) + i64::from(drift);
                 if i64::from(mean.0) - anchor > i64::from(gates.touch.0) {
                     Err(TareRefusal::Touched)
@@ -390,9 +354,7 @@ impl Tare {
                 }
             }
             // On command, over one that does not: only a stored zero can object.
-            Some(_) if gates.stored && !gates.absolute && !gates.within(mean, gates.near) => {
-                Err(TareRefusal::Touched)
-            }
+            Some(_) if gates.stored && !gates.within(mean, gates.near) => Err(TareRefusal::Touched),
             Some(_) => Ok(verified(true)),
         };
         judged.and_then(|zero| {
@@ -404,7 +366,7 @@ impl Tare {
         })
     }
 
-    fn accept(&mut self, zero: Zero, drift: i32) {
+    fn accept(&mut self, zero: Zero, drift: i32, commanded: bool) {
         let before = self.zero.replace(zero);
         self.anchor = match before {
             Some(before) if before.verified => {
@@ -412,11 +374,11 @@ impl Tare {
             }
             _ => zero.pressure,
         };
-        if let Some(before) = before {
-            self.previous = Some(Zero {
-                pressure: Pressure(before.pressure.0.saturating_add(drift)),
-                ..before
-            });
+        self.previous = before.map(|before| Zero {
+            pressure: Pressure(before.pressure.0.saturating_add(drift)),
+            ..before
+        });
+        if commanded {
             self.answer = Some(Ok(()));
         }
         self.measuring = None;
@@ -427,11 +389,22 @@ impl Tare {
         let Some(measuring) = self.measuring.take() else {
             return;
         };
-        if self.zero.is_some() {
+        if measuring.commanded {
             self.answer = Some(Err(measuring.objection));
-        } else {
-            self.zero = Some(Self::unverified(&self.gates));
+            if measuring.overdue {
+                self.measuring = Some(Measuring {
+                    overdue: true,
+                    ..Measuring::NEW
+                });
+            }
+        } else if let Some(zero) = self.gates.fallback() {
+            self.zero = Some(zero);
             self.moved = true;
+        } else {
+            self.measuring = Some(Measuring {
+                overdue: true,
+                ..measuring
+            });
         }
     }
 }

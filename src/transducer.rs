@@ -13,9 +13,10 @@ pub mod ratiometric;
 mod script;
 
 use crate::report::{Fault, Warnings};
-use model_tables::constants::TransducerKind;
+use model_tables::constants::{AIR, TransducerKind};
 
-/// Pressure, millipascals: 2147 kPa either way. Gauge or absolute as the transducer's [`Quantity`] says.
+/// Pressure, millipascals: 2147 kPa either way. Gauge or absolute as the design's
+/// [`Quantity`](model_tables::constants::Quantity) says.
 #[derive(Clone, Copy, Debug, Default, Eq, Ord, PartialEq, PartialOrd)]
 pub struct Millipascals(pub i32);
 
@@ -23,23 +24,21 @@ pub struct Millipascals(pub i32);
 #[derive(Clone, Copy, Debug, Default, Eq, Ord, PartialEq, PartialOrd)]
 pub struct Centidegrees(pub i16);
 
-/// What a transducer measures against.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Quantity {
-    /// Against the air around it.
-    Gauge,
-    /// Against a vacuum: the weather is in it, and the zero has to take it out. 1 hPa of weather or 8 m of stairs
-    /// read as 100 Pa.
-    Absolute,
-}
+/// How far below the thinnest air a sound absolute part may read, pascals: its own error, and a little more height.
+const BELOW_THINNEST_AIR: i32 = 3_000;
 
-impl Quantity {
-    /// What a kind of transducer measures against.
-    pub const fn of(kind: &TransducerKind) -> Self {
-        match kind {
-            TransducerKind::Ratiometric { .. } | TransducerKind::Abp2 { .. } => Self::Gauge,
-            TransducerKind::Ms5837 { .. } | TransducerKind::Dps310 { .. } => Self::Absolute,
-        }
+/// What an absolute part gives, once it is `recognised` by the first pressure after a start. The air is always in that, and
+/// whatever presses adds to it: only a part that is read by another one's formula is below. There is no upper bound, for
+/// it may be pressed.
+///
+/// # Errors
+/// [`Fault::WrongSensor`] until a sample holds the air.
+fn recognise(recognised: &mut bool, sample: Sample) -> Result<Sample, Fault> {
+    *recognised |= sample.pressure.0 >= (AIR[0] - BELOW_THINNEST_AIR) * 1000;
+    if *recognised {
+        Ok(sample)
+    } else {
+        Err(Fault::WrongSensor)
     }
 }
 

@@ -13,13 +13,13 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 pub struct Uncertainty {
     /// Noise after averaging and filtering, and resolution.
     noise: i32,
-    /// An unverified zero, uniform within the bounds of any zero.
+    /// An unverified zero, uniform within the bounds of any zero: of an absolute transducer nearly all that the air may be.
     unverified: i32,
 }
 
 impl Uncertainty {
-    /// For a design; `far` bounds every zero.
-    pub const fn of(constants: &DesignConstants, fraction_bits: u32, far: i32) -> Self {
+    /// For a design; any zero lies within `reach` counts of the middle of its bounds.
+    pub const fn of(constants: &DesignConstants, fraction_bits: u32, reach: i32) -> Self {
         let transducer = &constants.transducer;
         let averaged = averaged(&transducer.kind) as i64;
         let (noise, resolution) = (transducer.noise as i64, transducer.resolution as i64);
@@ -28,7 +28,7 @@ impl Uncertainty {
         Self {
             noise: Pressure::from_millipascals(variance.isqrt(), fraction_bits).0,
             // 1 / sqrt 3.
-            unverified: (far as i64 * 577 / 1000) as i32,
+            unverified: (reach as i64 * 577 / 1000) as i32,
         }
     }
 
@@ -69,28 +69,26 @@ fn hypotenuse(a: i32, b: i32) -> i32 {
     large.max((large - (large >> 3)).saturating_add(small >> 1))
 }
 
-/// The same through the tables: what they give one deviation further on, or back at their end.
+/// The same through the tables: what they give one deviation further on, or back at their end; from that end where the rise
+/// is beyond it, and from zero where it is below. At least one unit: what is uncertain in the pressure is so in all three.
 // On its own: woven into the reading's own lookup it takes the registers that this one needs.
 #[inline(never)]
 pub fn through_tables<D: Design>(rise: PressureRise, at: &Contact, sigma: PressureRise) -> Sigma {
-    let rise = rise.0;
-    let above = rise.max(0).saturating_add(sigma.0);
-    let other = if above > D::LAST_RISE.0 {
+    let last = D::LAST_RISE.0;
+    let rise = rise.0.clamp(0, last);
+    let above = rise.saturating_add(sigma.0);
+    let other = if above > last {
         rise.saturating_sub(sigma.0)
     } else {
         above
     };
     let other = D::lookup(PressureRise(other));
+    // Outputs of the tables are not negative, so no difference exceeds the word.
+    let apart = |one: i32, another: i32| (one - another).abs().max(1);
     Sigma {
         pressure_rise: sigma,
-        force: Micronewtons(other.force.0.saturating_sub(at.force.0).saturating_abs()),
-        indentation: Nanometres(
-            other
-                .indentation
-                .0
-                .saturating_sub(at.indentation.0)
-                .saturating_abs(),
-        ),
+        force: Micronewtons(apart(other.force.0, at.force.0)),
+        indentation: Nanometres(apart(other.indentation.0, at.indentation.0)),
     }
 }
 
@@ -99,11 +97,30 @@ mod tests {
     use super::*;
     use crate::contact::contact;
     use crate::report::Warnings;
-    use crate::test_design::{Linear, RISE_END};
+    use crate::test_design::{Linear, RISE_END, With};
+    use model_tables::table::Reading;
     use proptest::prelude::*;
 
-    fn beside(rise: PressureRise, sigma: PressureRise) -> Sigma {
-        through_tables::<Linear>(rise, &contact::<Linear>(rise, Warnings::NONE), sigma)
+    fn beside<D: Design>(rise: PressureRise, sigma: PressureRise) -> Sigma {
+        through_tables::<D>(rise, &contact::<D>(rise, Warnings::NONE), sigma)
+    }
+
+    /// Many counts to a micronewton and to a nanometre.
+    struct Shallow;
+
+    impl Design for Shallow {
+        const CONSTANTS: DesignConstants = Linear::CONSTANTS;
+        const PRESSURE_FRACTION_BITS: u32 = Linear::PRESSURE_FRACTION_BITS;
+        const LAST_RISE: PressureRise = Linear::LAST_RISE;
+
+        fn lookup(rise: PressureRise) -> Reading {
+            let reading = Linear::lookup(rise);
+            Reading {
+                force: Micronewtons(reading.force.0 >> 12),
+                indentation: Nanometres(reading.indentation.0 >> 12),
+                ..reading
+            }
+        }
     }
 
     #[test]
@@ -119,10 +136,18 @@ mod tests {
     #[test]
     fn at_the_end_of_the_tables_it_is_taken_from_below() {
         let rise = PressureRise(RISE_END - 5);
-        let sigma = beside(rise, PressureRise(700));
+        let sigma = beside::<Linear>(rise, PressureRise(700));
         assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700));
-        let below = beside(PressureRise(-9_000), PressureRise(700));
+        let below = beside::<Linear>(PressureRise(-9_000), PressureRise(700));
         assert_eq!(below.force.0, 700);
+    }
+
+    #[test]
+    fn beyond_the_end_it_is_what_it_is_at_the_end() {
+        for beyond in [1, 700, 10_000, i32::MAX - RISE_END] {
+            let sigma = beside::<Linear>(PressureRise(RISE_END + beyond), PressureRise(700));
+            assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700), "{beyond}");
+        }
     }
 
     proptest! {
@@ -135,8 +160,13 @@ mod tests {
 
         #[test]
         fn nothing_overflows(rise in any::<i32>(), sigma in 0..=i32::MAX, drift in 0..=i32::MAX) {
-            let sigma = beside(PressureRise(rise), PressureRise(sigma));
-            prop_assert!(sigma.force.0 >= 0 && sigma.indentation.0 >= 0);
+            for sigma in [
+                beside::<Linear>(PressureRise(rise), PressureRise(sigma)),
+                beside::<With<4>>(PressureRise(rise), PressureRise(sigma)),
+                beside::<Shallow>(PressureRise(rise), PressureRise(sigma)),
+            ] {
+                prop_assert!(sigma.force.0 > 0 && sigma.indentation.0 > 0);
+            }
             prop_assert!(hypotenuse(drift, rise.saturating_abs()) >= drift);
         }
     }

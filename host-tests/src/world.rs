@@ -9,7 +9,7 @@ use fingertip::station::{Beginning, Station, ToStore};
 use fingertip::supervisor::Breadcrumb;
 use fingertip::telemetry::{Message, ResetCause, Stored};
 use fingertip::transducer::{Millipascals, Sample};
-use model_tables::constants::{DesignConstants, TransducerKind};
+use model_tables::constants::{DesignConstants, Quantity, TransducerKind};
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;
 
@@ -21,6 +21,8 @@ impl Design for WithAbsolutePart {
     const CONSTANTS: DesignConstants = {
         let mut constants = ImageDesign::CONSTANTS;
         constants.transducer.kind = TransducerKind::Ms5837 { address: 0x76 };
+        constants.transducer.quantity = Quantity::Absolute;
+        constants.transducer.range = [1_000, 200_000];
         constants
     };
     const PRESSURE_FRACTION_BITS: u32 = ImageDesign::PRESSURE_FRACTION_BITS;
@@ -96,14 +98,21 @@ pub fn beginning<D: Design>(
     }
 }
 
-/// Pascals at rest.
+/// The air around the fingertip, pascals.
+const AIR: f64 = 101_325.0;
+
+/// Pascals at rest, as the transducer reads them: with the air where it is absolute.
 pub fn rest<D: Design>() -> f64 {
-    f64::from(D::CONSTANTS.rest_pressure)
+    let air = match D::CONSTANTS.transducer.quantity {
+        Quantity::Gauge => 0.0,
+        Quantity::Absolute => AIR,
+    };
+    f64::from(D::CONSTANTS.rest_pressure) + air
 }
 
 /// Pascals from rest to the end of the tables.
 pub fn full_scale<D: Design>() -> f64 {
-    f64::from(D::CONSTANTS.maximum_pressure) - rest::<D>()
+    f64::from(D::CONSTANTS.maximum_pressure - D::CONSTANTS.rest_pressure)
 }
 
 /// A sample of a pressure in pascals, measured half a period before it is given.

@@ -249,7 +249,7 @@ fn no_reset_that_nobody_asked_for_takes_a_zero() {
             for press in (0..100).map(|i| f64::from(i) * full_scale::<Image>() / 100.0) {
                 let begins = beginning::<Image>(cause, None, left);
                 assert_eq!(
-                    StartUp::after(cause, begins.start.kept),
+                    StartUp::after(cause, begins.start.kept, Image::CONSTANTS.transducer.quantity),
                     left.map_or(StartUp::Stored, |_| StartUp::Kept(kept))
                 );
                 let mut world = World::<Image>::new(&begins);

@@ -10,6 +10,7 @@ mod print;
 pub(crate) mod section;
 mod sections;
 
+use crate::constants::{AIR, Quantity};
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
 use sha2::{Digest, Sha256};
@@ -90,14 +91,49 @@ pub enum RestSection {
 /// `[transducer]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransducerSection {
-    /// Gauge pressure at the two ends of its range, kilopascals.
+    /// Kilopascals. Of an absolute analogue part the two ends that its datasheet gives, absolute; of every other one gauge
+    /// pressures.
     pub range_kpa: [f64; 2],
     /// Smallest change it tells apart, pascals.
     pub resolution_pa: f64,
     /// One standard deviation of one sample at the converter, pascals; `resolution_pa` where not given.
     pub noise_pa: f64,
+    /// What it measures against.
+    pub quantity: Quantity,
     /// Its kind.
     pub kind: TransducerKindSection,
+}
+
+impl TransducerSection {
+    /// The ends of the part's own range in its own quantity, kilopascals.
+    pub fn own_range_kpa(&self) -> [f64; 2] {
+        self.kind.absolute_range_kpa().unwrap_or(self.range_kpa)
+    }
+
+    /// Gauge pressures that it reads in any air, kilopascals.
+    pub fn gauge_range_kpa(&self) -> [f64; 2] {
+        if self.range_is_absolute() {
+            in_any_air(self.range_kpa)
+        } else {
+            self.range_kpa
+        }
+    }
+
+    /// Whether `range_kpa` is absolute: of an analogue part it describes the part, and not what is wanted of it.
+    pub fn range_is_absolute(&self) -> bool {
+        self.quantity == Quantity::Absolute && matches!(self.kind, TransducerKindSection::Ratiometric { .. })
+    }
+}
+
+/// [`AIR`], kilopascals.
+pub(crate) fn air_kpa() -> [f64; 2] {
+    AIR.map(|pascals| f64::from(pascals) / 1e3)
+}
+
+/// What is left of an absolute range above the air around it, whatever that is ([`AIR`]): gauge, kilopascals.
+pub(crate) fn in_any_air([low, high]: [f64; 2]) -> [f64; 2] {
+    let [thinnest, densest] = air_kpa();
+    [low - thinnest, high - densest]
 }
 
 /// `kind` of `[transducer]`, with the keys that only it has.
@@ -124,6 +160,28 @@ pub enum TransducerKindSection {
         /// Seven-bit I2C address, 0x76 or 0x77.
         address: u8,
     },
+}
+
+impl TransducerKindSection {
+    /// What a part on a bus measures against; an analogue one may be either.
+    pub const fn own_quantity(&self) -> Option<Quantity> {
+        match self {
+            Self::Ratiometric { .. } => None,
+            Self::Abp2 { .. } => Some(Quantity::Gauge),
+            Self::Ms5837 | Self::Dps310 { .. } => Some(Quantity::Absolute),
+        }
+    }
+
+    /// The range of an absolute part on a bus, which is in its datasheet: kilopascals absolute.
+    pub const fn absolute_range_kpa(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Ratiometric { .. } | Self::Abp2 { .. } => None,
+            // TE, datasheet of 09/2017: 10 to 2000 mbar.
+            Self::Ms5837 => Some([1.0, 200.0]),
+            // Infineon, datasheet V1.2, table 3.
+            Self::Dps310 { .. } => Some([30.0, 120.0]),
+        }
+    }
 }
 
 /// `supply` of a ratiometric transducer.

@@ -1,8 +1,9 @@
 use super::*;
+use crate::design::Design;
 use proptest::prelude::*;
 
 const GATES: Gates = Gates {
-    reference: Pressure(10_000),
+    expected: [Pressure(10_000); 2],
     stored: false,
     near: 250,
     far: 2_500,
@@ -60,7 +61,7 @@ impl Bench {
 
     /// Commands a tare while `pressure` lasts.
     fn command(&mut self, pressure: impl Fn(u64) -> i32) -> Result<(), TareRefusal> {
-        self.tare.command()?;
+        self.tare.command(false)?;
         for i in 0..3_000 {
             let _ = self.step(pressure(i));
             if let Some(answer) = self.tare.take_answer() {
@@ -160,7 +161,11 @@ fn only_a_reset_by_a_person_or_the_supply_measures() {
         verified: true,
     };
     for cause in [ResetCause::PowerOn, ResetCause::Pin, ResetCause::BrownOut] {
-        assert_eq!(StartUp::after(cause, Some(kept)), StartUp::Measured, "{cause}");
+        assert_eq!(
+            StartUp::after(cause, Some(kept), Quantity::Gauge),
+            StartUp::Measured,
+            "{cause}"
+        );
     }
     for cause in [
         ResetCause::Watchdog,
@@ -168,8 +173,16 @@ fn only_a_reset_by_a_person_or_the_supply_measures() {
         ResetCause::LowPower,
         ResetCause::Unknown,
     ] {
-        assert_eq!(StartUp::after(cause, None), StartUp::Stored, "{cause}");
-        assert_eq!(StartUp::after(cause, Some(kept)), StartUp::Kept(kept), "{cause}");
+        assert_eq!(
+            StartUp::after(cause, None, Quantity::Gauge),
+            StartUp::Stored,
+            "{cause}"
+        );
+        assert_eq!(
+            StartUp::after(cause, Some(kept), Quantity::Gauge),
+            StartUp::Kept(kept),
+            "{cause}"
+        );
     }
     let mut bench = Bench::new(GATES, StartUp::Stored);
     assert_eq!(
@@ -193,9 +206,9 @@ fn a_command_takes_a_new_zero_and_another_takes_it_back() {
 #[test]
 fn readings_go_on_over_the_old_zero_while_a_new_one_is_measured() {
     let mut bench = Bench::zeroed();
-    bench.tare.command().expect("nothing is under way");
+    bench.tare.command(false).expect("nothing is under way");
     assert_eq!(bench.step(10_140), Ok((PressureRise(40), Warnings::NONE)));
-    assert_eq!(bench.tare.command(), Err(TareRefusal::Busy));
+    assert_eq!(bench.tare.command(false), Err(TareRefusal::Busy));
     assert_eq!(bench.tare.undo(), Err(TareRefusal::Busy));
 }
 
@@ -208,7 +221,7 @@ fn a_command_is_refused_with_its_reason() {
         Err(TareRefusal::Restless)
     );
     assert_eq!(bench.command(|_| 7_499), Err(TareRefusal::OutOfBounds));
-    bench.tare.command().expect("nothing is under way");
+    bench.tare.command(false).expect("nothing is under way");
     bench.tare.interrupt(Microseconds(bench.ms * 1000));
     bench.tare.interrupt(Microseconds(bench.ms * 1000 + PATIENCE));
     assert_eq!(bench.tare.take_answer(), Some(Err(TareRefusal::NoReading)));
@@ -236,25 +249,76 @@ fn over_an_unverified_zero_only_a_stored_one_can_object() {
     assert_eq!(stored.command(|_| 10_249), Ok(()));
 }
 
+/// Rests at 10 000 in air of 60 000 to 108 000.
+const ABSOLUTE: Gates = Gates {
+    expected: [Pressure(70_000), Pressure(118_000)],
+    absolute: true,
+    ..GATES
+};
+
 #[test]
-fn an_absolute_part_starts_with_the_weather_and_waits_to_be_told() {
-    let gates = Gates {
-        absolute: true,
-        far: 30_000,
-        ..GATES
+fn an_absolute_part_starts_with_the_air_and_waits_to_be_told() {
+    for zero in [67_500, 70_000, 111_000, 120_500] {
+        let mut bench = Bench::new(ABSOLUTE, StartUp::Measured);
+        let (_, reading) = bench.first_reading(|_| zero);
+        assert_eq!(reading, (PressureRise(0), Warnings::ZERO_UNVERIFIED));
+        assert_eq!(bench.command(|_| zero), Ok(()));
+        assert_eq!(bench.zero(), (zero, true));
     }
-    .with_stored(Pressure(10_000));
-    let mut bench = Bench::new(gates, StartUp::Measured);
-    let (_, reading) = bench.first_reading(|_| 8_000);
-    assert_eq!(reading, (PressureRise(0), Warnings::ZERO_UNVERIFIED));
-    assert_eq!(bench.command(|_| 8_000), Ok(()));
-    assert_eq!(bench.zero(), (8_000, true));
+}
+
+#[test]
+fn a_verified_zero_of_an_absolute_part_outlives_any_reset_that_keeps_it() {
+    let kept = |verified| Zero {
+        pressure: Pressure(90_000),
+        verified,
+    };
+    let after = |cause, kept| StartUp::after(cause, kept, Quantity::Absolute);
+    for cause in [ResetCause::Pin, ResetCause::BrownOut] {
+        assert_eq!(after(cause, Some(kept(true))), StartUp::Kept(kept(true)));
+        assert_eq!(after(cause, Some(kept(false))), StartUp::Measured);
+    }
+    assert_eq!(after(ResetCause::PowerOn, None), StartUp::Measured);
+    let unseen = after(ResetCause::Watchdog, Some(kept(false)));
+    assert_eq!(unseen, StartUp::Kept(kept(false)));
+    assert_eq!(after(ResetCause::Watchdog, None), StartUp::Stored);
+}
+
+#[test]
+fn a_stored_zero_of_an_absolute_part_is_of_other_air() {
+    assert_eq!(ABSOLUTE.with_stored(Pressure(80_000)), ABSOLUTE);
+}
+
+#[test]
+fn the_gates_of_an_absolute_part_hold_the_air() {
+    use crate::test_design::With;
+    // Rests at 1 kPa; 2.5 % of 90 kPa; 1/256 Pa a count.
+    let gates = Gates::of(&With::<4>::CONSTANTS, 8);
+    assert_eq!(gates.expected, [Pressure(61_000 << 8), Pressure(109_000 << 8)]);
+    assert_eq!(gates.far, 2_250 << 8);
+    assert_eq!((gates.travel(), gates.reach()), (50_250 << 8, 26_250 << 8));
+    let gauge = Gates::of(&With::<0>::CONSTANTS, 8);
+    assert_eq!(gauge.expected, [Pressure(1_000 << 8); 2]);
+    assert_eq!((gauge.travel(), gauge.reach()), (2_500 << 8, 2_500 << 8));
+}
+
+#[test]
+fn without_a_kept_zero_an_absolute_part_says_nothing_after_a_reset_until_it_is_told() {
+    let mut bench = Bench::new(ABSOLUTE, StartUp::Stored);
+    for _ in 0..5_000 {
+        assert_eq!(bench.step(90_000), Err(Fault::Zeroing));
+    }
+    assert_eq!(bench.command(|_| 121_000), Err(TareRefusal::OutOfBounds));
+    assert_eq!(bench.step(90_000), Err(Fault::Zeroing));
+    assert_eq!(bench.command(|_| 90_000), Ok(()));
+    assert_eq!(bench.tare.undo(), Err(TareRefusal::NothingToUndo));
+    assert_eq!(bench.step(90_100), Ok((PressureRise(100), Warnings::NONE)));
 }
 
 #[test]
 fn drift_is_part_of_what_an_undo_brings_back() {
     let mut bench = Bench::zeroed();
-    bench.tare.command().expect("nothing is under way");
+    bench.tare.command(false).expect("nothing is under way");
     for ms in 0..300 {
         let time = Microseconds((bench.ms + ms) * 1000);
         let _ = bench.tare.step(time, Pressure(10_125), 20);
@@ -288,7 +352,7 @@ proptest! {
         let mut bench = Bench::zeroed();
         for (press, ms) in presses {
             let (before, _) = bench.zero();
-            let _ = bench.tare.command();
+            let _ = bench.tare.command(false);
             bench.for_ms(ms, |_| 10_100 + press);
             let (after, verified) = bench.zero();
             let (touch, far) = (GATES.touch.0, GATES.far);
@@ -299,13 +363,15 @@ proptest! {
 
     #[test]
     fn no_input_panics(
+        absolute in any::<bool>(),
         steps in prop::collection::vec((any::<u64>(), any::<i32>(), any::<i32>(), 0..5), 0..600),
     ) {
-        let mut tare = Tare::new(GATES, StartUp::Measured);
+        let gates = if absolute { ABSOLUTE } else { GATES };
+        let mut tare = Tare::new(gates, StartUp::Measured);
         for (time, pressure, drift, what) in steps {
             match what {
                 0 => tare.interrupt(Microseconds(time)),
-                1 => drop(tare.command()),
+                1 => drop(tare.command(drift < 0)),
                 2 => drop(tare.undo()),
                 _ => drop(tare.step(Microseconds(time), Pressure(pressure), drift)),
             }

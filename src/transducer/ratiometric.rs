@@ -197,6 +197,7 @@ mod tests {
     use crate::transducer::script::Stopwatch;
     use core::sync::atomic::{AtomicU32, Ordering};
     use embassy_futures::block_on;
+    use model_tables::constants::Quantity;
     use proptest::prelude::*;
     use std::cell::RefCell;
     use std::rc::Rc;
@@ -206,6 +207,7 @@ mod tests {
             range,
             resolution: 10_000,
             noise: 10_000,
+            quantity: Quantity::Gauge,
             kind: TransducerKind::Ratiometric {
                 output: [2621, 61604],
                 supply_measured: false,

@@ -1,6 +1,7 @@
 //! The canonical text of a design: the same design always gives the same bytes.
 
 use super::{DesignFile, ModelSection, RestSection, Supply, TransducerKindSection, Transfer};
+use crate::constants::Quantity;
 use crate::material::Law;
 use std::fmt::{self, Write};
 
@@ -88,6 +89,11 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
             TransducerKindSection::Dps310 { address } => {
                 writeln!(out, "kind = \"dps310\"\naddress = {address:#04x}")?;
             }
+        }
+        // As with the supply: gauge, which every older design was.
+        match transducer.quantity {
+            Quantity::Gauge => {}
+            Quantity::Absolute => writeln!(out, "quantity = \"absolute\"")?,
         }
         let [low, high] = transducer.range_kpa;
         writeln!(out, "range_kpa = [{low:?}, {high:?}]")?;

@@ -84,8 +84,10 @@ pub enum GenerateError {
         state: State,
         /// The gauge pressure, kilopascals.
         pressure: f64,
-        /// The range, kilopascals.
+        /// Gauge pressures that the transducer reads in any air, kilopascals.
         range: [f64; 2],
+        /// The absolute range that those are left of, where `transducer.range_kpa` is one; kilopascals.
+        absolute: Option<[f64; 2]>,
     },
     /// The data that the tables are to come from end before `max_indentation_mm`.
     BeyondData {
@@ -123,6 +125,7 @@ impl fmt::Display for GenerateError {
                 state,
                 pressure,
                 range: [low, high],
+                absolute,
             } => {
                 match state {
                     State::Rest => write!(f, "the rest pressure")?,
@@ -135,10 +138,14 @@ impl fmt::Display for GenerateError {
                 } else {
                     (low - pressure, "below")
                 };
-                write!(
-                    f,
-                    " is {pressure:.3} kPa, {by:.3} kPa {side} transducer.range_kpa = [{low}, {high}]: "
-                )?;
+                write!(f, " is {pressure:.3} kPa, {by:.3} kPa {side} ")?;
+                match absolute {
+                    None => write!(f, "transducer.range_kpa = [{low}, {high}]: ")?,
+                    Some([start, end]) => write!(
+                        f,
+                        "the [{low}, {high}] kPa that transducer.range_kpa = [{start}, {end}] absolute leaves in any air: "
+                    )?,
+                }
                 match state {
                     State::Rest => write!(f, "choose another transducer or rest state"),
                     State::Pressed { .. } => {
@@ -315,7 +322,7 @@ fn measured(data: &DataCurve, deepest: f64) -> Result<Curve, GenerateError> {
 
 fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Result<(), GenerateError> {
     let pressure = pascals * 1e-3;
-    let range = transducer.range_kpa;
+    let range = transducer.gauge_range_kpa();
     if pressure >= range[0] && pressure <= range[1] {
         return Ok(());
     }
@@ -323,6 +330,7 @@ fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Resul
         state,
         pressure,
         range,
+        absolute: transducer.range_is_absolute().then_some(transducer.range_kpa),
     })
 }
 
@@ -406,9 +414,12 @@ impl Generated {
     pub fn transducer(&self) -> Transducer {
         let section = &self.transducer;
         Transducer {
-            range: section.range_kpa.map(|kilopascals| integer(kilopascals * 1e3)),
+            range: section
+                .own_range_kpa()
+                .map(|kilopascals| integer(kilopascals * 1e3)),
             resolution: integer(section.resolution_pa * 1e3),
             noise: integer(section.noise_pa * 1e3),
+            quantity: section.quantity,
             kind: kind(section.kind),
         }
     }

@@ -49,6 +49,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
          \x20       range: {:?},\n\
          \x20       resolution: {},\n\
          \x20       noise: {},\n\
+         \x20       quantity: model_tables::constants::Quantity::{:?},\n\
          \x20       kind: model_tables::constants::TransducerKind::{:?},\n\
          \x20   }},\n\
          }};\n",
@@ -61,6 +62,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
         transducer.range,
         transducer.resolution,
         transducer.noise,
+        transducer.quantity,
         transducer.kind,
     )?;
     writeln!(

@@ -232,9 +232,9 @@ fn actuator(file: &DesignFile, design: &Design) -> Vec<(f64, Blocked)> {
     };
     let actuator = Actuator::new(diameter / 1e3, design.membrane.thickness, &design.law);
     let largest = 0.25 * actuator.youngs_modulus;
-    let largest = file
-        .transducer
-        .map_or(largest, |transducer| largest.min(1e3 * transducer.range_kpa[1]));
+    let largest = file.transducer.map_or(largest, |transducer| {
+        largest.min(1e3 * transducer.gauge_range_kpa()[1])
+    });
     (0..=PARTS)
         .filter_map(|k| {
             let pressure = largest * k as f64 / PARTS as f64;

@@ -5,6 +5,7 @@ use super::charts;
 use super::findings::Findings;
 use super::shapes;
 use super::words::{KPA, MILLISECONDS, MM, MM3, NEWTON, PA, PERCENT, STRETCH, Unit, count};
+use crate::constants::Quantity;
 use crate::design_file::{Calibration, DesignFile, ModelSection, RestSection, TransducerKindSection};
 use crate::generate::{Errors, Generated, TABLE_VERSION};
 use crate::material::Law;
@@ -237,7 +238,10 @@ fn stated(found: &Findings) -> Vec<Row> {
         };
         let [low, high] = transducer.range_kpa;
         all.extend([
-            ("transducer", html! { (kind) }),
+            (
+                "transducer",
+                html! { (kind) @if transducer.quantity == Quantity::Absolute { ", absolute" } },
+            ),
             ("its range, from", given(KPA, low)),
             ("its range, to", given(KPA, high)),
             ("its resolution", given(PA, transducer.resolution_pa)),
@@ -394,7 +398,7 @@ fn certified(found: &Findings, generated: &Generated) -> Markup {
     let tables = &generated.certified.tables;
     let certificate = &generated.certified.certificate;
     let transducer = &generated.transducer;
-    let [low, high] = transducer.range_kpa;
+    let [low, high] = transducer.gauge_range_kpa();
     let reached = 1e-3 * (generated.rest_pressure + generated.end.pressure_rise);
     let mut facts: Vec<Row> = vec![
         ("both functions together", count(tables.bytes(), "bytes")),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::constants::Quantity;
 use crate::generate::{OwnedTables, tables as make_tables};
 use crate::membrane::TensionField;
 use crate::press::Press;
@@ -144,6 +145,46 @@ fn refuses_a_press_that_leaves_the_range() {
         "{error}"
     );
     assert!(error.contains("above transducer.range_kpa = [0, 200]"), "{error}");
+}
+
+/// 250 kPa absolute leave 142 kPa gauge in air of 108 kPa.
+#[test]
+fn refuses_what_an_absolute_part_cannot_read_in_the_densest_air() {
+    let mut design = shipped("paper-prestretched");
+    let transducer = design.transducer.as_mut().expect("there");
+    transducer.quantity = Quantity::Absolute;
+    transducer.range_kpa = [20.0, 250.0];
+    let error = from_design(design)
+        .expect_err("it rests at 179.06 kPa")
+        .to_string();
+    assert!(
+        error.contains(
+            "the rest pressure is 179.062 kPa, 37.062 kPa above the [-40, 142] kPa that transducer.range_kpa = [20, 250] \
+             absolute leaves in any air"
+        ),
+        "{error}"
+    );
+    assert_eq!(error.lines().count(), 1);
+}
+
+#[test]
+fn the_constants_of_an_absolute_part_are_in_its_own_quantity() {
+    let mut design = shipped("skin-analogue");
+    let generated = from_design(design.clone()).expect("tables").transducer();
+    assert_eq!(generated.quantity, Quantity::Gauge);
+    let transducer = design.transducer.as_mut().expect("there");
+    transducer.quantity = Quantity::Absolute;
+    transducer.range_kpa = [20.0, 250.0];
+    let generated = from_design(design).expect("8 to 16 kPa fit");
+    assert_eq!(generated.transducer().range, [20_000, 250_000]);
+    assert!(
+        generated
+            .rust_source()
+            .contains("quantity: model_tables::constants::Quantity::Absolute,")
+    );
+    let light = from_design(shipped("skin-light-touch")).expect("tables");
+    assert_eq!(light.transducer().range, [30_000, 120_000]);
+    assert_eq!(light.transducer().quantity, Quantity::Absolute);
 }
 
 #[test]
