@@ -3,7 +3,6 @@
 use crate::plant::Plant;
 use crate::scenario::{Scenario, WireFault};
 use crate::transducer::{Part, Transducer, Wiring};
-use fingertip::transducer::Quantity;
 use model_tables::curve::{Contact, Curve};
 use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
 use model_tables::generate::{self, GenerateError};
@@ -109,11 +108,8 @@ impl FingertipDesign {
             TransducerKindSection::Ms5837 => on_the_bus(Part::Ms5837(MS5837)),
         };
         let transducer = Transducer {
-            quantity: match part {
-                Part::Analogue | Part::Abp2(..) => Quantity::Gauge,
-                Part::Dps310(_) | Part::Ms5837(_) => Quantity::Absolute,
-            },
-            range: section.range_kpa.map(|kilopascals| kilopascals * 1e3),
+            quantity: section.quantity,
+            range: section.own_range_kpa().map(|kilopascals| kilopascals * 1e3),
             output_at_range,
             noise: section.noise_pa,
             resolution: section.resolution_pa,

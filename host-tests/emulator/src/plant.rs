@@ -159,7 +159,7 @@ impl Plant {
 pub(crate) mod tests {
     use super::*;
     use crate::scenario::{Phase, WireFault};
-    use fingertip::transducer::Quantity;
+    use model_tables::constants::Quantity;
 
     /// A press with the asymptotes of a first contact, in closed form: no solver, no table.
     pub(crate) fn closed_form(rise: f64) -> Contact {

@@ -1,13 +1,14 @@
 //! The pressure transducer: pressure to a share of the converter's reference, or to a part on the bus.
 
-use fingertip::transducer::{self, Quantity};
+use fingertip::transducer;
+use model_tables::constants::Quantity;
 
 /// What the transducer does to a pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transducer {
     /// What it measures.
     pub quantity: Quantity,
-    /// Pressures at the two ends of the output, pascals, ascending; gauge or absolute as `quantity` is.
+    /// Pressures at the two ends of its own range, pascals, ascending; gauge or absolute as `quantity` is.
     pub range: [f64; 2],
     /// Output at those ends, as a share of the reference, 0 .. 1.
     pub output_at_range: [f64; 2],

@@ -2,7 +2,7 @@
 //! and starts with a calibration in flash.
 
 use crate::stored::with_stored;
-use crate::{design_of, design_with, firmware_for, replaced};
+use crate::{design_with, firmware_for};
 use emulator::accuracy::is_wrong;
 use emulator::bench;
 use emulator::fingertip_design::FingertipDesign;
@@ -10,12 +10,14 @@ use emulator::image::Image;
 use emulator::plant::Plant;
 use emulator::record::{Record, Recorder, Row};
 use emulator::scenario::{Event, Happening, Scenario};
+use emulator::transducer::{Part, Transducer};
 use fingertip::calibration::Calibration;
 use fingertip::command::{CommandKind, Outcome};
-use fingertip::report::Status;
+use fingertip::report::{Fault, Status};
 use fingertip::telemetry::Stored;
 use fingertip::transducer::Millipascals;
-use host_tests::assert_faults_says;
+use model_tables::design_file::DesignFile;
+use model_tables::generate;
 use std::fmt;
 
 /// Pressures of the air, kilopascals: at sea level, and 2000 m above it.
@@ -33,6 +35,18 @@ const HANG_AFTER: f64 = 200.0;
 const HANG: f64 = 450.0;
 /// A report is made of this many samples.
 const SAMPLES: f64 = 3.0;
+
+/// The range of the default design's transducer, and in its place that of an NXP MPX4250A: Vs (0.004 P - 0.04) from 20 to 250 kPa,
+/// absolute. Half a code of a converter of 12 bits is 30 Pa of that.
+const GAUGE_BRIDGE: &str = "range_kpa = [0.0, 100.0]
+resolution_pa = 10.0
+output_fraction_at_range = [0.1, 0.9]
+noise_pa = 10.0";
+const MPX4250A: &str = "quantity = \"absolute\"
+range_kpa = [20.0, 250.0]
+resolution_pa = 30.0
+output_fraction_at_range = [0.04, 0.96]
+noise_pa = 30.0";
 
 /// Each kind with a design that it fits: a shipped one, or one in which the transducer was exchanged.
 fn kinds() -> Vec<(&'static str, FingertipDesign)> {
@@ -55,6 +69,10 @@ fn kinds() -> Vec<(&'static str, FingertipDesign)> {
                 "kind = \"ratiometric\"",
                 "kind = \"ratiometric\"\nsupply = \"measured\"",
             ),
+        ),
+        (
+            "ratiometric, absolute",
+            design_with("index-fingertip", GAUGE_BRIDGE, MPX4250A),
         ),
         ("abp2", light("abp2")),
         ("ms5837-02ba", light("ms5837-02ba")),
@@ -183,17 +201,22 @@ fn tell(design: &FingertipDesign, image: &Image, plant: &Plant, story: Story, ai
     if (counted.len() as f64) < 0.6 * expected {
         complaints.push(format!("{} reports of {expected:.0}", counted.len()));
     }
-    let not_ok = counted.iter().find(|row| row.status != Status::Ok);
-    for (what, row) in [("wrong", wrong.first()), ("not ok", not_ok)] {
-        if let Some(row) = row {
-            complaints.push(format!("the first that is {what}: {row:?}"));
-        }
-    }
     let count = |wanted: fn(&Status) -> bool| counted.iter().filter(|row| wanted(&row.status)).count();
+    let ok = count(|status| *status == Status::Ok);
+    if (ok as f64) < OK * counted.len() as f64 {
+        let first = counted.iter().find(|row| row.status != Status::Ok);
+        complaints.push(format!(
+            "{ok} of {} ok, the first that is not: {first:?}",
+            counted.len()
+        ));
+    }
+    if let Some(row) = wrong.first() {
+        complaints.push(format!("{} wrong, the first: {row:?}", wrong.len()));
+    }
     Told {
         story,
         reports: counted.len(),
-        ok: count(|status| *status == Status::Ok),
+        ok,
         faults: count(|status| matches!(status, Status::Fault(_))),
         wrong: wrong.len(),
         complaints,
@@ -218,7 +241,8 @@ fn complaints(story: Story, record: &Record) -> Vec<String> {
     if record.hellos.last().is_none_or(|hello| hello.stored != stored) {
         complaints.push(format!("{:?}", record.hellos.last()));
     }
-    if (record.lost, record.broken.len()) != (0, 0) {
+    // Frames are numbered anew after a reset, and one is cut off by it.
+    if story != Story::Reset && (record.lost, record.broken.len()) != (0, 0) {
         complaints.push(format!("{} frames lost, broken {:?}", record.lost, record.broken));
     }
     complaints
@@ -266,12 +290,134 @@ fn every_transducer_is_ok_and_right_after_its_zero_in_thick_and_thin_air() {
                     one.faults,
                     one.wrong
                 );
-                let fine = one.ok_percent() >= 100.0 * OK && one.wrong == 0 && one.complaints.is_empty();
-                if !fine {
+                if !one.complaints.is_empty() {
                     failures.push(format!("{kind}, {air} kPa, {}: {:?}", one.story, one.complaints));
                 }
             }
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Runs the image of a design with another part in the place of its own, in air of a pressure, kilopascals.
+fn with_part(design: &FingertipDesign, part: Part, air_kpa: f64) -> Record {
+    let scenario = Story::Reset.scenario(air_kpa);
+    let plant = design.plant(scenario).expect("it can be pressed");
+    let transducer = Transducer {
+        part,
+        ..plant.transducer()
+    };
+    let recorder = Recorder::new(|_: &Row| {});
+    let image = firmware_for(design);
+    let outcome = bench::run(image, plant.with_transducer(transducer), 3.0, &[], recorder);
+    outcome.expect("the image runs").listener.into_record()
+}
+
+#[test]
+fn a_part_of_the_same_identity_that_reads_otherwise_is_refused() {
+    for (kind, part) in [
+        ("dps310", Part::Spl06(0x77)),
+        ("ms5837-02ba", Part::Ms5837ThirtyBar(0x76)),
+    ] {
+        let (_, design) = kinds()
+            .into_iter()
+            .find(|(name, _)| *name == kind)
+            .expect("a kind");
+        for air in AIRS {
+            let rows = with_part(&design, part, air).rows;
+            assert!(rows.len() > 20, "{part:?}: {} reports", rows.len());
+            for row in &rows {
+                assert_eq!(row.status, Status::Fault(Fault::WrongSensor), "{part:?}: {row:?}");
+            }
+        }
+    }
+}
+
+/// A shipped design with another transducer.
+fn with_transducer(shipped: &str, section: &str) -> String {
+    let text = std::fs::read_to_string(host_tests::design(shipped)).expect("it is shipped");
+    let (before, after) = text.split_once("[transducer]").expect("it has one");
+    let (_, after) = after.split_once("[accuracy]").expect("it has one");
+    format!("{before}[transducer]\n{section}\nresolution_pa = 1.0\n[accuracy]{after}")
+}
+
+/// Designs and transducers that do not fit: what is refused, and the key that is named for it.
+const MISFITS: [(&str, &str, &str); 11] = [
+    // More than the part measures in the densest air.
+    (
+        "skin-light-touch",
+        "kind = \"dps310\"\nrange_kpa = [0.0, 15.0]",
+        "range_kpa",
+    ),
+    (
+        "index-fingertip",
+        "kind = \"dps310\"\nrange_kpa = [0.0, 100.0]",
+        "range_kpa",
+    ),
+    (
+        "index-fingertip",
+        "kind = \"ms5837-02ba\"\nrange_kpa = [0.0, 100.0]",
+        "range_kpa",
+    ),
+    // What it measures there is not enough for the press, ...
+    (
+        "index-fingertip",
+        "kind = \"dps310\"\nrange_kpa = [0.0, 12.0]",
+        "transducer.range_kpa",
+    ),
+    (
+        "skin-light-touch",
+        "kind = \"abp2\"\nrange_kpa = [0.0, 0.5]",
+        "transducer.range_kpa",
+    ),
+    // ... or for the rest.
+    (
+        "paper-prestretched",
+        "kind = \"dps310\"\nrange_kpa = [0.0, 12.0]",
+        "transducer.range_kpa",
+    ),
+    (
+        "paper-prestretched",
+        "kind = \"ms5837-02ba\"\nrange_kpa = [0.0, 92.0]",
+        "transducer.range_kpa",
+    ),
+    (
+        "paper-prestretched",
+        "kind = \"abp2\"\nrange_kpa = [0.0, 100.0]",
+        "transducer.range_kpa",
+    ),
+    (
+        "paper-prestretched",
+        "kind = \"ratiometric\"\nquantity = \"absolute\"\nrange_kpa = [20.0, 250.0]",
+        "transducer.range_kpa",
+    ),
+    // An absolute part that does not reach the air, and one that is none.
+    (
+        "index-fingertip",
+        "kind = \"ratiometric\"\nquantity = \"absolute\"\nrange_kpa = [0.0, 100.0]",
+        "range_kpa",
+    ),
+    (
+        "skin-light-touch",
+        "kind = \"abp2\"\nquantity = \"absolute\"\nrange_kpa = [0.0, 12.0]",
+        "quantity",
+    ),
+];
+
+#[test]
+fn a_transducer_that_does_not_fit_its_design_is_refused_in_one_line() {
+    for (shipped, section, key) in MISFITS {
+        let refused = match DesignFile::parse(&with_transducer(shipped, section), "misfit.toml") {
+            Err(error) => error.to_string(),
+            Ok(design) => match generate::solve(&design) {
+                Err(error) => error.to_string(),
+                Ok(_) => panic!("{shipped} with {section} is not refused"),
+            },
+        };
+        println!("{shipped} with {section:?}: {refused}");
+        assert!(
+            refused.contains(key) && refused.lines().count() == 1,
+            "{shipped} with {section}: {refused}"
+        );
+    }
 }
