@@ -108,9 +108,11 @@ impl FingertipDesign {
             TransducerKindSection::Ms5837 => on_the_bus(Part::Ms5837(MS5837)),
         };
         let transducer = Transducer {
-            range: section.range_kpa.map(|kilopascals| kilopascals * 1e3),
+            quantity: section.quantity,
+            range: section.own_range_kpa().map(|kilopascals| kilopascals * 1e3),
             output_at_range,
             noise: section.noise_pa,
+            resolution: section.resolution_pa,
             part,
             supply: match supply {
                 Supply::Reference => 1.0,
