@@ -2,13 +2,12 @@
 # Packages: embassy-time 0.5.1 with its mock-driver, embassy-futures 0.1.2, critical-section 1.2.0
 #   (crates.io)
 #
-# Expected: embassy_time::Ticker "will consistently call foo once a second", so a loop that samples
-#   and then awaits `next()` samples at uniform times. After a stall (a page erase stops a one-bank
-#   STM32L4 for up to 24.5 ms, DS11451) a reader expects the next sample at the next multiple of the
-#   period, or one period later. `reset_at(deadline)` says that with a deadline in the past "the
-#   ticker will fire before the next scheduled tick".
+# Expected: embassy_time::Ticker is documented as the way to run something once a period, whatever the
+#   body of the loop costs, so a loop that samples and then awaits `next()` samples at uniform times.
+#   After a stall (a page erase stops a one-bank STM32L4 for up to 24.5 ms, DS11451) a reader expects
+#   the next sample at the next multiple of the period, or one period later.
 # Seen: every missed tick is delivered, without waiting: after 25 ms at 1 kHz, 25 calls of `next()`
-#   complete at one and the same instant, and the loop runs 25 times as fast as its work allows.
+#   complete at one and the same instant, and the body of the loop runs 25 times in a row.
 #   There is no policy to choose and no count of missed ticks. `reset_at(first missed tick)`, which
 #   reads like the way to skip them, replays one tick less; `reset()` skips all, but moves the phase.
 # Why it matters: 25 samples of one instant enter a filter that assumes 1 ms between them: the rate it

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Packages: micromath 2.1.0, libm 0.2.16 (crates.io)
 #
-# Expected: micromath's `sqrt` documents "an average deviation of ~5%"; its source tests it to 5 %.
+# Expected: micromath documents its `sqrt` as about 5 % off on average, and its source tests 5 %.
 #   Within one crate a reader expects the function named after the job to be the best at it, and
 #   `powf`, which goes through a logarithm and an exponential, to add errors up.
 # Seen: over every f32 of [1, 4), a full period of the method, `powf(x, 0.5)` is within 0.09 %,

@@ -3,9 +3,9 @@
 #
 # Expected: the MS5837-30BA datasheet works one example through: coefficients C1..C6 = 34982 36352
 #   20328 22354 26646 26146, D1 = 4958179, D2 = 6815414 give 19.81 degC and 3999.8 mbar. The
-#   crate's source states its results in "mbar and deg C", refers to the datasheet's figures, and
+#   crate's source states its results in mbar and degC, names the datasheet's figures as its base, and
 #   tests its CRC against the datasheet's C code.
-# Seen: 5.7e14 "mbar" and 198.2 "deg C". The pressure is D1 * SENS - OFF: the divisions by
+# Seen: 5.7e14 mbar and 198.2 degC. The pressure is D1 * SENS - OFF: the divisions by
 #   2^21 and 2^13 are missing. As D1 * SENS then dwarfs OFF, 0 mbar no longer gives zero, and the
 #   factor to the true pressure changes with pressure: no scale repairs it. Temperature is ten times
 #   too high.
