@@ -2,18 +2,18 @@
 # Packages: embassy-time 0.5.1 with its mock-driver, embassy-futures 0.1.2, critical-section 1.2.0
 #   (crates.io)
 #
-# Expected: embassy_time::Ticker is documented as the way to run something once a period, whatever the
-#   body of the loop costs, so a loop that samples and then awaits `next()` samples at uniform times.
-#   After a stall (a page erase stops a one-bank STM32L4 for up to 24.5 ms, DS11451) a reader expects
-#   the next sample at the next multiple of the period, or one period later.
+# Expected: embassy_time::Ticker is documented as the way to run something once a period, whatever
+#   the body of the loop costs, so a loop that samples and then awaits `next()` samples at uniform
+#   times. After a stall (a page erase stops a one-bank STM32L4 for up to 24.5 ms, DS11451) a reader
+#   expects the next sample at the next multiple of the period, or one period later.
 # Seen: every missed tick is delivered, without waiting: after 25 ms at 1 kHz, 25 calls of `next()`
-#   complete at one and the same instant, and the body of the loop runs 25 times in a row.
-#   There is no policy to choose and no count of missed ticks. `reset_at(first missed tick)`, which
-#   reads like the way to skip them, replays one tick less; `reset()` skips all, but moves the phase.
-# Why it matters: 25 samples of one instant enter a filter that assumes 1 ms between them: the rate it
-#   sees is a jump followed by zeros, and a debounce counted in samples passes in no time. Take the
-#   time from the clock, or move the deadline oneself: the last case skips to one tick and keeps the
-#   phase.
+#   complete at one and the same instant, and the body of the loop runs 25 times in a row. There is
+#   no policy to choose and no count of missed ticks. `reset_at(first missed tick)`, which reads
+#   like the way to skip them, replays one tick less; `reset()` skips all, but moves the phase.
+# Why it matters: 25 samples of one instant enter a filter that assumes 1 ms between them: the rate
+#   it sees is a jump followed by zeros, and a debounce counted in samples passes in no time. Take
+#   the time from the clock, or move the deadline oneself: the last case skips to one tick and keeps
+#   the phase.
 set -euo pipefail
 
 dir=$(mktemp -d)

@@ -5,8 +5,8 @@
 #   ViscoelasticMooneyRivlin(c10, c01, eta, dtime). The viscous one, so slow that nothing relaxes,
 #   should answer a first step with the stress of the elastic one for the same two numbers, and
 #   relax with eta over the shear modulus 2 (c10 + c01) that Mooney-Rivlin constants imply.
-# Seen: half the stress at every stretch (to 1e-4), and twice that relaxation time. The viscous model
-#   keeps the notation of the paper it cites (doi 10.1002/nme.5724), with c/2 before each
+# Seen: half the stress at every stretch (to 1e-4), and twice that relaxation time. The viscous
+#   model keeps the notation of the paper it cites (doi 10.1002/nme.5724), with c/2 before each
 #   invariant: its c10 + c01 is the shear modulus itself. The docstrings do not say so.
 # Why it matters: a Maxwell branch added to a fitted Mooney-Rivlin membrane with its own constants
 #   carries half the overstress, for twice as long. Pass 2 C10 and 2 C01, and check the first step

@@ -3,13 +3,13 @@
 #
 # Expected: the MS5611 datasheet works one example through: C1..C6 = 40127 36924 23317 23282 33464
 #   28312, D1 = 9085466, D2 = 8569150 give 20.07 degC and 1000.09 mbar. The converter answers in 24
-#   bits, most significant byte first. Below 20 degC the second order terms are
-#   OFF2 = 5 (TEMP - 2000)^2 / 2 and SENS2 = 5 (TEMP - 2000)^2 / 4.
+#   bits, most significant byte first. Below 20 degC the second order terms are OFF2 = 5 (TEMP -
+#   2000)^2 / 2 and SENS2 = 5 (TEMP - 2000)^2 / 4.
 # Seen: the driver reads the example as 1000.12 mbar, close enough for a glance. It builds both
 #   24-bit values from bytes 0, 1 and 0: the low byte is a copy of the high byte. Pressure moves in
-#   steps of 256 counts, 4.9 Pa, where the datasheet gives a resolution of 1.2 Pa (oversampling 4096),
-#   and consecutive codes of the part all give one number. SENS2 lacks its square: at 0 degC the
-#   pressure is about 0.7 kPa too high.
+#   steps of 256 counts, 4.9 Pa, where the datasheet gives a resolution of 1.2 Pa (oversampling
+#   4096), and consecutive codes of the part all give one number. SENS2 lacks its square: at 0 degC
+#   the pressure is about 0.7 kPa too high.
 # Why it matters: a light touch is a few tens of pascals, and a filter cannot bring back what the
 #   quantiser removed. Nothing looks broken at a desk at 20 degC. Sweep single codes through a
 #   driver, and check it at one temperature on each side of a branch of the datasheet.

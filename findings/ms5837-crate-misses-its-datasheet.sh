@@ -2,17 +2,16 @@
 # Packages: ms5837 0.2.1, embedded-hal 0.2.7 (crates.io)
 #
 # Expected: the MS5837-30BA datasheet works one example through: coefficients C1..C6 = 34982 36352
-#   20328 22354 26646 26146, D1 = 4958179, D2 = 6815414 give 19.81 degC and 3999.8 mbar. The
-#   crate's source states its results in mbar and degC, names the datasheet's figures as its base, and
-#   tests its CRC against the datasheet's C code.
-# Seen: 5.7e14 mbar and 198.2 degC. The pressure is D1 * SENS - OFF: the divisions by
-#   2^21 and 2^13 are missing. As D1 * SENS then dwarfs OFF, 0 mbar no longer gives zero, and the
-#   factor to the true pressure changes with pressure: no scale repairs it. Temperature is ten times
-#   too high.
+#   20328 22354 26646 26146, D1 = 4958179, D2 = 6815414 give 19.81 degC and 3999.8 mbar. The crate's
+#   source states its results in mbar and degC, names the datasheet's figures as its base, and tests
+#   its CRC against the datasheet's C code.
+# Seen: 5.7e14 mbar and 198.2 degC. The pressure is D1 * SENS - OFF: the divisions by 2^21 and 2^13
+#   are missing. As D1 * SENS then dwarfs OFF, 0 mbar no longer gives zero, and the factor to the
+#   true pressure changes with pressure: no scale repairs it. Temperature is ten times too high.
 # Why it matters: the crate has the part's name, type states, a CRC and passing tests, the usual
 #   signs of a usable driver, but no test holds the datasheet's numbers. For a transducer driver the
-#   worked example is the first test to look for. The driver also reads the converter straight
-#   after the start command, without the 0.6 to 9 ms the conversion takes.
+#   worked example is the first test to look for. The driver also reads the converter straight after
+#   the start command, without the 0.6 to 9 ms the conversion takes.
 set -euo pipefail
 
 dir=$(mktemp -d)

@@ -4,8 +4,8 @@
 # Expected: METADATA.memory lists a chip's memory regions, each with kind, address, size and, for
 #   flash, the erase size. Nothing in the type marks one region as a view of another. So the sum of
 #   the Ram regions should be the datasheet's RAM (STM32L432KC, DS11451: 64 KiB; STM32F429ZI,
-#   DS9405: 256 KiB with the core-coupled part), the sum of the Flash regions its flash (256 KiB;
-#   2 MiB), and each Flash region should have an erase size.
+#   DS9405: 256 KiB with the core-coupled part), the sum of the Flash regions its flash (256 KiB; 2
+#   MiB), and each Flash region should have an erase size.
 # Seen: the STM32L432KC's Ram regions add up to 80 KiB: its 16 KiB SRAM2 stands there twice, as
 #   SRAM2 behind SRAM and as SRAM2_ICODE at 0x1000_0000, the same cells at two addresses. The
 #   STM32F429ZI's Flash regions add up to 2 MiB and 528 bytes: the one-time-programmable area is of
@@ -13,8 +13,8 @@
 #   one-time area (RM0394) is not listed at all.
 # Why it matters: a memory budget, a stack painter or a linker script made from this list hands out
 #   16 KiB that is already in use, and both owners write the same bytes; a flash store that walks
-#   the Flash regions computes a remainder by erase size 0, or ends in cells that can be written only
-#   once. Take sizes from the datasheet; filter on names (BANK_*), not on the kind alone.
+#   the Flash regions computes a remainder by erase size 0, or ends in cells that can be written
+#   only once. Take sizes from the datasheet; filter on names (BANK_*), not on the kind alone.
 set -euo pipefail
 
 dir=$(mktemp -d)
