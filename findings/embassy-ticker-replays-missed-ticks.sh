@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Packages: embassy-time 0.5.1 with its mock-driver, embassy-futures 0.1.2, critical-section 1.2.0
-#   (crates.io)
+#   (Rust crates)
 #
 # Expected: embassy_time::Ticker is documented as the way to run something once a period, whatever
 #   the body of the loop costs, so a loop that samples and then awaits `next()` samples at uniform

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Packages: lps28dfw 0.1.6, embedded-hal 1.0.0, uom 0.36.0 (crates.io);
+# Packages: lps28dfw 0.1.6, embedded-hal 1.0.0, uom 0.36.0 (Rust crates);
 #   circuitpython-lps28 0.1.1, adafruit-circuitpython-lps28 1.0.3, adafruit-circuitpython-busdevice
 #   5.2.17, adafruit-circuitpython-register 1.13.0 (PyPI)
 #

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Packages: micromath 2.1.0, libm 0.2.16 (crates.io)
+# Packages: micromath 2.1.0, libm 0.2.16 (Rust crates)
 #
 # Expected: micromath documents its `sqrt` as about 5 % off on average, and its source tests 5 %.
 #   Within one crate a reader expects the function named after the job to be the best at it, and

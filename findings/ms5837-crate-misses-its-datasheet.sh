@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Packages: ms5837 0.2.1, embedded-hal 0.2.7 (crates.io)
+# Packages: ms5837 0.2.1, embedded-hal 0.2.7 (Rust crates)
 #
 # Expected: the MS5837-30BA datasheet works one example through: coefficients C1..C6 = 34982 36352
 #   20328 22354 26646 26146, D1 = 4958179, D2 = 6815414 give 19.81 degC and 3999.8 mbar. The crate's

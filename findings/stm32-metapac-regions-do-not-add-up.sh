@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Package: stm32-metapac 21.0.0 (crates.io), its metadata alone
+# Package: stm32-metapac 21.0.0 (Rust crates), its metadata alone
 #
 # Expected: METADATA.memory lists a chip's memory regions, each with kind, address, size and, for
 #   flash, the erase size. Nothing in the type marks one region as a view of another. So the sum of
