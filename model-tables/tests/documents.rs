@@ -411,8 +411,9 @@ fn an_image_for_two_boards_or_none_is_refused_with_the_remedy() {
         (&["--no-default-features"], "0"),
     ] {
         let said = tables_of(Some(design), features).expect_err("there is no such image");
-        let refusal =
-            format!("{boards} boards are chosen: choose one, with --no-default-features --features board-");
+        let refusal = format!(
+            "{boards} boards are chosen: choose one, with --package fingertip --no-default-features --features board-"
+        );
         assert!(said.contains(&refusal), "{said}");
     }
 }
