@@ -360,7 +360,7 @@ fn a_design_is_known_by_its_content_and_not_by_its_date() {
     ] {
         let shipped = workspace().join(format!("model-tables/designs/{name}.toml"));
         fs::write(&design, fs::read(shipped).expect("it is shipped")).expect("the test folder");
-        let day = Duration::from_secs(86_400);
+        let day = Duration::from_hours(24);
         let date = SystemTime::now() - age * day;
         let file = fs::File::options()
             .write(true)
