@@ -106,7 +106,7 @@ fn link_for_the_chip() -> Result<(), String> {
     let [(_, sizes)] = boards[..] else {
         let known = BOARDS.map(|(board, _)| format!("board-{board}")).join(" or ");
         return Err(format!(
-            "{} boards are chosen: choose one, with --no-default-features --features {known}",
+            "{} boards are chosen: choose one, with --package fingertip --no-default-features --features {known}",
             boards.len()
         ));
     };

@@ -360,7 +360,7 @@ fn a_design_is_known_by_its_content_and_not_by_its_date() {
     ] {
         let shipped = workspace().join(format!("model-tables/designs/{name}.toml"));
         fs::write(&design, fs::read(shipped).expect("it is shipped")).expect("the test folder");
-        let day = Duration::from_secs(86_400);
+        let day = Duration::from_hours(24);
         let date = SystemTime::now() - age * day;
         let file = fs::File::options()
             .write(true)
@@ -411,8 +411,9 @@ fn an_image_for_two_boards_or_none_is_refused_with_the_remedy() {
         (&["--no-default-features"], "0"),
     ] {
         let said = tables_of(Some(design), features).expect_err("there is no such image");
-        let refusal =
-            format!("{boards} boards are chosen: choose one, with --no-default-features --features board-");
+        let refusal = format!(
+            "{boards} boards are chosen: choose one, with --package fingertip --no-default-features --features board-"
+        );
         assert!(said.contains(&refusal), "{said}");
     }
 }
