@@ -23,8 +23,14 @@ const COLUMNS: &[&str] = &[
 
 /// The membrane that stands in best for the printed index fingertip.
 const STAND_IN: &str = include_str!("stand-in.toml");
-const PAPER: &str = include_str!("../../designs/paper-prestretched.toml");
-const HUMAN: &str = include_str!("../../targets/human-fingertip.toml");
+const PAPER: &str = include_str!(concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/designs/paper-prestretched.toml"
+));
+const HUMAN: &str = include_str!(concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/targets/human-fingertip.toml"
+));
 
 /// The stand-in as it is drawn, solved as a solid.
 const DOME: &str = "name = \"dome\"\n[membrane]\nradial_semi_axis_mm = 9.0\naxial_semi_axis_mm = 7.0\nthickness_mm = 1.0\n\

@@ -152,7 +152,10 @@ fn parse(text: &str) -> Result<Target, Fault> {
 mod tests {
     use super::*;
 
-    const HUMAN: &str = include_str!("../../targets/human-fingertip.toml");
+    const HUMAN: &str = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/targets/human-fingertip.toml"
+    ));
 
     #[test]
     fn reads_the_shipped_target() {

@@ -14,24 +14,30 @@ use std::fmt::Write as _;
 use ways::{Errors, Press};
 
 /// Instructions of every way, counted on the emulated chip: `cargo test-all` keeps them.
-const INSTRUCTIONS: &str = include_str!("../../../tables/instructions.csv");
+const INSTRUCTIONS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tables/instructions.csv"));
 
 /// The designs of the chart, by name, with the way that the counts have for their tables.
 const DESIGNS: [(&str, &str, &str); 3] = [
     (
         "index-fingertip",
         "index_fingertip_tables",
-        include_str!("../../../designs/index-fingertip.toml"),
+        include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/designs/index-fingertip.toml"
+        )),
     ),
     (
         "paper-prestretched",
         "paper_prestretched_tables",
-        include_str!("../../../designs/paper-prestretched.toml"),
+        include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/designs/paper-prestretched.toml"
+        )),
     ),
     (
         "skin-analogue",
         "skin_analogue_tables",
-        include_str!("../../../designs/skin-analogue.toml"),
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/designs/skin-analogue.toml")),
     ),
 ];
 

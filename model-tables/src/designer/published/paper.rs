@@ -80,7 +80,10 @@ impl Paper {
     pub(super) fn solve() -> Result<Self, Refusal> {
         let file = shipped(
             "paper-prestretched.toml",
-            include_str!("../../../designs/paper-prestretched.toml"),
+            include_str!(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/designs/paper-prestretched.toml"
+            )),
         )?;
         let design = file.design();
         let failed = |error: ModelError| Refusal(format!("the paper's design: {error}"));

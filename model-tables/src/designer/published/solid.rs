@@ -93,7 +93,10 @@ impl Solid {
     pub(super) fn solve() -> Result<Self, Refusal> {
         let file = shipped(
             "index-fingertip.toml",
-            include_str!("../../../designs/index-fingertip.toml"),
+            include_str!(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/designs/index-fingertip.toml"
+            )),
         )?;
         let membrane = |stretch| Design {
             membrane: MID_SURFACE,
