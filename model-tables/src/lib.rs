@@ -60,8 +60,10 @@
 #![forbid(unsafe_code)]
 
 pub mod actuator;
+#[path = "membrane/adapt.rs"]
 pub mod adapt;
 #[cfg(feature = "std")]
+#[path = "../compare/src/campaign/mod.rs"]
 pub mod campaign;
 pub mod constants;
 pub mod curve;
@@ -69,36 +71,54 @@ pub mod design;
 #[cfg(feature = "std")]
 pub mod design_file;
 #[cfg(feature = "cli")]
+#[path = "../designer/src/commands/mod.rs"]
 pub mod designer;
+#[path = "membrane/equilibrium.rs"]
 pub mod equilibrium;
 #[cfg(feature = "cli")]
+#[path = "../designer/src/fit/mod.rs"]
 pub mod fit;
 #[cfg(feature = "std")]
 pub mod generate;
+#[path = "membrane/history.rs"]
 pub mod history;
+#[path = "membrane/inflation.rs"]
 pub mod inflation;
+#[path = "../compare/src/lookups.rs"]
 pub mod lookups;
 pub mod material;
+#[path = "membrane/equations.rs"]
 pub mod membrane;
+#[path = "membrane/mesh.rs"]
 pub mod mesh;
 #[cfg(feature = "std")]
+#[path = "../compare/src/methods/mod.rs"]
 pub mod methods;
 #[cfg(feature = "std")]
 pub mod monotone;
+#[path = "membrane/press/mod.rs"]
 pub mod press;
 #[cfg(feature = "std")]
 mod random;
+#[path = "membrane/refine.rs"]
 mod refine;
+#[path = "membrane/rest.rs"]
 pub mod rest;
 #[cfg(feature = "std")]
+#[path = "model/mod.rs"]
 pub mod rung;
 #[cfg(feature = "cli")]
+#[path = "../designer/src/size/mod.rs"]
 pub mod size;
 pub mod solid;
+#[path = "membrane/solution.rs"]
 pub mod solution;
 pub mod solver;
+#[path = "material/stability.rs"]
 pub mod stability;
+#[path = "membrane/state.rs"]
 pub mod state;
 pub mod table;
 pub mod units;
+#[path = "membrane/wrinkle.rs"]
 mod wrinkle;

@@ -173,7 +173,7 @@ const DEPTHS: &str = "0.1,0.2,0.35,0.5,0.7,0.9,1.1,1.3,1.5,1.7,1.9,2.1,2.3,2.5";
 
 #[test]
 fn fit_writes_a_design_that_reads_as_the_bench() {
-    let drawn = include_str!("../src/designer/stand-in.toml");
+    let drawn = include_str!("../designer/src/commands/stand-in.toml");
     let truth = scratch(
         "fit-truth.toml",
         &format!("{drawn}\n[calibration]\nmaterial_factor = 1.4\npole_stretch = 1.04\n"),

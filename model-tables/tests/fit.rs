@@ -11,7 +11,7 @@ use model_tables::membrane::TensionField;
 use model_tables::press::Press;
 use std::fmt::Write as _;
 
-const DESIGN: &str = include_str!("../src/designer/stand-in.toml");
+const DESIGN: &str = include_str!("../designer/src/commands/stand-in.toml");
 
 /// What the device really is.
 const TRUTH: &str =
