@@ -116,7 +116,10 @@ fn main() {
             generate::fit(&curve, curve.end(), &accuracy, resolution).expect("a shipped design")
         });
     }
-    let text = include_str!("../designs/paper-prestretched.toml");
+    let text = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/designs/paper-prestretched.toml"
+    ));
     let file = DesignFile::parse(text, "paper-prestretched.toml").expect("a shipped design");
     let accuracy: Accuracy = file.accuracy.expect("shipped with it");
     let resolution = file.transducer.as_ref().expect("shipped with it").resolution_pa;

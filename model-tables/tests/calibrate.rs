@@ -39,7 +39,10 @@ fn scratch(name: &str, text: &str) -> PathBuf {
     path
 }
 
-const PAPER: &str = include_str!("../designs/paper-prestretched.toml");
+const PAPER: &str = include_str!(concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/designs/paper-prestretched.toml"
+));
 
 fn close(found: f64, expected: f64, tolerance: f64) {
     assert!(
@@ -173,7 +176,10 @@ const DEPTHS: &str = "0.1,0.2,0.35,0.5,0.7,0.9,1.1,1.3,1.5,1.7,1.9,2.1,2.3,2.5";
 
 #[test]
 fn fit_writes_a_design_that_reads_as_the_bench() {
-    let drawn = include_str!("../designer/src/commands/stand-in.toml");
+    let drawn = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/designer/src/commands/stand-in.toml"
+    ));
     let truth = scratch(
         "fit-truth.toml",
         &format!("{drawn}\n[calibration]\nmaterial_factor = 1.4\npole_stretch = 1.04\n"),
@@ -235,7 +241,10 @@ fn fit_from_data_makes_tables_that_read_as_the_data_and_end_with_them() {
         );
     }
     let data = scratch("pad.csv", &text);
-    let design = scratch("pad.toml", include_str!("../designs/skin-analogue.toml"));
+    let design = scratch(
+        "pad.toml",
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/designs/skin-analogue.toml")),
+    );
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("from-data-out");
     let _ = fs::remove_dir_all(&out);
     let found = designer(&[
@@ -424,7 +433,7 @@ fn calibration_writes_the_page_of_this_crate() {
     }
     let written = fs::read_to_string(&out).expect("the page");
     let mut now = written.lines();
-    for line in include_str!("../CALIBRATION.md").lines() {
+    for line in include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/CALIBRATION.md")).lines() {
         assert_eq!(
             Some(line),
             now.next(),

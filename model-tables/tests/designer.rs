@@ -196,7 +196,7 @@ fn published_writes_the_page_of_this_crate() {
     near(&rows[0][2], 179.061_844_088_872, 1e-9);
     let written = fs::read_to_string(&out).expect("the page");
     let mut now = written.lines();
-    for line in include_str!("../PUBLISHED.md").lines() {
+    for line in include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/PUBLISHED.md")).lines() {
         assert_eq!(
             Some(line),
             now.next(),

@@ -11,7 +11,10 @@ use model_tables::membrane::TensionField;
 use model_tables::press::Press;
 use std::fmt::Write as _;
 
-const DESIGN: &str = include_str!("../designer/src/commands/stand-in.toml");
+const DESIGN: &str = include_str!(concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/designer/src/commands/stand-in.toml"
+));
 
 /// What the device really is.
 const TRUTH: &str =

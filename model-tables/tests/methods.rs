@@ -62,7 +62,10 @@ struct State {
 }
 
 fn cases() -> Vec<(String, Design, Model)> {
-    let text = include_str!("reference/membrane.json");
+    let text = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/reference/membrane.json"
+    ));
     let cases: Cases = serde_json::from_str(text).expect("the reference file is JSON");
     let cases = cases.cases.into_iter();
     cases
