@@ -4,24 +4,32 @@
 //! was asked, the limit or the key, and the remedy; nothing on standard output, nothing half-written left behind.
 
 mod actuator;
+#[path = "../../../compare/src/atlas/mod.rs"]
 mod atlas;
 mod bench;
 mod calibration;
+#[path = "../../../compare/src/chart/mod.rs"]
 mod chart;
+#[path = "../../../output/src/drawing.rs"]
 mod drawing;
 mod estimate;
 mod fit;
+#[path = "../../../compare/src/ladder/mod.rs"]
 mod ladder;
+#[path = "../../../output/src/linear.rs"]
 mod linear;
 mod materials;
 mod model;
 mod monitor;
+#[path = "../../../output/src/files.rs"]
 mod output;
 mod profile;
+#[path = "../../../output/src/progress.rs"]
 mod progress;
 mod published;
 mod report;
 mod rest;
+#[path = "../../../output/src/rows.rs"]
 mod rows;
 mod size;
 mod solve;
