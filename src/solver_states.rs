@@ -4,8 +4,8 @@
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::press::workspace::Workspace;
-use model_tables::press::{ModelError, Press, SWEEP};
+use model_tables::membrane::press::workspace::Workspace;
+use model_tables::membrane::press::{ModelError, Press, SWEEP};
 
 /// Gauss points an element, those of the sweep mesh.
 pub const STAGES: usize = 5;

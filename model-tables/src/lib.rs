@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use model_tables::design::{Design, Membrane, RestBy};
-//! use model_tables::{material::Law, membrane::TensionField, press::Press};
+//! use model_tables::{material::Law, membrane::TensionField, membrane::press::Press};
 //!
 //! // Metres and pascals: a small dome of Agilus30, inflated to 2.3 times its length at the pole.
 //! let design = Design {
@@ -18,40 +18,40 @@
 //! let mut press = Press::new(&design, TensionField::Relaxed)?;
 //! let state = press.at_indentation(1.5e-3)?;
 //! assert!((state.force - 8.371).abs() < 1e-3, "{} N", state.force);
-//! # Ok::<(), model_tables::press::ModelError>(())
+//! # Ok::<(), model_tables::membrane::press::ModelError>(())
 //! ```
 //!
 //! # The way through the crate
 //!
-//! [`design`] (what the fingertip is) -> [`material`] -> [`membrane`] (the local equations) -> [`equilibrium`]
-//! (Newton's method over the [`solver`], which knows no physics) -> [`adapt`] (on a [`mesh`] that fits) -> [`rest`]
-//! and [`press`] ([`state`]s of equilibrium) -> [`curve`] (pressure rise -> force and indentation) -> `generate`
-//! (fits and certifies) -> [`table`] (integers for the chip, in the quantities of [`units`], beside the
-//! [`constants`] of the design). Beside it stands the feedback [`actuator`].
+//! [`design`] (what the fingertip is) of a [`material`] -> [`membrane`] (thin walls) or [`solid`] (walls that bend), with the
+//! [`solver`], which knows no physics -> `model` (either of them behind one interface, and which of them a design needs) ->
+//! [`curve`] (pressure rise -> force and indentation) -> `generate` (fits and certifies) -> [`table`] (integers for the
+//! chip, in the quantities of [`units`], beside the [`constants`] of the design). A design comes from a file by
+//! `design_file`. Beside it all stands the feedback [`actuator`].
 //!
-//! With `cli` come `fit` (bench data -> a calibrated design) and `size` (a wanted force -> designs).
+//! The command line, calibration and sizing are the package `designer`; other ways to solve and to look up, and campaigns,
+//! are `compare`.
 //!
 //! A law that [`material::Law`] lacks joins by implementing [`material::Hyperelastic`], and is pressed by
-//! [`press::Press::inflate`].
+//! [`membrane::press::Press::inflate`].
 //!
 //! # Features
 //!
 //! | feature | default | adds |
 //! |---|---|---|
 //! | none | | the model, the tables' look-up and their quantities: `no_std`, no allocation, no operating system |
-//! | `std` | yes | design files (`design_file`), the curve of a press, the table generator and its certificate (`generate`) |
-//! | `cli` | no | calibration (`fit`), sizing (`size`) and the `designer` command line; implies `std` |
+//! | `std` | yes | the solid, design files (`design_file`), the choice of model (`model`), the curve of a press, the table generator and its certificate (`generate`) |
 //!
 //! On a chip: `model-tables = { ..., default-features = false }`. The look-up works in integers alone. The model works in
-//! `f64` and keeps everything in one [`press::Press`] of less than 200 kB; a [`press::workspace::Workspace`] keeps that in
+//! `f64` and keeps everything in one [`Press`](membrane::press::Press) of less than 200 kB; a [`Workspace`](membrane::press::workspace::Workspace) keeps that in
 //! a static, so that it never passes through the stack.
 //!
 //! # What it promises
 //!
 //! - Host mathematics is `f64` in SI units; transcendental functions come from `libm`, so that every host computes the
 //!   same bits.
-//! - No global state: a [`press::Press`] is `Send` and `Sync`, and as many as wanted run side by side.
-//! - No unsafe code; what cannot be solved is a [`press::ModelError`], never a number.
+//! - No global state: a [`Press`](membrane::press::Press) is `Send` and `Sync`, and as many as wanted run side by side.
+//! - No unsafe code; what cannot be solved is a [`ModelError`](membrane::press::ModelError), never a number.
 //! - Rust 1.95 or later (`rust-version`), the version it is tested with.
 //!
 //! How its numbers compare with published ones, and how far a membrane is from a real dome with a wall that bends, is
@@ -60,65 +60,22 @@
 #![forbid(unsafe_code)]
 
 pub mod actuator;
-#[path = "membrane/adapt.rs"]
-pub mod adapt;
-#[cfg(feature = "std")]
-#[path = "../compare/src/campaign/mod.rs"]
-pub mod campaign;
 pub mod constants;
 pub mod curve;
 pub mod design;
 #[cfg(feature = "std")]
 pub mod design_file;
-#[cfg(feature = "cli")]
-#[path = "../designer/src/commands/mod.rs"]
-pub mod designer;
-#[path = "membrane/equilibrium.rs"]
-pub mod equilibrium;
-#[cfg(feature = "cli")]
-#[path = "../designer/src/fit/mod.rs"]
-pub mod fit;
 #[cfg(feature = "std")]
 pub mod generate;
-#[path = "membrane/history.rs"]
-pub mod history;
-#[path = "membrane/inflation.rs"]
-pub mod inflation;
-#[path = "../compare/src/lookups.rs"]
-pub mod lookups;
 pub mod material;
-#[path = "membrane/equations.rs"]
 pub mod membrane;
-#[path = "membrane/mesh.rs"]
-pub mod mesh;
 #[cfg(feature = "std")]
-#[path = "../compare/src/methods/mod.rs"]
-pub mod methods;
+pub mod model;
 #[cfg(feature = "std")]
 pub mod monotone;
-#[path = "membrane/press/mod.rs"]
-pub mod press;
 #[cfg(feature = "std")]
-mod random;
-#[path = "membrane/refine.rs"]
-mod refine;
-#[path = "membrane/rest.rs"]
-pub mod rest;
-#[cfg(feature = "std")]
-#[path = "model/mod.rs"]
-pub mod rung;
-#[cfg(feature = "cli")]
-#[path = "../designer/src/size/mod.rs"]
-pub mod size;
+pub mod random;
 pub mod solid;
-#[path = "membrane/solution.rs"]
-pub mod solution;
 pub mod solver;
-#[path = "material/stability.rs"]
-pub mod stability;
-#[path = "membrane/state.rs"]
-pub mod state;
 pub mod table;
 pub mod units;
-#[path = "membrane/wrinkle.rs"]
-mod wrinkle;

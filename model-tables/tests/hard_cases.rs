@@ -4,14 +4,14 @@
 mod common;
 
 use common::{AGILUS30, design};
-use model_tables::adapt::Failure;
 use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
+use model_tables::material::stability::Mode;
 use model_tables::membrane::TensionField;
-use model_tables::press::{EndsBy, ModelError, Press};
-use model_tables::rest::Quantity;
-use model_tables::stability::Mode;
-use model_tables::state::Wrinkling;
+use model_tables::membrane::adapt::Failure;
+use model_tables::membrane::press::{EndsBy, ModelError, Press};
+use model_tables::membrane::rest::Quantity;
+use model_tables::membrane::state::Wrinkling;
 
 fn relaxed(design: &Design) -> Result<Press, ModelError> {
     Press::new(design, TensionField::Relaxed)

@@ -3,13 +3,13 @@
 mod common;
 
 use common::{AGILUS30, design};
-use model_tables::adapt::Resolution;
 use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::press::{EndsBy, ModelError, Press, SWEEP};
-use model_tables::rest::Branch;
-use model_tables::state::Wrinkling;
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::{EndsBy, ModelError, Press, SWEEP};
+use model_tables::membrane::rest::Branch;
+use model_tables::membrane::state::Wrinkling;
 use proptest::prelude::*;
 
 fn press(design: &Design) -> Press {

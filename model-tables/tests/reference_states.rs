@@ -3,8 +3,8 @@
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::press::{EndsBy, Press};
-use model_tables::state::Wrinkling;
+use model_tables::membrane::press::{EndsBy, Press};
+use model_tables::membrane::state::Wrinkling;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

@@ -8,7 +8,7 @@ use domes::dome;
 use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::press::{self, ModelError};
+use model_tables::membrane::press::{self, ModelError};
 use model_tables::solid::equilibrium::{Fluid, State, Wall};
 use model_tables::solid::inflation::mid_surface;
 use model_tables::solid::mesh::Elements;

@@ -6,7 +6,7 @@ use domes::dome;
 use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
 use model_tables::material::preset::{AGILUS30, SKIN};
-use model_tables::press::ModelError;
+use model_tables::membrane::press::ModelError;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::{COARSE, FULL, Press};
 

@@ -6,8 +6,8 @@ use crate::transducer::{Part, Transducer, Wiring};
 use model_tables::curve::{Contact, Curve};
 use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
 use model_tables::generate::{self, GenerateError};
-use model_tables::press::{CurveFailure, ModelError};
-use model_tables::rung::Rung;
+use model_tables::membrane::press::{CurveFailure, ModelError};
+use model_tables::model::Fingertip;
 use std::fmt;
 use std::path::{Path, PathBuf};
 

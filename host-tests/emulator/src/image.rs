@@ -123,6 +123,9 @@ impl Image {
         if let Some(design) = design {
             cargo.env("FINGERTIP_DESIGN", design);
         }
+        if binary == "kernel_probe" {
+            cargo.args(["--features", "kernel-probe"]);
+        }
         if let Some(board) = board {
             cargo.args(["--no-default-features", "--features", board]);
         }

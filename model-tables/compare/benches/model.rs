@@ -3,13 +3,13 @@
 //! Medians over repetitions, in one process; a plain harness, because the pieces take from nanoseconds to
 //! milliseconds and nothing but their medians is wanted.
 
-use model_tables::campaign::scaling;
+use compare::campaign::scaling;
+use compare::methods::contest::{DESIGNS, STATES};
 use model_tables::design_file::{Accuracy, DesignFile};
 use model_tables::generate;
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::methods::contest::{DESIGNS, STATES};
-use model_tables::press::{CURVE, Press, SWEEP};
+use model_tables::membrane::press::{CURVE, Press, SWEEP};
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
 use model_tables::units::PressureRise;
@@ -103,7 +103,7 @@ fn main() {
         });
     }
     for name in ["paper-prestretched", "skin-analogue", "skin-light-touch"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("designs/{name}.toml"));
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"));
         let file = DesignFile::read(&path).expect("a shipped design");
         let design = file.design();
         let deepest = 1e-3 * file.max_indentation_mm.expect("shipped with it");
@@ -118,7 +118,7 @@ fn main() {
     }
     let text = include_str!(concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/designs/paper-prestretched.toml"
+        "/../designs/paper-prestretched.toml"
     ));
     let file = DesignFile::parse(text, "paper-prestretched.toml").expect("a shipped design");
     let accuracy: Accuracy = file.accuracy.expect("shipped with it");

@@ -1,8 +1,8 @@
-//! Other ways to look two curves up, as they are commonly written, for comparison with [`crate::table`]: nothing here is on the
+//! Other ways to look two curves up, as they are commonly written, for comparison with [`model_tables::table`]: nothing here is on the
 //! signal path.
 //!
 //! Each writes force and indentation at one pressure rise, in its own units. Where a way allows it both share the search, as
-//! they do in [`crate::table`]; the closed-form and the fixed-point ones are functions of a library that gives one output.
+//! they do in [`model_tables::table`]; the closed-form and the fixed-point ones are functions of a library that gives one output.
 //! `designer chart --tables` fits them and measures their errors; the chip's emulator counts the instructions of these very
 //! functions.
 

@@ -1,6 +1,6 @@
 //! A small campaign of random designs: no state may be wrong, and every refusal has a reason that holds.
 
-use model_tables::campaign::{self, Tally};
+use compare::campaign::{self, Tally};
 
 /// Reasons that are physics: the law unstable, a pole that inflation does not stretch so far, a plain membrane that
 /// would have to push where it leaves the plate, a compliance on which a softening dome inflates by itself.

@@ -1,13 +1,13 @@
 //! The rule by which `kind = "auto"` chooses a model, against the refined solid.
 
-use model_tables::campaign::walls;
-use model_tables::rung::choice::LADDER;
+use compare::campaign::walls;
+use model_tables::model::choice::LADDER;
 use std::collections::BTreeMap;
 
 /// The page about the ladder quotes what the rule lets through, and of which wall: computed again, it is that.
 #[test]
 fn the_page_of_the_ladder_is_what_the_rule_does() {
-    let page = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/LADDER.md"));
+    let page = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../LADDER.md"));
     let rows: Vec<Vec<&str>> = page
         .split("## What `kind = \"auto\"` takes")
         .nth(1)

@@ -1,7 +1,7 @@
-//! The `designer` command: everything is in [`model_tables::designer`].
+//! The `designer` command: everything is in [`designer::commands`].
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    model_tables::designer::main()
+    designer::commands::main()
 }

@@ -41,7 +41,7 @@ fn scratch(name: &str, text: &str) -> PathBuf {
 
 const PAPER: &str = include_str!(concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/designs/paper-prestretched.toml"
+    "/../designs/paper-prestretched.toml"
 ));
 
 fn close(found: f64, expected: f64, tolerance: f64) {
@@ -176,10 +176,7 @@ const DEPTHS: &str = "0.1,0.2,0.35,0.5,0.7,0.9,1.1,1.3,1.5,1.7,1.9,2.1,2.3,2.5";
 
 #[test]
 fn fit_writes_a_design_that_reads_as_the_bench() {
-    let drawn = include_str!(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/designer/src/commands/stand-in.toml"
-    ));
+    let drawn = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/commands/stand-in.toml"));
     let truth = scratch(
         "fit-truth.toml",
         &format!("{drawn}\n[calibration]\nmaterial_factor = 1.4\npole_stretch = 1.04\n"),
@@ -243,7 +240,10 @@ fn fit_from_data_makes_tables_that_read_as_the_data_and_end_with_them() {
     let data = scratch("pad.csv", &text);
     let design = scratch(
         "pad.toml",
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/designs/skin-analogue.toml")),
+        include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../designs/skin-analogue.toml"
+        )),
     );
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("from-data-out");
     let _ = fs::remove_dir_all(&out);
@@ -298,8 +298,8 @@ fn fit_from_data_makes_tables_that_read_as_the_data_and_end_with_them() {
 /// The design that the emulated board is built for is what the command makes of the data beside it.
 #[test]
 fn the_measured_design_of_the_emulated_board_is_what_its_data_give() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-tests/emulator/tests/measured");
-    let drawn = Path::new(env!("CARGO_MANIFEST_DIR")).join("designs/skin-analogue.toml");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../host-tests/emulator/tests/measured");
+    let drawn = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/skin-analogue.toml");
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("measured-out");
     let _ = fs::remove_dir_all(&out);
     rows(&[
@@ -371,7 +371,7 @@ fn a_refused_fit_is_one_line_and_writes_nothing() {
 
 #[test]
 fn size_finds_membranes_that_feel_like_a_fingertip() {
-    let target = format!("{}/targets/human-fingertip.toml", env!("CARGO_MANIFEST_DIR"));
+    let target = format!("{}/../targets/human-fingertip.toml", env!("CARGO_MANIFEST_DIR"));
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("size-out");
     let _ = fs::remove_dir_all(&out);
     let output = designer(&[
@@ -433,7 +433,7 @@ fn calibration_writes_the_page_of_this_crate() {
     }
     let written = fs::read_to_string(&out).expect("the page");
     let mut now = written.lines();
-    for line in include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/CALIBRATION.md")).lines() {
+    for line in include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../CALIBRATION.md")).lines() {
         assert_eq!(
             Some(line),
             now.next(),

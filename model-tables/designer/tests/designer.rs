@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn shipped(name: &str) -> String {
-    format!("{}/designs/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+    format!("{}/../designs/{name}.toml", env!("CARGO_MANIFEST_DIR"))
 }
 
 fn designer(arguments: &[&str]) -> Output {
@@ -196,7 +196,7 @@ fn published_writes_the_page_of_this_crate() {
     near(&rows[0][2], 179.061_844_088_872, 1e-9);
     let written = fs::read_to_string(&out).expect("the page");
     let mut now = written.lines();
-    for line in include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/PUBLISHED.md")).lines() {
+    for line in include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../PUBLISHED.md")).lines() {
         assert_eq!(
             Some(line),
             now.next(),
@@ -552,7 +552,7 @@ fn the_help_of_every_subcommand_ends_with_an_example() {
 #[test]
 fn an_interrupt_leaves_nothing_behind() {
     let out = scratch("interrupted").join("out");
-    let target = format!("{}/targets/human-fingertip.toml", env!("CARGO_MANIFEST_DIR"));
+    let target = format!("{}/../targets/human-fingertip.toml", env!("CARGO_MANIFEST_DIR"));
     let mut child = Command::new(env!("CARGO_BIN_EXE_designer"))
         .args(["size", &target, "--out"])
         .arg(&out)

@@ -1,20 +1,17 @@
 //! Fits to synthetic benches: a known device, pressed by the full model, read with noise.
 //!
-//! Coverage over more repeats than a test has time for: `FIT_REPEATS=200 cargo test --release -p model-tables --features cli --test fit
+//! Coverage over more repeats than a test has time for: `FIT_REPEATS=200 cargo test --release -p designer --test fit
 //! standard_errors -- --nocapture`.
 
+use designer::fit::data::{Choice, Data};
+use designer::fit::parameter::Parameter;
+use designer::fit::{self, Fit, FitError, Held};
 use model_tables::design_file::DesignFile;
-use model_tables::fit::data::{Choice, Data};
-use model_tables::fit::parameter::Parameter;
-use model_tables::fit::{self, Fit, FitError, Held};
 use model_tables::membrane::TensionField;
-use model_tables::press::Press;
+use model_tables::membrane::press::Press;
 use std::fmt::Write as _;
 
-const DESIGN: &str = include_str!(concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/designer/src/commands/stand-in.toml"
-));
+const DESIGN: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/commands/stand-in.toml"));
 
 /// What the device really is.
 const TRUTH: &str =

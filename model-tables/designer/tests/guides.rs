@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn guide(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../host-tests/guides/{name}.md"));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../host-tests/guides/{name}.md"));
     fs::read_to_string(path).expect("the guide")
 }
 
@@ -43,7 +43,11 @@ fn follow(name: &str) -> (PathBuf, String) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("guide-{name}"));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("the test folder");
-    std::os::unix::fs::symlink(env!("CARGO_MANIFEST_DIR"), folder.join("model-tables")).expect("a link");
+    std::os::unix::fs::symlink(
+        concat!(env!("CARGO_MANIFEST_DIR"), "/.."),
+        folder.join("model-tables"),
+    )
+    .expect("a link");
     let (mut printed, mut ran) = (String::new(), 0);
     for Block { info, text } in blocks(&guide(name)) {
         match info.split_once(' ') {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn shipped(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("designs/{name}.toml"))
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"))
 }
 
 /// An empty folder of its own for a test.

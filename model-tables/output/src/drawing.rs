@@ -2,44 +2,60 @@
 
 use std::fmt::Write as _;
 
-/// Colours that the colour-blind tell apart (Okabe and Ito 2008).
-pub(super) const BLUE: &str = "#0072b2";
-pub(super) const VERMILION: &str = "#d55e00";
-pub(super) const GREEN: &str = "#009e73";
-pub(super) const PURPLE: &str = "#aa4499";
-pub(super) const ORANGE: &str = "#e69f00";
-pub(super) const BLACK: &str = "#222222";
-pub(super) const GREY: &str = "#8a8a8a";
+// Colours that the colour-blind tell apart (Okabe and Ito 2008).
+/// Blue.
+pub const BLUE: &str = "#0072b2";
+/// Vermilion.
+pub const VERMILION: &str = "#d55e00";
+/// Green.
+pub const GREEN: &str = "#009e73";
+/// Purple.
+pub const PURPLE: &str = "#aa4499";
+/// Orange.
+pub const ORANGE: &str = "#e69f00";
+/// For words and axes.
+pub const BLACK: &str = "#222222";
+/// For what stands back.
+pub const GREY: &str = "#8a8a8a";
 const GRID: &str = "#e4e4e4";
 
 /// The shape of a marker.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Marker {
+pub enum Marker {
+    /// A circle.
     Circle,
+    /// A square.
     Square,
+    /// A square on its corner.
     Diamond,
+    /// A triangle that points up.
     Triangle,
+    /// A triangle that points down.
     Wedge,
+    /// Two crossed lines.
     Cross,
 }
 
 /// Where a text stands relative to its point.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Anchor {
+pub enum Anchor {
+    /// The text begins there.
     Start,
+    /// Its middle is there.
     Middle,
+    /// It ends there.
     End,
 }
 
 /// An SVG in the making.
 #[derive(Debug)]
-pub(super) struct Drawing {
+pub struct Drawing {
     text: String,
 }
 
 impl Drawing {
     /// An empty white drawing.
-    pub(super) fn new(width: f64, height: f64) -> Self {
+    pub fn new(width: f64, height: f64) -> Self {
         Self {
             text: format!(
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
@@ -51,7 +67,7 @@ impl Drawing {
 
     /// A drawing that stands in a page: as wide as its place, on the page's ground and in its type, with words for those who do
     /// not see it.
-    pub(super) fn inline([width, height]: [f64; 2], title: &str, description: &str) -> Self {
+    pub fn inline([width, height]: [f64; 2], title: &str, description: &str) -> Self {
         Self {
             text: format!(
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" role=\"img\">\n\
@@ -63,7 +79,7 @@ impl Drawing {
     }
 
     /// The file.
-    pub(super) fn finish(self) -> String {
+    pub fn finish(self) -> String {
         self.text + "</svg>\n"
     }
 
@@ -73,7 +89,7 @@ impl Drawing {
     }
 
     /// A straight line.
-    pub(super) fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], color: &str, width: f64) {
+    pub fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], color: &str, width: f64) {
         self.push(&format!(
             "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{color}\" \
              stroke-width=\"{width}\"/>"
@@ -81,7 +97,7 @@ impl Drawing {
     }
 
     /// A line through points.
-    pub(super) fn path(&mut self, points: &[[f64; 2]], color: &str, width: f64) {
+    pub fn path(&mut self, points: &[[f64; 2]], color: &str, width: f64) {
         let mut list = String::new();
         for [x, y] in points {
             let _ = write!(list, "{x:.1},{y:.1} ");
@@ -94,14 +110,14 @@ impl Drawing {
     }
 
     /// A filled rectangle.
-    pub(super) fn area(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], color: &str) {
+    pub fn area(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], color: &str) {
         self.push(&format!(
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{color}\"/>"
         ));
     }
 
     /// A filled polygon.
-    pub(super) fn polygon(&mut self, points: &[[f64; 2]], color: &str) {
+    pub fn polygon(&mut self, points: &[[f64; 2]], color: &str) {
         let list: Vec<String> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
         self.push(&format!(
             "<polygon points=\"{}\" fill=\"{color}\"/>",
@@ -110,7 +126,7 @@ impl Drawing {
     }
 
     /// A marker, hollow for what is incomplete.
-    pub(super) fn marker(&mut self, marker: Marker, [x, y]: [f64; 2], color: &str, hollow: bool) {
+    pub fn marker(&mut self, marker: Marker, [x, y]: [f64; 2], color: &str, hollow: bool) {
         let fill = if hollow { "white" } else { color };
         let r = 4.2;
         let polygon = |points: &[[f64; 2]]| {
@@ -147,7 +163,7 @@ impl Drawing {
     }
 
     /// A text whose baseline starts, is centred or ends at a point; a white edge parts it from what lies below.
-    pub(super) fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, size: f64, color: &str, words: &str) {
+    pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, size: f64, color: &str, words: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -161,7 +177,7 @@ impl Drawing {
     }
 
     /// A text that reads upward, centred at a point.
-    pub(super) fn upward(&mut self, [x, y]: [f64; 2], size: f64, words: &str) {
+    pub fn upward(&mut self, [x, y]: [f64; 2], size: f64, words: &str) {
         self.push(&format!(
             "<text transform=\"translate({x:.1} {y:.1}) rotate(-90)\" font-size=\"{size}\" \
              text-anchor=\"middle\" fill=\"{BLACK}\">{words}</text>"
@@ -176,16 +192,16 @@ fn escape(words: &str) -> String {
 
 /// A logarithmic axis: decades, whole or not, over pixels.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axis {
+pub struct Axis {
     /// First and last decade.
-    pub(super) decades: [f64; 2],
+    pub decades: [f64; 2],
     /// Where they lie.
-    pub(super) pixels: [f64; 2],
+    pub pixels: [f64; 2],
 }
 
 impl Axis {
     /// Where a value lies; values beyond the ends lie at the ends.
-    pub(super) fn at(&self, value: f64) -> f64 {
+    pub fn at(&self, value: f64) -> f64 {
         let [first, last] = self.decades;
         let part = ((libm::log10(value) - first) / (last - first)).clamp(0.0, 1.0);
         self.pixels[0] + part * (self.pixels[1] - self.pixels[0])
@@ -199,21 +215,21 @@ impl Axis {
 
 /// A frame with two logarithmic axes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Panel {
+pub struct Panel {
     /// To the right.
-    pub(super) x: Axis,
+    pub x: Axis,
     /// Upward.
-    pub(super) y: Axis,
+    pub y: Axis,
 }
 
 impl Panel {
     /// Where a point lies.
-    pub(super) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.x.at(x), self.y.at(y)]
     }
 
     /// Grid, frame, and the labels of every `step`-th decade, in words.
-    pub(super) fn draw(&self, drawing: &mut Drawing, steps: [usize; 2], words: [&dyn Fn(i32) -> String; 2]) {
+    pub fn draw(&self, drawing: &mut Drawing, steps: [usize; 2], words: [&dyn Fn(i32) -> String; 2]) {
         let ([left, right], [bottom, top]) = (self.x.pixels, self.y.pixels);
         for decade in self.x.whole().step_by(steps[0]) {
             let x = self.x.at(libm::pow(10.0, f64::from(decade)));
@@ -237,7 +253,7 @@ impl Panel {
 }
 
 /// Moves heights apart that are closer than `gap`, as little as it takes; the order stays.
-pub(super) fn spread(heights: &mut [f64], gap: f64, [top, bottom]: [f64; 2]) {
+pub fn spread(heights: &mut [f64], gap: f64, [top, bottom]: [f64; 2]) {
     let mut order: Vec<usize> = (0..heights.len()).collect();
     order.sort_by(|&a, &b| heights[a].total_cmp(&heights[b]));
     let mut least = top;
@@ -253,7 +269,7 @@ pub(super) fn spread(heights: &mut [f64], gap: f64, [top, bottom]: [f64; 2]) {
 }
 
 /// A decade as a power of ten.
-pub(super) fn power(decade: i32) -> String {
+pub fn power(decade: i32) -> String {
     match decade {
         0 => "1".to_owned(),
         1 => "10".to_owned(),

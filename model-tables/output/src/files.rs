@@ -1,6 +1,6 @@
 //! Files that appear whole or not at all, also when the program is interrupted.
 
-use super::Refusal;
+use crate::Refusal;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -12,7 +12,7 @@ const INTERRUPTED: i32 = 130;
 static PARTIAL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Has an interrupt remove what is on its way and end the program.
-pub(super) fn clear_away_on_interrupt() {
+pub fn clear_away_on_interrupt() {
     let handler = || {
         // Kept to the end: no file can begin after this.
         let mut partial = PARTIAL.lock().unwrap_or_else(PoisonError::into_inner);
@@ -32,13 +32,16 @@ fn remove(partial: &mut Vec<PathBuf>) {
 }
 
 /// Writes one file, as [`write_all`] does.
-pub(super) fn write_one(path: &Path, content: Vec<u8>) -> Result<(), Refusal> {
+///
+/// # Errors
+/// [`Refusal`] with the file and the reason.
+pub fn write_one(path: &Path, content: Vec<u8>) -> Result<(), Refusal> {
     let (folder, name) = place(path)?;
     write_all(folder, &[(name, content)])
 }
 
 /// Refuses a file that could not be written, before the work for it starts.
-pub(super) fn expect_room(path: &Path) -> Result<(), Refusal> {
+pub fn expect_room(path: &Path) -> Result<(), Refusal> {
     let (folder, name) = place(path)?;
     let probe = format!(".{name}.{}", std::process::id());
     write_all(folder, &[(&probe, Vec::new())])?;
@@ -63,7 +66,7 @@ fn place(path: &Path) -> Result<(&Path, &str), Refusal> {
 }
 
 /// Writes every file beside its place first, then moves them all in; on failure removes what it wrote.
-pub(super) fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refusal> {
+pub fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refusal> {
     let cannot = |path: &Path, error: std::io::Error| {
         Refusal(format!(
             "{} cannot be written: {error}; choose another --out",

@@ -1,7 +1,7 @@
-//! Panels with linear axes and round ticks, beside the logarithmic ones of [`super::drawing`].
+//! Panels with linear axes and round ticks, beside the logarithmic ones of [`crate::drawing`].
 
-use super::drawing::{Anchor, BLACK, Drawing, GREY};
-use super::rows::plain;
+use crate::drawing::{Anchor, BLACK, Drawing, GREY};
+use crate::rows::plain;
 
 const GRID: &str = "#e4e4e4";
 /// Ticks of an axis, about.
@@ -9,25 +9,25 @@ const TICKS: f64 = 5.0;
 
 /// A linear axis.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axis {
+pub struct LinearAxis {
     /// Its first value, a whole number of steps.
     start: f64,
     /// Its last value, a whole number of steps.
-    pub(super) end: f64,
+    pub end: f64,
     /// Between ticks.
     step: f64,
     /// Where start and end lie.
-    pub(super) pixels: [f64; 2],
+    pub pixels: [f64; 2],
 }
 
-impl Axis {
+impl LinearAxis {
     /// An axis that holds values up to `largest`, with round ticks.
-    pub(super) fn from_zero(largest: f64, pixels: [f64; 2]) -> Self {
+    pub fn from_zero(largest: f64, pixels: [f64; 2]) -> Self {
         Self::over([0.0, if largest > 0.0 { largest } else { 1.0 }], pixels)
     }
 
     /// An axis of degrees, from the pole to the base.
-    pub(super) fn quarter_turn(pixels: [f64; 2]) -> Self {
+    pub fn quarter_turn(pixels: [f64; 2]) -> Self {
         Self {
             start: 0.0,
             end: 90.0,
@@ -37,7 +37,7 @@ impl Axis {
     }
 
     /// An axis that holds the values between two, the first less than the second.
-    pub(super) fn over([least, largest]: [f64; 2], pixels: [f64; 2]) -> Self {
+    pub fn over([least, largest]: [f64; 2], pixels: [f64; 2]) -> Self {
         let rough = (largest - least) / TICKS;
         let decade = libm::pow(10.0, libm::floor(libm::log10(rough)));
         let step = [1.0, 2.0, 5.0, 10.0]
@@ -54,7 +54,7 @@ impl Axis {
     }
 
     /// Where a value lies; values beyond the ends lie at the ends.
-    pub(super) fn at(&self, value: f64) -> f64 {
+    pub fn at(&self, value: f64) -> f64 {
         let part = ((value - self.start) / (self.end - self.start)).clamp(0.0, 1.0);
         self.pixels[0] + part * (self.pixels[1] - self.pixels[0])
     }
@@ -68,21 +68,21 @@ impl Axis {
 
 /// A frame with two linear axes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Panel {
+pub struct LinearPanel {
     /// To the right.
-    pub(super) x: Axis,
+    pub x: LinearAxis,
     /// Upward.
-    pub(super) y: Axis,
+    pub y: LinearAxis,
 }
 
-impl Panel {
+impl LinearPanel {
     /// Where a point lies.
-    pub(super) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.x.at(x), self.y.at(y)]
     }
 
     /// Grid, frame and numbers.
-    pub(super) fn draw(&self, drawing: &mut Drawing) {
+    pub fn draw(&self, drawing: &mut Drawing) {
         let ([left, right], [bottom, top]) = (self.x.pixels, self.y.pixels);
         for tick in self.x.ticks() {
             let x = self.x.at(tick);
@@ -122,13 +122,13 @@ mod tests {
             (144.3, 150.0, 50.0),
             (10.0, 10.0, 2.0),
         ] {
-            let axis = Axis::from_zero(largest, [0.0, 100.0]);
+            let axis = LinearAxis::from_zero(largest, [0.0, 100.0]);
             assert!(
                 (axis.end - end).abs() < 1e-9 && (axis.step - step).abs() < 1e-9,
                 "{axis:?}"
             );
         }
-        let axis = Axis::over([-0.3, 2.1], [0.0, 100.0]);
+        let axis = LinearAxis::over([-0.3, 2.1], [0.0, 100.0]);
         assert!(
             (axis.start + 0.5).abs() < 1e-9 && (axis.end - 2.5).abs() < 1e-9,
             "{axis:?}"

@@ -7,11 +7,11 @@ use std::io::IsTerminal as _;
 const PARTS: u64 = 1000;
 
 /// A bar.
-pub(super) struct Progress(ProgressBar);
+pub struct Progress(ProgressBar);
 
 impl Progress {
     /// A bar with a name; nothing at all where standard error is no terminal.
-    pub(super) fn new(name: &'static str) -> Self {
+    pub fn new(name: &'static str) -> Self {
         let target = if std::io::stderr().is_terminal() {
             ProgressDrawTarget::stderr()
         } else {
@@ -27,12 +27,12 @@ impl Progress {
     }
 
     /// The part that is done, 0 to 1.
-    pub(super) fn set(&self, part: f64) {
+    pub fn set(&self, part: f64) {
         self.0.set_position((part * PARTS as f64) as u64);
     }
 
     /// Away with it.
-    pub(super) fn finish(&self) {
+    pub fn finish(&self) {
         self.0.finish_and_clear();
     }
 }

@@ -10,7 +10,7 @@ const TABLE_DIGITS: i32 = 7;
 
 /// How rows are printed.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
-pub(super) enum Format {
+pub enum Format {
     /// Columns for people
     Table,
     /// Comma-separated values with a header
@@ -21,7 +21,7 @@ pub(super) enum Format {
 
 /// One value.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Cell {
+pub enum Cell {
     /// A number in the unit its column's name states.
     Number(f64),
     /// A whole number.
@@ -34,14 +34,14 @@ pub(super) enum Cell {
 
 /// Columns and rows.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Rows {
+pub struct Rows {
     columns: &'static [&'static str],
     rows: Vec<Vec<Cell>>,
 }
 
 impl Rows {
     /// No rows yet.
-    pub(super) fn new(columns: &'static [&'static str]) -> Self {
+    pub fn new(columns: &'static [&'static str]) -> Self {
         Self {
             columns,
             rows: Vec::new(),
@@ -49,13 +49,13 @@ impl Rows {
     }
 
     /// One row more, a cell a column.
-    pub(super) fn push(&mut self, row: Vec<Cell>) {
+    pub fn push(&mut self, row: Vec<Cell>) {
         debug_assert_eq!(row.len(), self.columns.len());
         self.rows.push(row);
     }
 
     /// The whole text.
-    pub(super) fn print(&self, format: Format) -> Result<String, String> {
+    pub fn print(&self, format: Format) -> Result<String, String> {
         match format {
             Format::Table => Ok(self.table()),
             Format::Csv => self.csv().map_err(|error| error.to_string()),
@@ -125,7 +125,7 @@ impl Rows {
 
 impl Cell {
     /// A word.
-    pub(super) fn word(text: &str) -> Self {
+    pub fn word(text: &str) -> Self {
         Self::Text(text.to_owned())
     }
 
@@ -140,7 +140,7 @@ impl Cell {
 }
 
 /// A number with that many significant digits, without an exponent where a person can still read it.
-pub(super) fn significant(number: f64, digits: i32) -> String {
+pub fn significant(number: f64, digits: i32) -> String {
     if number == 0.0 || !number.is_finite() {
         return format!("{number:.*}", digits as usize - 1);
     }
@@ -153,7 +153,7 @@ pub(super) fn significant(number: f64, digits: i32) -> String {
 }
 
 /// A number with that many significant digits at most: without needless zeros behind its point.
-pub(super) fn plain(number: f64, digits: i32) -> String {
+pub fn plain(number: f64, digits: i32) -> String {
     if number == 0.0 {
         return "0".to_owned();
     }

@@ -7,7 +7,7 @@
 mod calibration;
 mod error;
 mod print;
-pub(crate) mod section;
+pub mod section;
 mod sections;
 
 use crate::design::{Design, Membrane, RestBy};

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::material::Law;
 use crate::material::preset::{PRESETS, Preset};
-use crate::rung::choice::FINE;
+use crate::model::choice::FINE;
 use toml::de::DeTable;
 
 /// Lengths of a fingertip, from a hair to a hand.

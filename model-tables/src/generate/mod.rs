@@ -6,7 +6,7 @@
 mod certify;
 mod design;
 mod emit;
-pub(crate) mod minimax;
+pub mod minimax;
 mod owned;
 mod quantise;
 mod search;

@@ -4,11 +4,11 @@
 //! put where wrinkles begin or end (the equations have a kink there, and a kink inside an element costs the
 //! method its order), and a pole that has gone slack, or taut again, changes its kind.
 
-use crate::equilibrium::{Closure, Equilibrium, Outcome};
 use crate::material::Hyperelastic;
-use crate::membrane::{CONTACT_PARAMETER, Membrane, POLE, PRESSURE, TensionField};
-use crate::mesh::{Breaks, Depth};
-use crate::solution::{MAX_ELEMENTS, Pole, Solution};
+use crate::membrane::equations::{CONTACT_PARAMETER, Membrane, POLE, PRESSURE, TensionField};
+use crate::membrane::equilibrium::{Closure, Equilibrium, Outcome};
+use crate::membrane::mesh::{Breaks, Depth};
+use crate::membrane::solution::{MAX_ELEMENTS, Pole, Solution};
 use core::f64::consts::FRAC_PI_2;
 use core::fmt;
 

@@ -6,10 +6,10 @@
 //! whatever controls the press.
 
 use crate::material::Hyperelastic;
-use crate::membrane::{
+use crate::membrane::equations::{
     CONTACT_PARAMETER, CONTACT_RADIUS, HEIGHT, Membrane, POLE, PRESSURE, Response, VOLUME,
 };
-use crate::solution::{MAX_ELEMENTS, Pole, Solution};
+use crate::membrane::solution::{MAX_ELEMENTS, Pole, Solution};
 use crate::solver::chain::{self, BORDERS, Chain, Row, UNKNOWNS};
 use crate::solver::collocation::{self, Condensed, Gauss, PARAMETERS, Point, STATES, Span};
 use core::f64::consts::FRAC_PI_2;

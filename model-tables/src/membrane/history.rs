@@ -1,8 +1,8 @@
 //! The latest states of a press, and what they foretell.
 
-use crate::adapt::Graded;
-use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, POLE, PRESSURE};
-use crate::solution::{Pole, Solution};
+use crate::membrane::adapt::Graded;
+use crate::membrane::equations::{CONTACT_PARAMETER, CONTACT_RADIUS, POLE, PRESSURE};
+use crate::membrane::solution::{Pole, Solution};
 use crate::solver::collocation::{Gauss, STATES};
 use core::f64::consts::FRAC_PI_2;
 

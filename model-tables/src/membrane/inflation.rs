@@ -5,11 +5,11 @@
 //! that first rise. The way goes up in the pole stretch, and on in the
 //! equator's where that no longer works.
 
-use crate::adapt::{Adaptive, Failure, Graded};
-use crate::equilibrium::{Closure, RestControl};
 use crate::material::Hyperelastic;
-use crate::membrane::{POLE, PRESSURE};
-use crate::stability::{self, Margin};
+use crate::material::stability::{self, Margin};
+use crate::membrane::adapt::{Adaptive, Failure, Graded};
+use crate::membrane::equations::{POLE, PRESSURE};
+use crate::membrane::equilibrium::{Closure, RestControl};
 
 /// Where inflation ends short of a pole stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]

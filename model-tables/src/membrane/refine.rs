@@ -6,9 +6,9 @@
 //! how many elements are wanted: it falls with the power `S` of their length. Gauss collocation is superconvergent, so
 //! that a last term of `e` leaves an error of the order of `e^2` at the nodes and in the integrals.
 
-use crate::adapt::Adaptive;
 use crate::material::Hyperelastic;
-use crate::solution::{MAX_ELEMENTS, Solution};
+use crate::membrane::adapt::Adaptive;
+use crate::membrane::solution::{MAX_ELEMENTS, Solution};
 
 /// Last term that is aimed at in a state of rest, over that of a pressed state: the first indentations are small
 /// differences against it.

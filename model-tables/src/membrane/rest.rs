@@ -1,12 +1,12 @@
 //! The rest state: inflated, not pressed.
 
-use crate::adapt::{Adaptive, Failure, Graded, REST_FINENESS};
-use crate::equilibrium::{Closure, Outcome, RestControl};
-use crate::inflation::End;
 use crate::material::Hyperelastic;
-use crate::membrane::{POLE, PRESSURE, TensionField};
-use crate::mesh::{Breaks, Depth};
-use crate::solution::Pole;
+use crate::membrane::adapt::{Adaptive, Failure, Graded, REST_FINENESS};
+use crate::membrane::equations::{POLE, PRESSURE, TensionField};
+use crate::membrane::equilibrium::{Closure, Outcome, RestControl};
+use crate::membrane::inflation::End;
+use crate::membrane::mesh::{Breaks, Depth};
+use crate::membrane::solution::Pole;
 use core::f64::consts::FRAC_PI_2;
 
 /// What the rest state is given by, for messages.

@@ -1,6 +1,6 @@
 //! A mesh of the meridian with values on it.
 
-use crate::membrane::{CONTACT_PARAMETER, POLE, Zone};
+use crate::membrane::equations::{CONTACT_PARAMETER, POLE, Zone};
 use crate::solver::collocation::{Gauss, PARAMETERS, STATES, Span};
 use core::f64::consts::FRAC_PI_2;
 

@@ -1,10 +1,10 @@
 //! States of equilibrium in SI units, read off a solution.
 
 use crate::design::Membrane as Dimensions;
-use crate::equilibrium::Equilibrium;
 use crate::material::Hyperelastic;
-use crate::membrane::{CONTACT_PARAMETER, POLE, TensionField, Zone};
-use crate::solution::{Pole, Solution};
+use crate::membrane::equations::{CONTACT_PARAMETER, POLE, TensionField, Zone};
+use crate::membrane::equilibrium::Equilibrium;
+use crate::membrane::solution::{Pole, Solution};
 use crate::solver::collocation::STATES;
 use core::f64::consts::{FRAC_PI_2, PI};
 

@@ -5,11 +5,11 @@
 //! curve turns next to zero: a zone that begins between two samples would otherwise be left out, and with it some 1e-6
 //! of the force.
 
-use crate::adapt::Adaptive;
 use crate::material::Hyperelastic;
+use crate::membrane::adapt::Adaptive;
+use crate::membrane::mesh::Breaks;
+use crate::membrane::solution::Solution;
 use crate::membrane::{TensionField, Zone};
-use crate::mesh::Breaks;
-use crate::solution::Solution;
 use core::f64::consts::FRAC_PI_2;
 
 /// A kink this close to a node is on it: misplaced by `d`, it costs `d^2`.

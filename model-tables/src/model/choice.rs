@@ -7,11 +7,11 @@
 //! kind, and two of them agreed with each other where both were wrong. `designer ladder` holds the rule to the refined solid over
 //! random walls.
 
-use super::{Kind, Rung};
+use super::{Fingertip, Kind};
 use crate::curve::Contact;
 use crate::design::Design;
 use crate::design_file::DesignFile;
-use crate::press::ModelError;
+use crate::membrane::press::ModelError;
 use crate::solid;
 use crate::solid::mesh::Elements;
 
@@ -124,7 +124,7 @@ impl Wanted {
     ///
     /// # Errors
     /// [`ModelError`] of the model.
-    pub fn contacts(&self, rung: &mut Rung) -> Result<Vec<Contact>, ModelError> {
+    pub fn contacts(&self, rung: &mut Fingertip) -> Result<Vec<Contact>, ModelError> {
         PARTS
             .iter()
             .map(|part| rung.contact_at(part * self.deepest))
@@ -140,7 +140,7 @@ pub struct Choice {
     /// The rung that judged it, and how far it may be off, relative; `None` where none could judge.
     pub judged: Option<(Kind, f64)>,
     /// The model at rest, its contacts solved.
-    pub rung: Rung,
+    pub rung: Fingertip,
 }
 
 /// Climbs the ladder for a design whose semi-axes are the outer surface's. Rungs that do not apply, or find no state, are
@@ -149,14 +149,14 @@ pub struct Choice {
 /// # Errors
 /// [`ModelError`] of the last rung.
 pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
-    let mut solved: Vec<(Kind, Rung, Vec<Contact>)> = Vec::new();
+    let mut solved: Vec<(Kind, Fingertip, Vec<Contact>)> = Vec::new();
     let mut failure = ModelError::RestNotForSolid;
     for judge in LADDER {
         if !judge.applies(design) {
             continue;
         }
         let own_error = wanted.own_error(judge, design);
-        let found = Rung::of(judge, design).and_then(|mut rung| {
+        let found = Fingertip::of(judge, design).and_then(|mut rung| {
             let contacts = wanted.contacts(&mut rung)?;
             Ok((rung, contacts))
         });

@@ -2,12 +2,12 @@
 //!
 //! [`choice`] is what `kind = "auto"` does; [`state`] is what is read off a state of either.
 
-use crate::adapt::Resolution;
 use crate::curve::{Contact, Curve};
 use crate::design::{Design, RestBy};
 use crate::design_file::{DesignFile, ModelSection};
 use crate::membrane::TensionField;
-use crate::press::{self, CurveFailure, Limit, ModelError};
+use crate::membrane::adapt::Resolution;
+use crate::membrane::press::{self, CurveFailure, Limit, ModelError};
 use crate::solid;
 use crate::solid::inflation::mid_surface;
 use crate::solid::mesh::Elements;
@@ -43,14 +43,14 @@ impl fmt::Display for Kind {
 
 /// A fingertip at rest, ready to be pressed.
 #[derive(Clone, Debug)]
-pub enum Rung {
+pub enum Fingertip {
     /// The membrane, relaxed.
     Membrane(Box<press::Press>),
     /// The solid.
     Solid(Box<solid::press::Press>),
 }
 
-impl Rung {
+impl Fingertip {
     /// Inflates a design to its rest state, of the model that it names.
     ///
     /// # Errors

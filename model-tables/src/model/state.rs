@@ -1,8 +1,8 @@
 //! What either model says of a state, in the same words.
 
-use super::Rung;
+use super::Fingertip;
 use crate::membrane::Zone;
-use crate::press::ModelError;
+use crate::membrane::press::ModelError;
 
 /// A state of rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ pub struct Station {
     pub in_contact: bool,
 }
 
-impl Rung {
+impl Fingertip {
     /// The rest state.
     pub fn rest(&self) -> Rest {
         match self {
@@ -107,7 +107,7 @@ impl Rung {
     /// at least 3.
     ///
     /// # Errors
-    /// As [`Rung::at_indentation`].
+    /// As [`Fingertip::at_indentation`].
     pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<Station>, ModelError> {
         Ok(match self {
             Self::Membrane(press) => press

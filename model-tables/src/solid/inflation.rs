@@ -2,10 +2,10 @@
 
 use super::equilibrium::{Fluid, State, Wall};
 use super::section;
-use crate::adapt::Failure as AnyFailure;
 use crate::design::{Design, Membrane, RestBy};
 use crate::membrane::TensionField;
-use crate::press::{ModelError, Press};
+use crate::membrane::adapt::Failure as AnyFailure;
+use crate::membrane::press::{ModelError, Press};
 use crate::solid::Failure;
 use core::f64::consts::PI;
 

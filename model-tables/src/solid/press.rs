@@ -5,11 +5,11 @@ use super::inflation;
 use super::mesh::Elements;
 use super::section::{self, Station};
 use super::trail::Trail;
-use crate::adapt::Failure as AnyFailure;
 use crate::curve::{Contact, Curve};
 use crate::design::{Design, RestBy};
 use crate::material::{Hyperelastic as _, Law};
-use crate::press::{CurveFailure, EndsBy, Limit, ModelError};
+use crate::membrane::adapt::Failure as AnyFailure;
+use crate::membrane::press::{CurveFailure, EndsBy, Limit, ModelError};
 use crate::solid::Failure;
 use core::f64::consts::PI;
 

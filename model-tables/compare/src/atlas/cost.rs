@@ -1,15 +1,15 @@
 //! What a state costs as the pre-stretch goes to 1, and as the mesh grows.
 
-use super::super::Refusal;
-use super::super::drawing::{
+use crate::campaign::scaling::PRINTED;
+use crate::methods::shooting::Shooting;
+use model_tables::design::{Design, RestBy};
+use model_tables::membrane::TensionField;
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::{FULL, ModelError, Press};
+use output::Refusal;
+use output::drawing::{
     Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, Panel, VERMILION, power,
 };
-use crate::adapt::Resolution;
-use crate::campaign::scaling::PRINTED;
-use crate::design::{Design, RestBy};
-use crate::membrane::TensionField;
-use crate::methods::shooting::Shooting;
-use crate::press::{FULL, ModelError, Press};
 use std::fmt::Write as _;
 use std::time::Instant;
 

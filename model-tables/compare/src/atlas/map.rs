@@ -1,7 +1,7 @@
 //! A map as SVG: a panel a method, a square a cell.
 
-use super::super::drawing::{Anchor, BLACK, Drawing, GREY, Marker, power};
 use super::survey::{Across, METHODS, ROWS, STRETCH, Survey, VERDICTS, Verdict};
+use output::drawing::{Anchor, BLACK, Drawing, GREY, Marker, power};
 
 const CELL: f64 = 20.0;
 const LEFT: f64 = 84.0;

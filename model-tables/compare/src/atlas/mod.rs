@@ -4,17 +4,18 @@ mod cost;
 mod map;
 mod survey;
 
-use super::output::write_all;
-use super::progress::Progress;
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal};
+use output::files::write_all;
+use output::progress::Progress;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::path::PathBuf;
 use survey::{MAPS, METHODS, Survey, VERDICTS};
 
 const COLUMNS: &[&str] = &["map", "method", "verdict", "cells"];
 
+/// What is asked.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// The folder to write to; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "target/atlas")]
     out: PathBuf,
@@ -23,7 +24,11 @@ pub(super) struct Arguments {
     stride: u32,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+/// Measures, writes the files, and gives a row a file.
+///
+/// # Errors
+/// [`Refusal`] where a design cannot be solved or a file not be written.
+pub fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let stride = arguments.stride as usize;
     let mut contents: Vec<(String, Vec<u8>)> = Vec::new();
     let mut rows = Rows::new(COLUMNS);

@@ -1,13 +1,13 @@
 //! What every method does over the cells of a map.
 
-use crate::adapt::Resolution;
-use crate::design::{Design, Membrane, RestBy};
-use crate::material::Law;
-use crate::material::preset::AGILUS30;
-use crate::membrane::TensionField;
 use crate::methods::bisection::{Bisection, PAPER};
 use crate::methods::shooting::Shooting;
-use crate::press::{FULL, Press};
+use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::material::Law;
+use model_tables::material::preset::AGILUS30;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::{FULL, Press};
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

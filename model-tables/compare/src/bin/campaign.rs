@@ -1,12 +1,12 @@
 //! Judges the states of random designs: `campaign [--designs N | --design N ...] [--seed S] [--csv FILE]`.
 
 use clap::Parser;
-use model_tables::campaign::draw::Case;
-use model_tables::campaign::judge::{Judged, Verdict};
-use model_tables::campaign::{self, Tally};
-use model_tables::designer;
+use compare::campaign::draw::Case;
+use compare::campaign::judge::{Judged, Verdict};
+use compare::campaign::{self, Tally};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
+use output::{Refusal, files};
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -115,7 +115,8 @@ fn main() -> ExitCode {
 /// Whether no state was wrong.
 fn run(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
     if let Some(file) = &arguments.csv {
-        designer::expect_whole(file)?;
+        files::clear_away_on_interrupt();
+        files::expect_room(file).map_err(|Refusal(reason)| reason)?;
     }
     let started = Instant::now();
     let chosen = |index: &u64| {
@@ -154,7 +155,7 @@ fn run(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
                 writer.write_record(row(case, judged))?;
             }
         }
-        designer::write_whole(file, writer.into_inner()?)?;
+        files::write_one(file, writer.into_inner()?).map_err(|Refusal(reason)| reason)?;
     }
     let tally = Tally::of(results.iter().flat_map(|(_, judged)| judged));
     println!(

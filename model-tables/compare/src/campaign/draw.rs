@@ -1,9 +1,9 @@
 //! Random designs, each from its own number, so that any one can be looked at alone.
 
-use crate::design::{Design, Membrane, RestBy};
-use crate::material::{Hyperelastic as _, Law};
-use crate::membrane::TensionField;
-use crate::random::Random;
+use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::material::{Hyperelastic as _, Law};
+use model_tables::membrane::TensionField;
+use model_tables::random::Random;
 
 /// Indentations a design is judged at.
 pub const INDENTATIONS: usize = 8;

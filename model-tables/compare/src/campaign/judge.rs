@@ -5,12 +5,12 @@
 //! collocation with other Gauss points, of order sixteen, on a finer mesh.
 
 use super::draw::{Case, INDENTATIONS};
-use crate::adapt::{Failure, Resolution};
-use crate::equilibrium::Outcome;
-use crate::material::Law;
-use crate::membrane::TensionField;
-use crate::press::{FULL, ModelError, Press};
-use crate::state::PressedState;
+use model_tables::material::Law;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::adapt::{Failure, Resolution};
+use model_tables::membrane::equilibrium::Outcome;
+use model_tables::membrane::press::{FULL, ModelError, Press};
+use model_tables::membrane::state::PressedState;
 
 /// What became of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 //! What a state of the printed fingertip costs with more and more elements, and what they gain.
 
-use crate::curve::Contact;
-use crate::design::{Design, Membrane, RestBy};
-use crate::press::ModelError;
-use crate::rung::choice::REFINED;
-use crate::solid::mesh::Elements;
-use crate::solid::press::Press;
+use model_tables::curve::Contact;
+use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::membrane::press::ModelError;
+use model_tables::model::choice::REFINED;
+use model_tables::solid::mesh::Elements;
+use model_tables::solid::press::Press;
 use std::time::Instant;
 
 /// The printed fingertip: outer semi-axes 9 and 7 mm, wall 1 mm, Agilus30, unstretched.
@@ -15,7 +15,7 @@ pub const PRINTED: Design = Design {
         axial_semi_axis: 7e-3,
         thickness: 1e-3,
     },
-    law: crate::material::preset::AGILUS30,
+    law: model_tables::material::preset::AGILUS30,
     rest: RestBy::Unstretched,
     compliance: 0.0,
 };

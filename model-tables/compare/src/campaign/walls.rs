@@ -1,15 +1,15 @@
 //! Random walls: every rung of the ladder against the refined solid, and what the rule of `auto` lets through.
 
-use crate::curve::Contact;
-use crate::design::{Design, Membrane, RestBy};
-use crate::material::Law;
-use crate::material::preset::{AGILUS30, SKIN};
 use crate::methods::light_contact::LightContact;
-use crate::press::ModelError;
-use crate::random::Random;
-use crate::rung::choice::{LADDER, PARTS, Wanted};
-use crate::rung::{Kind, Rung};
-use crate::solid::inflation::mid_surface;
+use model_tables::curve::Contact;
+use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::material::Law;
+use model_tables::material::preset::{AGILUS30, SKIN};
+use model_tables::membrane::press::ModelError;
+use model_tables::model::choice::{LADDER, PARTS, Wanted};
+use model_tables::model::{Fingertip, Kind};
+use model_tables::random::Random;
+use model_tables::solid::inflation::mid_surface;
 use std::time::Instant;
 
 /// Accuracies that the rule is asked for, relative.
@@ -133,7 +133,7 @@ impl Case {
     }
 
     fn solve(&self, kind: Kind, wanted: &Wanted) -> Evidence {
-        let rest = Rung::of(kind, &self.design);
+        let rest = Fingertip::of(kind, &self.design);
         let start = Instant::now();
         let contacts = rest.and_then(|mut rung| wanted.contacts(&mut rung));
         Evidence {

@@ -1,10 +1,10 @@
 //! Error of each model over the indentation: one panel a design.
 
-use super::super::drawing::{
+use super::Measured;
+use crate::methods::approximations::{Approximation, SAMPLES};
+use output::drawing::{
     Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, ORANGE, PURPLE, Panel, VERMILION, power, spread,
 };
-use super::Measured;
-use crate::methods::ladder::{Rung, SAMPLES};
 
 const PANEL: [f64; 2] = [360.0, 430.0];
 const LEFT: f64 = 78.0;
@@ -78,11 +78,11 @@ fn one(drawing: &mut Drawing, panel: &Panel, design: &Measured) {
             .collect();
         drawing.path(&points, color, 1.8);
         let Some(&[x, y]) = points.last() else { continue };
-        let words = match evidence.rung {
-            Rung::LightContact => "closed form".to_owned(),
-            Rung::FewStates(states) => format!("{states} states"),
-            Rung::Sweep => "membrane, swept".to_owned(),
-            Rung::Membrane => "membrane".to_owned(),
+        let words = match evidence.approximation {
+            Approximation::LightContact => "closed form".to_owned(),
+            Approximation::FewStates(states) => format!("{states} states"),
+            Approximation::Sweep => "membrane, swept".to_owned(),
+            Approximation::Membrane => "membrane".to_owned(),
         };
         let words = format!("{words}, {:.3} us", evidence.seconds * 1e6 / SAMPLES as f64);
         labels.push(([x, y], color, words));

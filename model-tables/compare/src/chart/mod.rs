@@ -4,12 +4,12 @@ mod ladder;
 mod speed;
 mod tables;
 
-use super::output::write_all;
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal};
-use crate::membrane::TensionField;
+use crate::methods::approximations::{APPROXIMATIONS, Evidence, SAMPLES, Yardstick};
 use crate::methods::contest::{self, Contestant, DESIGNS, Sweep};
-use crate::methods::ladder::{Evidence, RUNGS, SAMPLES, Yardstick};
+use model_tables::membrane::TensionField;
+use output::files::write_all;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -17,8 +17,9 @@ const COLUMNS: &[&str] = &["file", "size_bytes"];
 /// The ladder is measured from this part of the limit on, down to that of a sweep.
 const LADDER_FROM: f64 = 1e-5;
 
+/// What is asked.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// The designs: paper, finger, skin [default: all three]
     #[arg(value_parser = ["paper", "finger", "skin"])]
     designs: Vec<String>,
@@ -37,7 +38,11 @@ struct Measured {
     ladder: Vec<Evidence>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+/// Measures, writes the files, and gives a row a file.
+///
+/// # Errors
+/// [`Refusal`] where a design cannot be solved or a file not be written.
+pub fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let contents = if arguments.tables {
         tables::contents()?
     } else {
@@ -93,7 +98,9 @@ fn measure(contestant: &Contestant) -> Result<Measured, Refusal> {
     let range = [LADDER_FROM * deepest, deepest];
     let yardstick = Yardstick::new(&contestant.design, TensionField::Plain, range)
         .map_err(|error| refuse(error.to_string()))?;
-    let ladder = RUNGS.map(|rung| yardstick.measure(rung)).to_vec();
+    let ladder = APPROXIMATIONS
+        .map(|approximation| yardstick.measure(approximation))
+        .to_vec();
     Ok(Measured {
         sweep,
         results,
@@ -154,7 +161,7 @@ fn ladder_csv(measured: &[Measured]) -> String {
                     text,
                     "{},{},{:.6},{:.14},{error},{rise},{outcome}",
                     design.sweep.contestant.name,
-                    evidence.rung,
+                    evidence.approximation,
                     evidence.seconds * 1e6 / SAMPLES as f64,
                     sample.indentation * 1e3,
                 );

@@ -1,10 +1,10 @@
 //! Time a state against error of the force: one panel a design.
 
-use super::super::drawing::{
-    Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, Panel, VERMILION, power,
-};
 use super::Measured;
 use crate::methods::contest::{Method, Result, STAGES, STATES};
+use output::drawing::{
+    Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, Panel, VERMILION, power,
+};
 
 const PANEL: [f64; 2] = [400.0, 560.0];
 const LEFT: f64 = 78.0;

@@ -1,16 +1,16 @@
 //! `designer ladder`: the rungs over random walls, and what the rule of `auto` lets through.
 
-use super::drawing::{
-    Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, Panel, VERMILION, power,
-};
-use super::output::write_all;
-use super::progress::Progress;
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal};
 use crate::campaign::scaling;
 use crate::campaign::walls::{self, ASKED, Measured};
-use crate::design::RestBy;
-use crate::rung::choice::LADDER;
+use model_tables::design::RestBy;
+use model_tables::model::choice::LADDER;
+use output::drawing::{
+    Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, Panel, VERMILION, power,
+};
+use output::files::write_all;
+use output::progress::Progress;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -34,8 +34,9 @@ const MAPPED: [f64; 3] = [0.05, 0.02, 0.005];
 /// Between which heights unstretched walls stand on the axis of the pre-stretch, one above the other lest they hide each other.
 const UNSTRETCHED: [f64; 2] = [0.0024, 0.0065];
 
+/// What is asked.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Number of random walls
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     designs: u64,
@@ -44,7 +45,11 @@ pub(super) struct Arguments {
     out: PathBuf,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+/// Measures, writes the files, and gives a row a file.
+///
+/// # Errors
+/// [`Refusal`] where a design cannot be solved or a file not be written.
+pub fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let mut measured = Vec::new();
     let progress = Progress::new("random walls");
     // One after another: what is measured is time.

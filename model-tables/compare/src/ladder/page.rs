@@ -3,7 +3,7 @@
 use super::pre_stretch;
 use crate::campaign::scaling::{self, Cost};
 use crate::campaign::walls::{ASKED, Evidence, FROM, Measured};
-use crate::rung::choice::{LADDER, PARTS};
+use model_tables::model::choice::{LADDER, PARTS};
 use std::fmt::Write as _;
 
 /// Walls over the outer radius, and pole stretches less one, that the walls are sorted by: upper ends.
@@ -126,7 +126,7 @@ fn by_elements(text: &mut String, scaling: &[Cost]) {
     let _ = writeln!(
         text,
         "\n## By elements\n\nThe printed fingertip, 9 x 7 mm outside, wall 1 mm, unstretched, pressed in {} states {} mm apart, each from those before \
-         it, on one core (`cargo bench -p model-tables` times the same). *Error* is the largest of force and pressure against \
+         it, on one core (`cargo bench -p compare` times the same). *Error* is the largest of force and pressure against \
          the last row.\n\n| through x along | a state, ms | Newton iterations a state | largest error, % |\n|---|---|---|---|",
         scaling::STATES,
         1e3 * scaling::STEP
@@ -212,7 +212,7 @@ fn choices(text: &mut String, measured: &[&Measured]) {
          The cheapest rung that differs from the solid 2 x 60 by no more than what is allowed less that solid's own error (0.6 %; \
          1 % where the wall is thinner than 0.02 of the radius, or pressed deeper than 0.36 of the height), and otherwise the \
          cheapest that is near enough to the refined one. How many walls end on which rung, and the largest error let through, \
-         with the number of its wall (`model_tables::campaign::walls::draw`):\n\n\
+         with the number of its wall (`compare::campaign::walls::draw`):\n\n\
          | allowed, % |",
     );
     for kind in LADDER {

@@ -13,9 +13,9 @@
 use super::plain::{Met, Problem};
 use super::shooting::invert;
 use super::{Failure, Found, Unknown};
-use crate::design::Design;
-use crate::material::Hyperelastic;
 use core::f64::consts::{FRAC_PI_2, PI};
+use model_tables::design::Design;
+use model_tables::material::Hyperelastic;
 
 /// Radius, stretch, angle, height, volume.
 type State = [f64; 5];

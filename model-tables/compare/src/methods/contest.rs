@@ -8,12 +8,12 @@ use super::bisection::{Bisection, Fineness};
 use super::few_states::FewStates;
 use super::light_contact::LightContact;
 use super::shooting::Shooting;
-use crate::adapt::Resolution;
-use crate::design::{Design, Membrane, RestBy};
-use crate::material::Law;
-use crate::material::preset::{AGILUS30, SKIN};
-use crate::membrane::TensionField;
-use crate::press::{ModelError, Press};
+use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::material::Law;
+use model_tables::material::preset::{AGILUS30, SKIN};
+use model_tables::membrane::TensionField;
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::{ModelError, Press};
 use std::time::{Duration, Instant};
 
 /// States of a sweep.

@@ -7,10 +7,10 @@
 
 use super::Failure;
 use super::light_contact::LightContact;
-use crate::curve::Contact;
-use crate::design::Design;
-use crate::press::Press;
 use core::f64::consts::PI;
+use model_tables::curve::Contact;
+use model_tables::design::Design;
+use model_tables::membrane::press::Press;
 
 /// States at most.
 pub const MOST: usize = 16;
@@ -39,7 +39,7 @@ impl FewStates {
     /// [`Failure`].
     pub fn new<const S: usize>(
         design: &Design,
-        press: &mut Press<crate::material::Law, S>,
+        press: &mut Press<model_tables::material::Law, S>,
         deepest: f64,
         states: usize,
     ) -> Result<Self, Failure> {

@@ -17,10 +17,10 @@
 use super::Failure;
 use super::plain::{HEIGHT, Problem, RADIUS, STATE, VOLUME};
 use super::shooting::{Rest, inflate};
-use crate::curve::Contact;
-use crate::design::Design;
-use crate::material::Hyperelastic;
 use core::f64::consts::{E, PI};
+use model_tables::curve::Contact;
+use model_tables::design::Design;
+use model_tables::material::Hyperelastic;
 
 /// Relative tolerance of the rest state.
 const TOLERANCE: f64 = 1e-11;

@@ -1,23 +1,23 @@
-//! Methods kept for comparison, and the ladder of models below the full membrane.
+//! Methods kept for comparison with the membrane model.
 //!
-//! What a designer could reach for instead of [`crate::press`], each in one file with its source and its weakness:
-//! the source paper's nested [`bisection`], [`shooting`] with Newton's method, the closed form for
-//! [`light_contact`], and curves through a [`few_states`]. [`ladder`] measures the cheap ones against the full
-//! membrane and picks the cheapest that is accurate enough; [`contest`] times all of them in one run.
+//! What a designer could reach for instead of [`press`](model_tables::membrane::press), each in one file with its source and
+//! its weakness: the source paper's nested [`bisection`], [`shooting`] with Newton's method, the closed form for
+//! [`light_contact`], and curves through a [`few_states`]. [`approximations`] measures the cheap ones against the full
+//! membrane; [`contest`] times all of them in one run.
 //!
 //! Bisection and shooting integrate the plain membrane's equations as [`plain`] writes them, independently of the
 //! production method: a state found by both is right.
 
+pub mod approximations;
 pub mod bisection;
 pub mod contest;
 pub mod dop853;
 pub mod few_states;
-pub mod ladder;
 pub mod light_contact;
 pub mod plain;
 pub mod shooting;
 
-use crate::press::ModelError;
+use model_tables::membrane::press::ModelError;
 use std::fmt;
 
 /// A pressed state, as the methods for comparison find it; SI units.

@@ -13,11 +13,11 @@
 //! Under the plate `q = 0` and `N = p` keeps its sign. Beside the state run its variations by three parameters.
 
 use super::Failure;
-use crate::design::{Design, RestBy};
-use crate::material::{Derivatives, Hyperelastic, Law, Scaled};
-use crate::stability;
-use crate::state::Scale;
 use core::f64::consts::PI;
+use model_tables::design::{Design, RestBy};
+use model_tables::material::stability;
+use model_tables::material::{Derivatives, Hyperelastic, Law, Scaled};
+use model_tables::membrane::state::Scale;
 
 /// Components of the state in the free zone: radius, `p`, height, volume.
 pub const STATE: usize = 4;
@@ -268,7 +268,7 @@ impl Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::Membrane;
+    use model_tables::design::Membrane;
 
     fn problem() -> Problem {
         Problem::new(&Design {

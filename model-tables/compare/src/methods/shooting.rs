@@ -8,8 +8,8 @@
 use super::dop853::{Tolerance, integrate};
 use super::plain::{Free, HEIGHT, Load, Memory, Met, Problem, RADIUS, STATE, THRUST, VARIED, VOLUME};
 use super::{Failure, Found};
-use crate::design::Design;
 use core::f64::consts::{FRAC_PI_2, PI};
+use model_tables::design::Design;
 
 /// Where integration starts, over the fourth root of the tolerance: the series there errs by its fourth power.
 const START: f64 = 0.3;
@@ -115,7 +115,7 @@ impl Rest {
     /// [`Failure::BlewUp`], [`Failure::Stalled`].
     pub fn new(problem: &Problem, relative: f64) -> Result<Self, Failure> {
         let stretch = problem.pole_stretch;
-        let d = crate::material::Hyperelastic::derivatives(&problem.law, stretch, stretch);
+        let d = model_tables::material::Hyperelastic::derivatives(&problem.law, stretch, stretch);
         let mut pressure = 2.0 * d.w1 / (stretch * stretch) * problem.aspect;
         let mut moved = f64::INFINITY;
         for _ in 0..MOST_STEPS {
@@ -254,7 +254,7 @@ impl Shooting {
     /// The rest state's pole and pressure, and the contact of first touch (`H = (P r^2 / 2 T) ln(edge / r)`).
     fn first_contact(&self, indentation: f64) -> Unknowns {
         let stretch = self.problem.pole_stretch;
-        let d = crate::material::Hyperelastic::derivatives(&self.problem.law, stretch, stretch);
+        let d = model_tables::material::Hyperelastic::derivatives(&self.problem.law, stretch, stretch);
         let tension = d.w1 / stretch;
         let mut radius = 0.1 * self.rest.edge;
         for _ in 0..30 {

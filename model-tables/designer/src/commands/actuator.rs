@@ -1,8 +1,9 @@
 //! `designer actuator`: the feedback membrane.
 
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, finite, read};
-use crate::actuator::{Actuator, FREE_DIAMETER};
+use super::{finite, read};
+use model_tables::actuator::{Actuator, FREE_DIAMETER};
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &[

@@ -1,10 +1,10 @@
 //! What every subcommand says of a design's material and calibration.
 
 use super::warn;
-use crate::design_file::{Calibration, DesignFile};
-use crate::material::preset::Preset;
-use crate::press::ModelError;
-use crate::rung::Rung;
+use model_tables::design_file::{Calibration, DesignFile};
+use model_tables::material::preset::Preset;
+use model_tables::membrane::press::ModelError;
+use model_tables::model::Fingertip;
 use std::path::Path;
 
 /// The depth to press to, metres, for what the bench's stage reads, millimetres: from first touch on.
@@ -62,18 +62,18 @@ pub(super) fn about(preset: &Preset) -> String {
 /// Points of a membrane's meridian at which its strain is looked at.
 const POINTS: usize = 61;
 /// Warns when the state at `depth` metres (0 is rest) leaves the range of strain that the material was fitted in.
-pub(super) fn warn_of_strain(file: &Path, design: &DesignFile, rung: &mut Rung, depth: f64) {
+pub(super) fn warn_of_strain(file: &Path, design: &DesignFile, rung: &mut Fingertip, depth: f64) {
     if let Some(reason) = beyond_strain(design, rung, depth) {
         warn(file, &reason);
     }
 }
 
 /// What to say when the state at `depth` metres (0 is rest) leaves the range of strain that the material was fitted in.
-pub(super) fn beyond_strain(design: &DesignFile, rung: &mut Rung, depth: f64) -> Option<String> {
+pub(super) fn beyond_strain(design: &DesignFile, rung: &mut Fingertip, depth: f64) -> Option<String> {
     let preset = Preset::of(&design.material)?;
     let most = preset.largest_invariant()?;
     let reached = match rung {
-        Rung::Membrane(press) => press
+        Fingertip::Membrane(press) => press
             .profile(depth, POINTS)
             .ok()?
             .map(|point| {
@@ -81,7 +81,7 @@ pub(super) fn beyond_strain(design: &DesignFile, rung: &mut Rung, depth: f64) ->
                 a + b + 1.0 / (a * b) - 3.0
             })
             .fold(0.0, f64::max),
-        Rung::Solid(press) => press.largest_invariant(depth).ok()? - 3.0,
+        Fingertip::Solid(press) => press.largest_invariant(depth).ok()? - 3.0,
     };
     (reached > most).then(|| {
         format!(

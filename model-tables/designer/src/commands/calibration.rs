@@ -1,15 +1,17 @@
 //! `designer calibration`: what a calibration gains, on stand-ins for a device, and the page about it.
 
+use super::fit as command;
 use super::published::paper::{FORCES, INDENTATIONS};
 use super::published::solid::SOLID;
-use super::rows::{Cell, Rows, significant};
-use super::{Answer, Refusal, fit as command, output};
-use crate::design_file::DesignFile;
 use crate::fit::data::{Choice, Data};
 use crate::fit::parameter::Parameter;
 use crate::fit::{self, Fit, Quantity};
 use crate::size;
 use crate::size::target::Target;
+use model_tables::design_file::DesignFile;
+use output::files;
+use output::rows::{Cell, Rows, significant};
+use output::{Answer, Refusal};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -25,11 +27,11 @@ const COLUMNS: &[&str] = &[
 const STAND_IN: &str = include_str!("stand-in.toml");
 const PAPER: &str = include_str!(concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/designs/paper-prestretched.toml"
+    "/../designs/paper-prestretched.toml"
 ));
 const HUMAN: &str = include_str!(concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/targets/human-fingertip.toml"
+    "/../targets/human-fingertip.toml"
 ));
 
 /// The stand-in as it is drawn, solved as a solid.
@@ -55,7 +57,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     };
     let dome = dome_data();
     let case = |name: &'static str, text: &str, data: &Data, chosen: &[Parameter]| -> Result<Case, Refusal> {
-        let file = DesignFile::parse(text, name)?;
+        let file = DesignFile::parse(text, name).map_err(Refusal::of)?;
         let fit = fit::fit(&file, data, chosen).map_err(|error| Refusal(format!("{name}: {error}")))?;
         Ok(Case { name, fit })
     };
@@ -86,9 +88,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     ];
     let mut notes = Vec::new();
     if let Some(out) = &arguments.out {
-        let target = Target::parse(HUMAN, "human-fingertip.toml")?;
+        let target = Target::parse(HUMAN, "human-fingertip.toml").map_err(Refusal::of)?;
         let page = page(&domes, &papers, &paper_data, &target);
-        output::write_one(out, page.into_bytes())?;
+        files::write_one(out, page.into_bytes())?;
         notes.push(format!("wrote {}", out.display()));
     }
     let mut rows = Rows::new(COLUMNS);
@@ -227,7 +229,7 @@ fn page(domes: &[Case; 3], papers: &[Case; 3], paper_data: &Data, target: &Targe
 const SURENESS: &str = "## How sure the standard errors are, and how long it takes\n\n\
     Where the model is right and noise is all there is, they hold. Over 200 synthetic benches (25 rows, 1 % noise, the usual \
     parameters) the truth lies within one standard error of the modulus in 68 %, of the stretch in 64 %, of the compliance in 70 % \
-    of them (nominal are 68 %, and 7 % either way is chance), and within two in 95, 95 and 97 % (nominal 95 %). `FIT_REPEATS=200 cargo test --release -p model-tables --features cli \
+    of them (nominal are 68 %, and 7 % either way is chance), and within two in 95, 95 and 97 % (nominal 95 %). `FIT_REPEATS=200 cargo test --release -p designer \
     --test fit standard_errors -- --nocapture` repeats that. Such a fit takes half a second of one core, and the search below 7 s; \
     both commands print how long they took.\n\n";
 
@@ -295,7 +297,7 @@ fn size_section(target: &Target) -> String {
         told.push(sized.material.name);
         let membrane = &sized.design.membrane;
         let digits = |value: f64| significant(value, 2);
-        let crate::design::RestBy::PoleStretch(stretch) = sized.design.rest else {
+        let model_tables::design::RestBy::PoleStretch(stretch) = sized.design.rest else {
             continue;
         };
         let _ = writeln!(

@@ -1,9 +1,10 @@
 //! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
 
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, finite};
-use crate::generate::{GenerateError, from_design_file};
-use crate::units::PressureRise;
+use super::finite;
+use model_tables::generate::{GenerateError, from_design_file};
+use model_tables::units::PressureRise;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::path::{Path, PathBuf};
 
 const COLUMNS: &[&str] = &["pressure_rise_pa", "force_n", "indentation_mm", "status"];
@@ -21,7 +22,7 @@ pub(super) struct Arguments {
 /// A refusal of the generator; errors of the file name it themselves.
 pub(super) fn refusal(file: &Path, error: GenerateError) -> Refusal {
     match error {
-        GenerateError::File(error) => error.into(),
+        GenerateError::File(error) => Refusal::of(error),
         error => Refusal::about(file, &error),
     }
 }

@@ -1,9 +1,10 @@
 //! `designer materials`: the materials that a design can name.
 
-use super::rows::{Cell, Rows};
-use super::{Answer, bench};
-use crate::material::Law;
-use crate::material::preset::PRESETS;
+use super::bench;
+use model_tables::material::Law;
+use model_tables::material::preset::PRESETS;
+use output::Answer;
+use output::rows::{Cell, Rows};
 
 const COLUMNS: &[&str] = &[
     "preset",

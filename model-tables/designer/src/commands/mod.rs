@@ -4,44 +4,29 @@
 //! was asked, the limit or the key, and the remedy; nothing on standard output, nothing half-written left behind.
 
 mod actuator;
-#[path = "../../../compare/src/atlas/mod.rs"]
-mod atlas;
 mod bench;
 mod calibration;
-#[path = "../../../compare/src/chart/mod.rs"]
-mod chart;
-#[path = "../../../output/src/drawing.rs"]
-mod drawing;
 mod estimate;
 mod fit;
-#[path = "../../../compare/src/ladder/mod.rs"]
-mod ladder;
-#[path = "../../../output/src/linear.rs"]
-mod linear;
 mod materials;
 mod model;
 mod monitor;
-#[path = "../../../output/src/files.rs"]
-mod output;
 mod profile;
-#[path = "../../../output/src/progress.rs"]
-mod progress;
 mod published;
 mod report;
 mod rest;
-#[path = "../../../output/src/rows.rs"]
-mod rows;
 mod size;
 mod solve;
 mod table;
 
-use crate::design_file::{DesignFile, DesignFileError};
-use crate::membrane::TensionField;
-use crate::stability::Margin;
 use clap::builder::PossibleValue;
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
-use rows::{Format, Rows};
+use model_tables::design_file::DesignFile;
+use model_tables::material::stability::Margin;
+use model_tables::membrane::TensionField;
+use output::rows::Format;
+use output::{Answer, Refusal, files};
 use std::fmt::Display;
 use std::io::{IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
@@ -86,13 +71,13 @@ enum Command {
     Report(report::Arguments),
     /// Speed against accuracy of every method, and the ladder of models: SVG and CSV
     #[command(after_help = "Example:\n  cargo designer chart paper --out target/chart")]
-    Chart(chart::Arguments),
+    Chart(compare::chart::Arguments),
     /// Where each method answers, refuses or is silently wrong, over designs; and what a state costs
     #[command(after_help = "Example:\n  cargo designer atlas --stride 4 --out target/atlas")]
-    Atlas(atlas::Arguments),
+    Atlas(compare::atlas::Arguments),
     /// The models over random walls: error against time, and what `model.kind = "auto"` takes: SVG and CSV
     #[command(after_help = "Example:\n  cargo designer ladder --designs 50 --out target/ladder")]
-    Ladder(ladder::Arguments),
+    Ladder(compare::ladder::Arguments),
     /// What the chip would say at pressure rises, bit for bit
     #[command(
         after_help = "Example:\n  cargo designer estimate model-tables/designs/index-fingertip.toml --pressure-rise-pa 642,2571"
@@ -147,30 +132,6 @@ impl From<Field> for TensionField {
     }
 }
 
-/// What a subcommand gives.
-struct Answer {
-    rows: Rows,
-    /// Remarks for a person, one line each, on standard error.
-    notes: Vec<String>,
-}
-
-/// One line that says what is wrong and what to do.
-struct Refusal(String);
-
-impl Refusal {
-    /// About a file.
-    fn about(file: &Path, reason: &dyn Display) -> Self {
-        Self(format!("{}: {reason}", file.display()))
-    }
-}
-
-impl From<DesignFileError> for Refusal {
-    fn from(error: DesignFileError) -> Self {
-        // It names the file itself.
-        Self(error.to_string())
-    }
-}
-
 /// Reads the arguments, runs the subcommand, prints its answer.
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -184,14 +145,9 @@ pub fn main() -> ExitCode {
     };
     if let Command::Monitor(monitor) = &arguments.command {
         let format = arguments.format.as_ref().and_then(ValueEnum::to_possible_value);
-        return match monitor::run(monitor, format.as_ref().map(PossibleValue::get_name)) {
-            Ok(status) if status.success() => ExitCode::SUCCESS,
-            // It has said why.
-            Ok(_) => ExitCode::FAILURE,
-            Err(Refusal(reason)) => refuse(&reason),
-        };
+        return monitor::run(monitor, format.as_ref().map(PossibleValue::get_name));
     }
-    output::clear_away_on_interrupt();
+    files::clear_away_on_interrupt();
     let format = arguments.format.unwrap_or(if std::io::stdout().is_terminal() {
         Format::Table
     } else {
@@ -216,9 +172,9 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::Profile(arguments) => profile::run(arguments),
         Command::Table(arguments) => table::run(arguments),
         Command::Report(arguments) => report::run(arguments),
-        Command::Chart(arguments) => chart::run(arguments),
-        Command::Atlas(arguments) => atlas::run(arguments),
-        Command::Ladder(arguments) => ladder::run(arguments),
+        Command::Chart(arguments) => compare::chart::run(arguments),
+        Command::Atlas(arguments) => compare::atlas::run(arguments),
+        Command::Ladder(arguments) => compare::ladder::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),
         Command::Fit(arguments) => fit::run(arguments),
@@ -232,23 +188,6 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
     }?;
     print(&rows.print(format).map_err(Refusal)?)?;
     Ok(notes)
-}
-
-/// Writes a file whole or not at all, for the other commands of this crate.
-///
-/// # Errors
-/// The reason, in one line.
-pub fn write_whole(path: &Path, content: Vec<u8>) -> Result<(), String> {
-    output::write_one(path, content).map_err(|Refusal(reason)| reason)
-}
-
-/// Has an interrupt leave nothing half-written, and refuses a file that could not be written.
-///
-/// # Errors
-/// The reason, in one line.
-pub fn expect_whole(path: &Path) -> Result<(), String> {
-    output::clear_away_on_interrupt();
-    output::expect_room(path).map_err(|Refusal(reason)| reason)
 }
 
 /// Prints a shell's completions; they are no rows.
@@ -321,7 +260,7 @@ fn refuse_plain(file: &Path, field: Field) -> Result<(), Refusal> {
 }
 
 fn read(design: &Path) -> Result<DesignFile, Refusal> {
-    Ok(DesignFile::read(design)?)
+    DesignFile::read(design).map_err(Refusal::of)
 }
 
 /// A finite number; `inf` and `nan` are words that a float would take.

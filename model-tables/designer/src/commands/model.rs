@@ -1,12 +1,12 @@
 //! Which model answers for a design.
 
-use super::Refusal;
-use crate::design::{Design, Membrane};
-use crate::design_file::{DesignFile, ModelSection};
-use crate::rung::Kind;
-use crate::rung::choice::{self, Wanted};
-use crate::solid::inflation::mid_surface;
-use crate::solid::mesh::Elements;
+use model_tables::design::{Design, Membrane};
+use model_tables::design_file::{DesignFile, ModelSection};
+use model_tables::model::Kind;
+use model_tables::model::choice::{self, Wanted};
+use model_tables::solid::inflation::mid_surface;
+use model_tables::solid::mesh::Elements;
+use output::Refusal;
 use std::path::Path;
 
 /// A model, and the design as it wants it.

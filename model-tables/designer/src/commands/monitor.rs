@@ -1,12 +1,7 @@
-//! `designer monitor`: hands over to the program of that name, which knows the board's telemetry and this crate does not.
+//! `designer monitor`: hands its arguments to the package of that name, which knows the board's telemetry.
 
-use super::Refusal;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus};
-
-/// The workspace that this was built from.
-const WORKSPACE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../Cargo.toml");
+use std::process::ExitCode;
 
 #[derive(Debug, clap::Args)]
 #[command(disable_help_flag = true)]
@@ -16,45 +11,12 @@ pub(super) struct Arguments {
     arguments: Vec<OsString>,
 }
 
-/// Runs it in the foreground.
-pub(super) fn run(arguments: &Arguments, format: Option<&str>) -> Result<ExitStatus, Refusal> {
-    let mut command = program()?;
-    command.args(&arguments.arguments);
+/// Runs it, `format` being the option of all subcommands.
+pub(super) fn run(arguments: &Arguments, format: Option<&str>) -> ExitCode {
+    let mut all = vec![OsString::from("designer monitor")];
+    all.extend(arguments.arguments.iter().cloned());
     if let Some(format) = format {
-        command.args(["--format", format]);
+        all.extend(["--format".into(), format.into()]);
     }
-    command.status().map_err(|error| {
-        Refusal(format!(
-            "the monitor cannot be run: {error}; build it with `cargo build --release -p monitor`"
-        ))
-    })
-}
-
-/// Under cargo, what cargo builds; otherwise the program beside this one.
-fn program() -> Result<Command, Refusal> {
-    if let Some(cargo) = std::env::var_os("CARGO").filter(|_| Path::new(WORKSPACE).is_file()) {
-        let mut command = Command::new(cargo);
-        command.args([
-            "run",
-            "--quiet",
-            "--release",
-            "--package",
-            "monitor",
-            "--manifest-path",
-            WORKSPACE,
-            "--",
-        ]);
-        return Ok(command);
-    }
-    let beside: Option<PathBuf> = std::env::current_exe()
-        .ok()
-        .map(|path| path.with_file_name(format!("monitor{}", std::env::consts::EXE_SUFFIX)))
-        .filter(|path| path.is_file());
-    beside.map(Command::new).ok_or_else(|| {
-        Refusal(
-            "the program `monitor` is not beside this one: run `cargo designer monitor`, or build it with `cargo build --release -p \
-             monitor`"
-                .to_owned(),
-        )
-    })
+    monitor::command::main(all)
 }

@@ -1,14 +1,15 @@
 //! `designer profile`: the meridian of one state.
 
 use super::model::{self, Model};
-use super::rows::{Cell, Rows};
-use super::{Answer, Field, Refusal, bench, finite, read, refuse_plain};
-use crate::design_file::DesignFile;
-use crate::membrane::Zone;
-use crate::press::{ModelError, Press};
-use crate::rung::Kind;
-use crate::solid;
-use crate::solid::mesh::Elements;
+use super::{Field, bench, finite, read, refuse_plain};
+use model_tables::design_file::DesignFile;
+use model_tables::membrane::Zone;
+use model_tables::membrane::press::{ModelError, Press};
+use model_tables::model::Kind;
+use model_tables::solid;
+use model_tables::solid::mesh::Elements;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &[

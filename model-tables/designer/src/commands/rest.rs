@@ -1,15 +1,16 @@
 //! `designer rest`: the rest state and the limits.
 
 use super::model::{self, Model};
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, bench, read, warn_of_instability};
-use crate::design_file::DesignFile;
-use crate::membrane::TensionField;
-use crate::press::{ModelError, Press};
-use crate::rest::Branch;
-use crate::rung::{Kind, Rung};
-use crate::solid;
-use crate::solid::mesh::Elements;
+use super::{bench, read, warn_of_instability};
+use model_tables::design_file::DesignFile;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::rest::Branch;
+use model_tables::model::{Fingertip, Kind};
+use model_tables::solid;
+use model_tables::solid::mesh::Elements;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::path::Path;
 
 const COLUMNS: &[&str] = &[
@@ -56,7 +57,7 @@ pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
             "two rest states: this is the more stretched, the other has a pole stretch of {other:.6}"
         )],
     };
-    bench::warn_of_strain(file, &design_file, &mut Rung::Membrane(Box::new(press)), 0.0);
+    bench::warn_of_strain(file, &design_file, &mut Fingertip::Membrane(Box::new(press)), 0.0);
     notes.extend(model.note);
     notes.extend(bench::caution(&design_file));
     Ok(Answer { rows, notes })
@@ -84,7 +85,7 @@ fn solid(
         Cell::Number(calibration.indentation_read(limit.indentation) * 1e3),
         Cell::word(limit.ends_by.word()),
     ]);
-    bench::warn_of_strain(file, design_file, &mut Rung::Solid(Box::new(press)), 0.0);
+    bench::warn_of_strain(file, design_file, &mut Fingertip::Solid(Box::new(press)), 0.0);
     Ok(Answer {
         rows,
         notes: model

@@ -1,15 +1,16 @@
 //! `designer solve`: pressed states.
 
 use super::model::{self, Model};
-use super::rows::{Cell, Rows};
-use super::{Answer, Field, Refusal, bench, finite, read, refuse_plain, warn, warn_of_instability};
-use crate::design_file::DesignFile;
-use crate::press::{ModelError, Press};
-use crate::rung::{Kind, Rung};
-use crate::solid;
-use crate::solid::mesh::Elements;
-use crate::stability::Margin;
-use crate::state::PressedState;
+use super::{Field, bench, finite, read, refuse_plain, warn, warn_of_instability};
+use model_tables::design_file::DesignFile;
+use model_tables::material::stability::Margin;
+use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::state::PressedState;
+use model_tables::model::{Fingertip, Kind};
+use model_tables::solid;
+use model_tables::solid::mesh::Elements;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &[
@@ -75,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     if let Some((indentation, margin)) = worst {
         warn_of_instability(file, &format!("at indentation {indentation} mm"), margin);
     }
-    let mut rung = Rung::Membrane(Box::new(press));
+    let mut rung = Fingertip::Membrane(Box::new(press));
     bench::warn_of_strain(file, &design_file, &mut rung, deepest);
     let mut rows = Rows::new(COLUMNS);
     for (state, &asked) in states.iter().flatten().zip(&arguments.indentation_mm) {
@@ -129,7 +130,7 @@ fn solid(
             Cell::Empty,
         ]);
     }
-    let mut rung = Rung::Solid(Box::new(press));
+    let mut rung = Fingertip::Solid(Box::new(press));
     bench::warn_of_strain(&arguments.design, design_file, &mut rung, deepest);
     Ok(Answer {
         rows,

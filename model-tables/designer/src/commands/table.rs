@@ -1,10 +1,10 @@
 //! `designer table`: writes the tables of a design.
 
 use super::estimate::refusal;
-use super::output::write_all;
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal};
-use crate::generate::from_design_file;
+use model_tables::generate::from_design_file;
+use output::files::write_all;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::path::PathBuf;
 use std::time::Instant;
 

@@ -6,7 +6,7 @@ use super::model::{Model, Quantity, Target};
 use super::parameter::Values;
 use super::robust;
 use super::solve::{Task, Weighting, index};
-use crate::design_file::DesignFile;
+use model_tables::design_file::DesignFile;
 use rayon::prelude::*;
 
 /// How far predictions are from measurements, in their unit.

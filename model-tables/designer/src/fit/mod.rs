@@ -21,13 +21,13 @@ mod solve;
 pub mod spline;
 mod widening;
 
-use crate::design::RestBy;
-use crate::design_file::DesignFile;
-use crate::membrane::TensionField;
-use crate::press::{ModelError, Press, SWEEP};
 use check::{Hysteresis, Misfit, Validation};
 use data::Data;
 use model::{Kind, Model, Target};
+use model_tables::design::RestBy;
+use model_tables::design_file::DesignFile;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::press::{ModelError, Press, SWEEP};
 use nalgebra::DMatrix;
 use parameter::{Parameter, Units, Values};
 use search::Found;

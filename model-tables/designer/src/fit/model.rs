@@ -5,17 +5,17 @@
 
 use super::data::{Data, Row};
 use super::parameter::{Parameter, Values};
-use crate::adapt::Resolution;
-use crate::curve::{Contact, Curve};
-use crate::design::{Design, RestBy};
-use crate::design_file::{DesignFile, ModelSection};
-use crate::material::Law;
-use crate::membrane::TensionField;
-use crate::press::{ModelError, Press};
-use crate::rung::{self, choice};
-use crate::solid;
-use crate::solid::inflation::mid_surface;
-use crate::solid::mesh::Elements;
+use model_tables::curve::{Contact, Curve};
+use model_tables::design::{Design, RestBy};
+use model_tables::design_file::{DesignFile, ModelSection};
+use model_tables::material::Law;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::{ModelError, Press};
+use model_tables::model::{self, choice};
+use model_tables::solid;
+use model_tables::solid::inflation::mid_surface;
+use model_tables::solid::mesh::Elements;
 use std::cell::RefCell;
 use std::fmt;
 use std::rc::Rc;
@@ -140,7 +140,7 @@ pub(super) enum Kind {
     /// A membrane of the design's dimensions: what it does goes with its wall.
     Membrane,
     /// A model of an outer surface and a wall: the wall is part of the shape.
-    Wall(rung::Kind),
+    Wall(model::Kind),
 }
 
 impl Kind {
@@ -151,7 +151,7 @@ impl Kind {
     pub(super) fn of(file: &DesignFile) -> Result<Self, ModelError> {
         Ok(match file.model {
             ModelSection::Membrane => Self::Membrane,
-            ModelSection::Solid { through, along } => Self::Wall(rung::Kind::Solid(Elements {
+            ModelSection::Solid { through, along } => Self::Wall(model::Kind::Solid(Elements {
                 through: through as usize,
                 along: along as usize,
             })),
@@ -161,7 +161,7 @@ impl Kind {
 
     /// Whether a press is cheap enough to start a fit from many places.
     pub(super) fn is_cheap(self) -> bool {
-        matches!(self, Self::Membrane | Self::Wall(rung::Kind::Membrane))
+        matches!(self, Self::Membrane | Self::Wall(model::Kind::Membrane))
     }
 }
 
@@ -179,11 +179,11 @@ impl Ready {
         };
         match kind {
             Kind::Membrane => membrane(design),
-            Kind::Wall(rung::Kind::Membrane) => membrane(&Design {
+            Kind::Wall(model::Kind::Membrane) => membrane(&Design {
                 membrane: mid_surface(&design.membrane),
                 ..*design
             }),
-            Kind::Wall(rung::Kind::Solid(elements)) => {
+            Kind::Wall(model::Kind::Solid(elements)) => {
                 solid::press::Press::new(design, elements).map(|press| Self::Solid(Box::new(press)))
             }
         }
@@ -222,7 +222,7 @@ impl Model {
     /// Ready to predict the data; `free` parameters will be changed.
     pub(super) fn new(kind: Kind, file: &DesignFile, data: &Data, free: &[Parameter]) -> Self {
         let mut nominal = file.clone();
-        nominal.calibration = crate::design_file::Calibration::default();
+        nominal.calibration = model_tables::design_file::Calibration::default();
         let design = nominal.design();
         let largest = |of: fn(&Row) -> Option<f64>| data.rows.iter().filter_map(of).fold(0.0, f64::max);
         let deepest = largest(|row| row.indentation);

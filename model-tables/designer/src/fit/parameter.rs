@@ -1,6 +1,6 @@
 //! What a fit may change, and the scale on which it does.
 
-use crate::design_file::{Calibration, DesignFile, RestSection};
+use model_tables::design_file::{Calibration, DesignFile, RestSection};
 use std::fmt;
 
 /// A quantity that a fit may change, in the order in which it is kept when the data cannot tell two apart.

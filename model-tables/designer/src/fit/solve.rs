@@ -6,8 +6,8 @@ use super::model::{Model, Quantity, Target};
 use super::noise::{Noise, ROUNDING};
 use super::parameter::{Parameter, Units, Values};
 use super::robust;
-use crate::press::ModelError;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use model_tables::membrane::press::ModelError;
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 

@@ -6,7 +6,7 @@
 //! scatter of the estimates over the standard errors that the formula gave them.
 
 use super::noise::{Noise, ROUNDING};
-use crate::random::Random;
+use model_tables::random::Random;
 use nalgebra::{DMatrix, DVector};
 
 /// Simulated benches: the scatter is known to 5 %.

@@ -3,12 +3,12 @@
 
 use super::target::Target;
 use super::{MESH, Start, THICKEST, invariant, root_mean_square};
-use crate::design::Design;
-use crate::material::Law;
-use crate::material::preset::Preset;
-use crate::membrane::TensionField;
-use crate::press::Press;
-use crate::state::Wrinkling;
+use model_tables::design::Design;
+use model_tables::material::Law;
+use model_tables::material::preset::Preset;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::press::Press;
+use model_tables::membrane::state::Wrinkling;
 
 /// Aspects, stretches and sizes of the search.
 const GRID: [usize; 3] = [7, 8, 24];

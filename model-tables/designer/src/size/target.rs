@@ -1,8 +1,8 @@
 //! The target file of a sizing (TOML).
 
-use crate::design_file::section::{Bounds, Fault, Section, line_at};
-use crate::design_file::{DesignFileError, Problem};
-use crate::material::preset::{PRESETS, Preset};
+use model_tables::design_file::section::{Bounds, Fault, Section, line_at};
+use model_tables::design_file::{DesignFileError, Problem};
+use model_tables::material::preset::{PRESETS, Preset};
 use std::path::Path;
 use toml::de::DeTable;
 
@@ -154,7 +154,7 @@ mod tests {
 
     const HUMAN: &str = include_str!(concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/targets/human-fingertip.toml"
+        "/../targets/human-fingertip.toml"
     ));
 
     #[test]

@@ -6,8 +6,8 @@ use crate::curve::{Contact, Curve};
 use crate::design_file::{
     DataCurve, DesignFile, DesignFileError, Supply, TransducerKindSection, TransducerSection, Transfer,
 };
-use crate::press::{CurveFailure, ModelError};
-use crate::rung::Rung;
+use crate::membrane::press::{CurveFailure, ModelError};
+use crate::model::Fingertip;
 use sha2::{Digest as _, Sha256};
 use std::fmt;
 use std::path::Path;
@@ -31,7 +31,7 @@ pub struct Solved {
     /// The end that the tables cover.
     pub end: Contact,
     /// The model that solved it; nothing where the curve is of data.
-    pub rung: Option<Rung>,
+    pub rung: Option<Fingertip>,
 }
 
 /// Tables of a design, with everything that is written beside them.
@@ -207,7 +207,7 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         let end = curve.end();
         (data.rest_pressure_kpa * 1e3, curve, end, None)
     } else {
-        let mut rung = Rung::for_curve(design).map_err(GenerateError::Model)?;
+        let mut rung = Fingertip::for_curve(design).map_err(GenerateError::Model)?;
         let (rest_pressure, curve, end) = pressed(&mut rung, design, &transducer, indentation)?;
         (rest_pressure, curve, end, Some(rung))
     };
@@ -229,15 +229,15 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
 /// Solves the design again on a finer mesh at some indentations.
 fn convergence(
     design: &DesignFile,
-    rung: &Rung,
+    rung: &Fingertip,
     curve: &Curve,
     end: Contact,
     from: f64,
 ) -> Option<Convergence> {
     let (mut press, mesh) = rung.finer(design).ok()?;
     let checked = match rung {
-        Rung::Membrane(_) => CHECKED,
-        Rung::Solid(_) => CHECKED_SOLID,
+        Fingertip::Membrane(_) => CHECKED,
+        Fingertip::Solid(_) => CHECKED_SOLID,
     };
     let gain = design.calibration.pressure_gain;
     let mut found = Convergence {
@@ -268,7 +268,7 @@ fn convergence(
 /// What the transducer reads at rest, and the curve of the model as it reads it with the end of the press: its own zero takes
 /// the offset away.
 fn pressed(
-    press: &mut Rung,
+    press: &mut Fingertip,
     design: &DesignFile,
     transducer: &TransducerSection,
     indentation: f64,

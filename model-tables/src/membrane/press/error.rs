@@ -1,9 +1,9 @@
 //! Why the model gives no answer, in words.
 
 use super::Limit;
-use crate::adapt::Failure;
-use crate::rest::Quantity;
-use crate::stability::Margin;
+use crate::material::stability::Margin;
+use crate::membrane::adapt::Failure;
+use crate::membrane::rest::Quantity;
 use core::fmt;
 
 /// Why the model gives no answer.

@@ -2,10 +2,10 @@
 
 use super::way::Stop;
 use super::{LARGEST_STEP, ModelError, Press, SMALLEST_STEP};
-use crate::adapt::Failure;
-use crate::equilibrium::PressControl;
 use crate::material::Hyperelastic;
-use crate::membrane::{CONTACT_RADIUS, PRESSURE};
+use crate::membrane::adapt::Failure;
+use crate::membrane::equations::{CONTACT_RADIUS, PRESSURE};
+use crate::membrane::equilibrium::PressControl;
 use core::f64::consts::PI;
 
 /// What ends a press.

@@ -11,18 +11,18 @@ pub use limit::{EndsBy, Limit};
 #[cfg(feature = "std")]
 pub use sampled::CurveFailure;
 
-use crate::adapt::{Adaptive, Graded, Resolution};
 use crate::curve::Contact;
 use crate::design::Membrane as Dimensions;
 use crate::design::{Design, RestBy};
-use crate::equilibrium::{Closure, PressControl};
-use crate::history::History;
+use crate::material::stability::Margin;
 use crate::material::{Hyperelastic, Law, Scaled};
-use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS, PRESSURE, TensionField};
-use crate::press::workspace::Workspace;
-use crate::rest::Branch;
-use crate::stability::Margin;
-use crate::state::{self, MeridianPoint, PressedState, Scale, Shape};
+use crate::membrane::adapt::{Adaptive, Graded, Resolution};
+use crate::membrane::equations::{CONTACT_PARAMETER, CONTACT_RADIUS, PRESSURE, TensionField};
+use crate::membrane::equilibrium::{Closure, PressControl};
+use crate::membrane::history::History;
+use crate::membrane::press::workspace::Workspace;
+use crate::membrane::rest::Branch;
+use crate::membrane::state::{self, MeridianPoint, PressedState, Scale, Shape};
 use core::f64::consts::{FRAC_PI_2, PI};
 use way::Stop;
 

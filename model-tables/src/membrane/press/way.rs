@@ -1,10 +1,10 @@
 //! The way from state to state: first contact from the asymptotics, then steps as long as Newton's method can take.
 
 use super::{LARGEST_STEP, Press, SMALLEST_STEP};
-use crate::adapt::{Failure, Graded};
-use crate::equilibrium::PressControl;
 use crate::material::Hyperelastic;
-use crate::membrane::{CONTACT_PARAMETER, CONTACT_RADIUS};
+use crate::membrane::adapt::{Failure, Graded};
+use crate::membrane::equations::{CONTACT_PARAMETER, CONTACT_RADIUS};
+use crate::membrane::equilibrium::PressControl;
 use core::f64::consts::FRAC_PI_2;
 
 /// First indentation on the way from rest, over the height.

@@ -3,16 +3,16 @@
 //! A [`Press`] is larger than the stack of most chips. A workspace is made at compile time, so that it can be a static,
 //! and inflates and presses in place.
 
-use crate::adapt::Resolution;
-use crate::adapt::{Adaptive, Graded};
 use crate::design::{Membrane as Dimensions, RestBy};
-use crate::history::History;
-use crate::inflation::End;
 use crate::material::{Hyperelastic, Law, Scaled};
-use crate::membrane::{Membrane, TensionField};
-use crate::press::{ModelError, Press, STAGES};
-use crate::rest::{Branch, Quantity, RestFailure};
-use crate::state::{self, Scale, Shape};
+use crate::membrane::adapt::Resolution;
+use crate::membrane::adapt::{Adaptive, Graded};
+use crate::membrane::equations::{Membrane, TensionField};
+use crate::membrane::history::History;
+use crate::membrane::inflation::End;
+use crate::membrane::press::{ModelError, Press, STAGES};
+use crate::membrane::rest::{Branch, Quantity, RestFailure};
+use crate::membrane::state::{self, Scale, Shape};
 
 /// Memory for a press of a membrane of the law `L`, with `S` Gauss points an element.
 #[derive(Clone, Debug)]
@@ -142,7 +142,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::press::SWEEP;
+    use crate::membrane::press::SWEEP;
 
     #[test]
     fn a_second_design_finds_nothing_of_the_first() {

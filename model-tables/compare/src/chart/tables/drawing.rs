@@ -1,10 +1,10 @@
 //! Error against bytes and against instructions: a column a design.
 
-use super::super::super::drawing::{
-    Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, Panel, VERMILION,
-};
 use super::page::WAYS;
 use super::{Design, Measured, OURS, bytes, instructions};
+use output::drawing::{
+    Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, Panel, VERMILION,
+};
 
 const PANEL: [f64; 2] = [400.0, 330.0];
 const LEFT: f64 = 86.0;

@@ -1,9 +1,9 @@
 //! Bytes and instructions of the tables over designs of many kinds and accuracies, and why some need more.
 
-use super::super::super::Refusal;
-use crate::curve::Contact;
-use crate::design_file::{Accuracy, DesignFile};
-use crate::generate::{self, NoTables, Solved};
+use model_tables::curve::Contact;
+use model_tables::design_file::{Accuracy, DesignFile};
+use model_tables::generate::{self, NoTables, Solved};
+use output::Refusal;
 use rayon::prelude::*;
 use std::fmt::Write as _;
 
@@ -81,7 +81,7 @@ fn file(&(name, [radial, axial, wall], law, stretch, depth): &Kind) -> Result<De
          [transducer]\nkind = \"ratiometric\"\nrange_kpa = [0.0, 1000.0]\nresolution_pa = {RESOLUTION:?}\n\
          output_fraction_at_range = [0.1, 0.9]\n"
     );
-    Ok(DesignFile::parse(&text, name)?)
+    DesignFile::parse(&text, name).map_err(Refusal::of)
 }
 
 /// Solves every design and makes its tables at each of `percents`.

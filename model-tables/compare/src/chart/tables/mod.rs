@@ -5,16 +5,16 @@ mod fronts;
 mod page;
 mod ways;
 
-use super::super::Refusal;
-use crate::design_file::{Accuracy, DesignFile};
-use crate::generate::{self, NoTables};
+use model_tables::design_file::{Accuracy, DesignFile};
+use model_tables::generate::{self, NoTables};
+use output::Refusal;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use ways::{Errors, Press};
 
 /// Instructions of every way, counted on the emulated chip: `cargo test-all` keeps them.
-const INSTRUCTIONS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tables/instructions.csv"));
+const INSTRUCTIONS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../tables/instructions.csv"));
 
 /// The designs of the chart, by name, with the way that the counts have for their tables.
 const DESIGNS: [(&str, &str, &str); 3] = [
@@ -23,7 +23,7 @@ const DESIGNS: [(&str, &str, &str); 3] = [
         "index_fingertip_tables",
         include_str!(concat!(
             env!("CARGO_MANIFEST_DIR"),
-            "/designs/index-fingertip.toml"
+            "/../designs/index-fingertip.toml"
         )),
     ),
     (
@@ -31,13 +31,16 @@ const DESIGNS: [(&str, &str, &str); 3] = [
         "paper_prestretched_tables",
         include_str!(concat!(
             env!("CARGO_MANIFEST_DIR"),
-            "/designs/paper-prestretched.toml"
+            "/../designs/paper-prestretched.toml"
         )),
     ),
     (
         "skin-analogue",
         "skin_analogue_tables",
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/designs/skin-analogue.toml")),
+        include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../designs/skin-analogue.toml"
+        )),
     ),
 ];
 
@@ -99,7 +102,7 @@ pub(super) fn contents() -> Result<Vec<(&'static str, Vec<u8>)>, Refusal> {
 
 fn measure(name: &'static str, way: &str, text: &str) -> Result<Design, Refusal> {
     let refuse = |error: &dyn std::fmt::Display| Refusal(format!("{name}: {error}"));
-    let file = DesignFile::parse(text, name)?;
+    let file = DesignFile::parse(text, name).map_err(Refusal::of)?;
     let solved = generate::solve(&file).map_err(|error| refuse(&error))?;
     let counts = Counts::read();
     let mut measured = Vec::new();

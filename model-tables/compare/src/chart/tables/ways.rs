@@ -4,10 +4,10 @@
 //! curve bends until every interval errs alike; values are fitted to least largest error (Lawson's weights), polynomials by
 //! exchange. Errors are those of the arithmetic as it would run, at [`Press::places`].
 
-use crate::curve::{Contact, Curve};
-use crate::generate::minimax::{self, MOST, Sample};
 use crate::lookups;
 use micromath::F32Ext;
+use model_tables::curve::{Contact, Curve};
+use model_tables::generate::minimax::{self, MOST, Sample};
 use nalgebra::{SMatrix, SVector};
 
 /// Errors of reading are taken from this share of full scale up, and in its units below.

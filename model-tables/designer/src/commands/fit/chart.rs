@@ -1,10 +1,10 @@
 //! The chart of a fit: measured, design and fit, over the depth.
 
-use super::super::drawing::{Anchor, BLACK, BLUE, Drawing, GREY, Marker, ORANGE, VERMILION};
-use super::super::linear::{Axis, Panel};
-use crate::design_file::DesignFile;
 use crate::fit::data::Data;
 use crate::fit::{Fit, Quantity, Residual};
+use model_tables::design_file::DesignFile;
+use output::drawing::{Anchor, BLACK, BLUE, Drawing, GREY, Marker, ORANGE, VERMILION};
+use output::linear::{LinearAxis, LinearPanel};
 
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 430.0;
@@ -45,9 +45,9 @@ pub(super) fn draw(file: &DesignFile, data: &Data, fit: &Fit) -> String {
                 .filter_map(|residual| of(residual))
                 .fold(0.0, f64::max)
         };
-        let panel = Panel {
-            x: Axis::from_zero(largest(&place), [left, left + width - 90.0]),
-            y: Axis::from_zero(
+        let panel = LinearPanel {
+            x: LinearAxis::from_zero(largest(&place), [left, left + width - 90.0]),
+            y: LinearAxis::from_zero(
                 largest(&|residual| Some(factor * residual.measured.max(residual.fitted))),
                 [HEIGHT - 60.0, 60.0],
             ),

@@ -1,15 +1,17 @@
 //! `designer fit --from-data`: tables from a monotone curve through the data alone.
 
-use super::super::drawing::{Anchor, BLACK, BLUE, Drawing, GREY, Marker};
-use super::super::linear::{Axis, Panel};
-use super::super::rows::{Cell, Rows, significant};
-use super::super::{Answer, Refusal, bench, output};
+use super::super::bench;
 use super::{Arguments, write};
-use crate::design_file::{Calibration, DataCurve, DesignFile};
 use crate::fit::data::Data;
 use crate::fit::spline::{Branch, FromData, from_data};
-use crate::generate::{self, GenerateError};
-use crate::rung::Rung;
+use model_tables::design_file::{Calibration, DataCurve, DesignFile};
+use model_tables::generate::{self, GenerateError};
+use model_tables::model::Fingertip;
+use output::drawing::{Anchor, BLACK, BLUE, Drawing, GREY, Marker};
+use output::files;
+use output::linear::{LinearAxis, LinearPanel};
+use output::rows::{Cell, Rows, significant};
+use output::{Answer, Refusal};
 use std::fmt::Write as _;
 
 const COLUMNS: &[&str] = &[
@@ -115,7 +117,7 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
             ("from-data.md", page.into_bytes()),
             ("from-data.svg", draw(data, &found).into_bytes()),
         ];
-        output::write_all(out, &contents)?;
+        files::write_all(out, &contents)?;
         notes.push(format!(
             "wrote {stem}, from-data.md and from-data.svg to {}",
             out.display()
@@ -135,7 +137,7 @@ fn with_tables(
     for finer in FINER {
         let percent = found.force.held_out.rms_percent() / finer;
         let text = write::with_reachable_tables(text, deepest_mm, percent).map_err(Refusal)?;
-        match generate::from_design(DesignFile::parse(&text, stem)?) {
+        match generate::from_design(DesignFile::parse(&text, stem).map_err(Refusal::of)?) {
             Ok(generated) => {
                 let note = format!(
                     "tables from this curve take {} bytes and end at {} mm",
@@ -170,7 +172,7 @@ fn rest_pressure(arguments: &Arguments, file: &DesignFile) -> Result<(f64, Strin
     if let Some(given) = arguments.rest_pressure_kpa {
         return Ok((given, format!("the rest pressure is {given} kPa, as given")));
     }
-    let rest = Rung::new(file)
+    let rest = Fingertip::new(file)
         .map_err(|error| Refusal::about(&arguments.design, &error))?
         .rest_pressure();
     let rest = 1e-3 * file.calibration.pressure_read(rest);
@@ -277,9 +279,9 @@ fn draw(data: &Data, found: &FromData) -> String {
     let width = (WIDTH - 30.0) / branches.len() as f64;
     for (i, (name, branch, factor)) in branches.iter().enumerate() {
         let left = 75.0 + width * i as f64;
-        let panel = Panel {
-            x: Axis::from_zero(1e-3 * found.end, [left, left + width - 90.0]),
-            y: Axis::from_zero(factor * branch.misfit.full_scale, [HEIGHT - 60.0, 60.0]),
+        let panel = LinearPanel {
+            x: LinearAxis::from_zero(1e-3 * found.end, [left, left + width - 90.0]),
+            y: LinearAxis::from_zero(factor * branch.misfit.full_scale, [HEIGHT - 60.0, 60.0]),
         };
         panel.draw(&mut drawing);
         let middle = 0.5 * (panel.x.pixels[0] + panel.x.pixels[1]);

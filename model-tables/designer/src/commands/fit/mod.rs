@@ -5,11 +5,13 @@ mod from_data;
 mod report;
 mod write;
 
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, bench, finite, output, read};
+use super::{bench, finite, read};
 use crate::fit::data::{Choice, Data, Direction};
 use crate::fit::parameter::Parameter;
 use crate::fit::{self, Fit, Held};
+use output::files;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -120,7 +122,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             ("fit.svg", chart::draw(&file, &data, &fit).into_bytes()),
             ("residuals.csv", write::residuals(&data, &fit).into_bytes()),
         ];
-        output::write_all(out, &contents)?;
+        files::write_all(out, &contents)?;
         notes.push(format!(
             "wrote {}, fit.md, fit.svg and residuals.csv to {}",
             stem,

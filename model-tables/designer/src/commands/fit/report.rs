@@ -1,13 +1,13 @@
 //! What a fit says, in words: notes on the terminal and a page.
 
 use super::super::bench;
-use super::super::rows::significant;
 use super::state;
-use crate::design_file::DesignFile;
 use crate::fit::check::Misfit;
 use crate::fit::data::{Data, Direction};
 use crate::fit::parameter::Parameter;
 use crate::fit::{Fit, Held, Unidentified};
+use model_tables::design_file::DesignFile;
+use output::rows::significant;
 use std::fmt::Write as _;
 
 /// Order in the signs of what is left, in standard deviations, that is no chance (one in two hundred).
@@ -109,7 +109,7 @@ pub(super) fn findings(file: &DesignFile, data: &Data, fit: &Fit) -> Vec<String>
     lines.extend(validation(fit));
     if file.calibration.pole_stretch.is_none()
         && fit.fitted.contains(&Parameter::PoleStretch)
-        && !matches!(file.rest, crate::design_file::RestSection::PoleStretch(_))
+        && !matches!(file.rest, model_tables::design_file::RestSection::PoleStretch(_))
     {
         lines.push("calibration.pole_stretch now takes the place of [rest]".to_owned());
     }

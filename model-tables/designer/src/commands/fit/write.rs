@@ -1,8 +1,8 @@
 //! The files of a fit: the calibrated design and what is left of the data.
 
-use crate::design_file::{Calibration, DataCurve, DesignFile};
 use crate::fit::data::Data;
 use crate::fit::{Fit, Quantity};
+use model_tables::design_file::{Calibration, DataCurve, DesignFile};
 use std::fmt::Write as _;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 

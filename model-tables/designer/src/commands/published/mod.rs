@@ -5,9 +5,10 @@ pub(super) mod paper;
 mod readings;
 pub(super) mod solid;
 
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal, output};
-use crate::design_file::DesignFile;
+use model_tables::design_file::DesignFile;
+use output::files;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use paper::Paper;
 use solid::Solid;
 use std::path::PathBuf;
@@ -26,7 +27,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let mut notes = Vec::new();
     if let Some(out) = &arguments.out {
         let text = page::markdown(&paper, &Solid::solve()?);
-        output::write_one(out, text.into_bytes())?;
+        files::write_one(out, text.into_bytes())?;
         notes.push(format!("wrote {}", out.display()));
     }
     let mut rows = Rows::new(COLUMNS);
@@ -43,5 +44,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
 
 /// A shipped design; its text is part of the program.
 fn shipped(name: &str, text: &str) -> Result<DesignFile, Refusal> {
-    Ok(DesignFile::parse(text, name)?)
+    DesignFile::parse(text, name).map_err(Refusal::of)
 }

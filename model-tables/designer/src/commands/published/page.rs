@@ -2,10 +2,10 @@
 //!
 //! Few digits of each number, so that the page says what a reader can use and is the same on every host.
 
-use super::super::rows::{plain, significant};
 use super::paper::{self, Paper};
 use super::solid::{Beside, COMPLIANCE, SOLID, SOLID_COMPLIANT_FORCE, SOLID_CONTACT_RADIUS, Solid};
 use core::f64::consts::PI;
+use output::rows::{plain, significant};
 use std::fmt::Write as _;
 
 /// What writes the page.

@@ -2,20 +2,20 @@
 //!
 //! Shi, Shariati, Eames and Wurdemann, Soft Matter 18 (2022) 9076. Nothing here is tuned towards them.
 
-use super::super::Refusal;
 use super::readings::{Reading, readings};
 use super::shipped;
-use crate::actuator::{Actuator, Blocked, FREE_DIAMETER};
-use crate::design::{Design, RestBy};
-use crate::membrane::TensionField;
-use crate::press::{ModelError, Press};
-use crate::state::{PressedState, Shape};
 use core::f64::consts::{FRAC_PI_4, PI};
+use model_tables::actuator::{Actuator, Blocked, FREE_DIAMETER};
+use model_tables::design::{Design, RestBy};
+use model_tables::membrane::TensionField;
+use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::state::{PressedState, Shape};
+use output::Refusal;
 
 /// Indentations of the published forces, metres.
-pub(in crate::designer) const INDENTATIONS: [f64; 3] = [0.5e-3, 1.5e-3, 2e-3];
+pub(in crate::commands) const INDENTATIONS: [f64; 3] = [0.5e-3, 1.5e-3, 2e-3];
 /// Published forces there, newtons.
-pub(in crate::designer) const FORCES: [f64; 3] = [0.38, 1.6, 2.11];
+pub(in crate::commands) const FORCES: [f64; 3] = [0.38, 1.6, 2.11];
 /// Published pressure of the rest state, pascals.
 pub(super) const REST_PRESSURE: f64 = 2.1e3;
 /// Published radius of the inflated equator, metres.
@@ -82,7 +82,7 @@ impl Paper {
             "paper-prestretched.toml",
             include_str!(concat!(
                 env!("CARGO_MANIFEST_DIR"),
-                "/designs/paper-prestretched.toml"
+                "/../designs/paper-prestretched.toml"
             )),
         )?;
         let design = file.design();

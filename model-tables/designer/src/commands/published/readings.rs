@@ -1,11 +1,11 @@
 //! Other readings of the paper's inputs, so that nobody need try them again.
 
-use super::super::Refusal;
 use super::paper::{EQUATOR_RADIUS, INDENTATIONS, REST_PRESSURE};
-use crate::design::{Design, Membrane, RestBy};
-use crate::material::Law;
-use crate::membrane::TensionField;
-use crate::press::{ModelError, Press};
+use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::material::Law;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::press::{ModelError, Press};
+use output::Refusal;
 
 /// The paper's skin.
 const SKIN: Law = Law::MooneyRivlin {

@@ -1,23 +1,23 @@
 //! The membrane beside a solid dome with a real wall.
 
-use super::super::Refusal;
 use super::shipped;
-use crate::curve::Contact;
-use crate::design::{Design, Membrane, RestBy};
-use crate::material::preset::AGILUS30;
-use crate::membrane::TensionField;
-use crate::press::{ModelError, Press};
-use crate::rung::Rung;
+use model_tables::curve::Contact;
+use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::material::preset::AGILUS30;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::press::{ModelError, Press};
+use model_tables::model::Fingertip;
+use output::Refusal;
 
 /// A pressed dome of solid finite elements.
 #[derive(Clone, Copy)]
-pub(in crate::designer) struct Pressed {
+pub(in crate::commands) struct Pressed {
     /// Indentation, metres.
-    pub(in crate::designer) indentation: f64,
+    pub(in crate::commands) indentation: f64,
     /// Gauge pressure, pascals; it starts from 0.
-    pub(in crate::designer) pressure: f64,
+    pub(in crate::commands) pressure: f64,
     /// Force, newtons.
-    pub(in crate::designer) force: f64,
+    pub(in crate::commands) force: f64,
 }
 
 const fn pressed(indentation_mm: f64, pressure_kpa: f64, force: f64) -> Pressed {
@@ -31,7 +31,7 @@ const fn pressed(indentation_mm: f64, pressure_kpa: f64, force: f64) -> Pressed 
 /// Axisymmetric solid finite elements (quadratic displacement, discontinuous linear pressure, 80 x 4 elements; mesh
 /// and penalty error about 0.1 %) of a dome of 9 x 7 mm outside with a wall of 1 mm: Agilus30, not stretched at
 /// rest, clamped at the equator, filled with a rigid fluid, pressed by a plate without friction.
-pub(in crate::designer) const SOLID: [Pressed; 12] = [
+pub(in crate::commands) const SOLID: [Pressed; 12] = [
     pressed(0.25, 0.671, 0.0764),
     pressed(0.5, 1.790, 0.1800),
     pressed(0.75, 3.69, 0.348),
@@ -95,7 +95,7 @@ impl Solid {
             "index-fingertip.toml",
             include_str!(concat!(
                 env!("CARGO_MANIFEST_DIR"),
-                "/designs/index-fingertip.toml"
+                "/../designs/index-fingertip.toml"
             )),
         )?;
         let membrane = |stretch| Design {
@@ -112,7 +112,7 @@ impl Solid {
             Press::new(&stretched, TensionField::Relaxed)
                 .map_err(failed)?
                 .curve(deepest),
-            Rung::new(&file).map_err(failed)?.curve(deepest),
+            Fingertip::new(&file).map_err(failed)?.curve(deepest),
         ];
         let [before, after] =
             curves.map(|curve| curve.map_err(|error| Refusal(format!("the index fingertip: {error}"))));

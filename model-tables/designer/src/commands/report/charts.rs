@@ -1,14 +1,14 @@
 //! The charts of a report: lines over linear axes, and speed against accuracy.
 
-use super::super::drawing::{
-    self, Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION, power, spread,
-};
-use super::super::linear::{Axis, Panel};
-use super::super::rows::plain;
 use super::cost::Cost;
 use super::findings::{Findings, Meridian, Said};
 use super::words::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit};
-use crate::rung::state::{Pressed, Station};
+use model_tables::model::state::{Pressed, Station};
+use output::drawing::{
+    self, Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION, power, spread,
+};
+use output::linear::{LinearAxis, LinearPanel};
+use output::rows::plain;
 
 const SIZE: [f64; 2] = [420.0, 330.0];
 const LEFT: f64 = 64.0;
@@ -63,16 +63,16 @@ fn lines(title: &str, [x, y]: [Named; 2], from_zero: bool, series: &[Series]) ->
             .flat_map(move |series| series.points.iter().map(move |p| p[place]))
     };
     let [low, high] = range(all(1).map(|value| y.1.per_si * value));
-    let panel = Panel {
+    let panel = LinearPanel {
         x: if x.1.name == DEGREES.name {
-            Axis::quarter_turn([LEFT, RIGHT])
+            LinearAxis::quarter_turn([LEFT, RIGHT])
         } else {
-            Axis::from_zero(range(all(0).map(|value| x.1.per_si * value))[1], [LEFT, RIGHT])
+            LinearAxis::from_zero(range(all(0).map(|value| x.1.per_si * value))[1], [LEFT, RIGHT])
         },
         y: if from_zero {
-            Axis::from_zero(high, [BOTTOM, top])
+            LinearAxis::from_zero(high, [BOTTOM, top])
         } else {
-            Axis::over([low, high], [BOTTOM, top])
+            LinearAxis::over([low, high], [BOTTOM, top])
         },
     };
     let described: Vec<String> = series

@@ -1,14 +1,14 @@
 //! Speed against accuracy of the models of one design: what a state costs, and how far it is from the finest model's.
 
-use crate::adapt::Resolution;
-use crate::curve::Contact;
-use crate::design::Design;
-use crate::design_file::DesignFile;
-use crate::material::Law;
-use crate::membrane::TensionField;
-use crate::press::{CURVE, FINER, FULL, ModelError, Press, SWEEP};
-use crate::rung::choice::{LADDER, PARTS, REFINED, Wanted};
-use crate::rung::{Kind, Rung};
+use model_tables::curve::Contact;
+use model_tables::design::Design;
+use model_tables::design_file::DesignFile;
+use model_tables::material::Law;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::{CURVE, FINER, FULL, ModelError, Press, SWEEP};
+use model_tables::model::choice::{LADDER, PARTS, REFINED, Wanted};
+use model_tables::model::{Fingertip, Kind};
 use std::time::Instant;
 
 /// A model of the design, timed.
@@ -93,7 +93,7 @@ fn membrane<const S: usize>(
 }
 
 fn rung(kind: Kind, design: &Design, deepest: f64) -> Result<Solved, ModelError> {
-    let mut rung = Rung::of(kind, design)?;
+    let mut rung = Fingertip::of(kind, design)?;
     timed(deepest, |indentation| rung.contact_at(indentation))
 }
 

@@ -2,21 +2,22 @@
 
 use super::super::estimate::refusal;
 use super::super::model::{self, Model};
-use super::super::progress::Progress;
-use super::super::{Refusal, bench, read};
+use super::super::{bench, read};
 use super::cost::{self, Cost};
-use crate::actuator::{Actuator, Blocked};
-use crate::design::{Design, RestBy};
-use crate::design_file::{Calibration, DesignFile};
-use crate::generate::{Generated, from_design};
-use crate::membrane::TensionField;
-use crate::press::{Limit, ModelError, Press};
-use crate::rest::Branch;
-use crate::rung::choice::FINE;
-use crate::rung::state::{Pressed, Rest, Station};
-use crate::rung::{Kind, Rung};
-use crate::state::Wrinkling;
-use crate::units::PressureRise;
+use model_tables::actuator::{Actuator, Blocked};
+use model_tables::design::{Design, RestBy};
+use model_tables::design_file::{Calibration, DesignFile};
+use model_tables::generate::{Generated, from_design};
+use model_tables::membrane::TensionField;
+use model_tables::membrane::press::{Limit, ModelError, Press};
+use model_tables::membrane::rest::Branch;
+use model_tables::membrane::state::Wrinkling;
+use model_tables::model::choice::FINE;
+use model_tables::model::state::{Pressed, Rest, Station};
+use model_tables::model::{Fingertip, Kind};
+use model_tables::units::PressureRise;
+use output::Refusal;
+use output::progress::Progress;
 use std::path::Path;
 
 /// States of the curves.
@@ -88,10 +89,10 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     let Model { kind, design, note } = model::of(path, &file)?;
     progress.set(0.1);
     let mut rung = match kind {
-        Kind::Membrane => Rung::Membrane(Box::new(
+        Kind::Membrane => Fingertip::Membrane(Box::new(
             Press::new(&design, TensionField::Relaxed).map_err(refuse)?,
         )),
-        Kind::Solid(_) => Rung::of(kind, &design).map_err(refuse)?,
+        Kind::Solid(_) => Fingertip::of(kind, &design).map_err(refuse)?,
     };
     let limit = rung.limit().map_err(refuse)?;
     let deepest = file
@@ -143,7 +144,7 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     })
 }
 
-fn meridian(rung: &mut Rung, design: &Design, indentation: f64) -> Result<Meridian, ModelError> {
+fn meridian(rung: &mut Fingertip, design: &Design, indentation: f64) -> Result<Meridian, ModelError> {
     Ok(Meridian {
         indentation,
         force: rung.contact_at(indentation)?.force,
@@ -153,7 +154,9 @@ fn meridian(rung: &mut Rung, design: &Design, indentation: f64) -> Result<Meridi
 }
 
 /// The tables of a design that has everything they need; otherwise the first section that is missing.
-fn tables(file: &DesignFile) -> Result<Result<Generated, &'static str>, crate::generate::GenerateError> {
+fn tables(
+    file: &DesignFile,
+) -> Result<Result<Generated, &'static str>, model_tables::generate::GenerateError> {
     let missing = [
         (file.max_indentation_mm.is_none(), "press"),
         (file.transducer.is_none(), "transducer"),
@@ -203,14 +206,14 @@ fn said(generated: &Generated, file: &DesignFile, states: &[Pressed]) -> Vec<Sai
 }
 
 /// Forces of the membrane and of a solid of the same wall; nothing where the solid has no such rest state.
-fn bending(design: &Design, membrane: &mut Rung, deepest: f64) -> Vec<Bending> {
+fn bending(design: &Design, membrane: &mut Fingertip, deepest: f64) -> Vec<Bending> {
     if !matches!(design.rest, RestBy::PoleStretch(_)) {
         return Vec::new();
     }
     let mut outer = *design;
     outer.membrane.radial_semi_axis += 0.5 * design.membrane.thickness;
     outer.membrane.axial_semi_axis += 0.5 * design.membrane.thickness;
-    let Ok(mut solid) = Rung::of(Kind::Solid(FINE), &outer) else {
+    let Ok(mut solid) = Fingertip::of(Kind::Solid(FINE), &outer) else {
         return Vec::new();
     };
     let mut both = |part: f64| -> Result<Bending, ModelError> {
@@ -243,9 +246,9 @@ fn actuator(file: &DesignFile, design: &Design) -> Vec<(f64, Blocked)> {
         .collect()
 }
 
-fn warnings(file: &DesignFile, rung: &mut Rung, limit: Limit, deepest: f64) -> Vec<String> {
+fn warnings(file: &DesignFile, rung: &mut Fingertip, limit: Limit, deepest: f64) -> Vec<String> {
     let mut lines = Vec::new();
-    if let Rung::Membrane(press) = rung {
+    if let Fingertip::Membrane(press) = rung {
         match press.branch() {
             Branch::Only => {}
             Branch::Lower { other } => lines.push(format!(

@@ -7,10 +7,10 @@ mod page;
 mod shapes;
 mod words;
 
-use super::output::write_all;
-use super::progress::Progress;
-use super::rows::{Cell, Rows};
-use super::{Answer, Refusal};
+use output::files::write_all;
+use output::progress::Progress;
+use output::rows::{Cell, Rows};
+use output::{Answer, Refusal};
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &["file", "size_bytes"];

@@ -1,17 +1,17 @@
 //! The page: words and tables around the charts. Everything is in the one file: no script, no font, no picture from elsewhere.
 
-use super::super::rows::plain;
 use super::charts;
 use super::findings::Findings;
 use super::shapes;
 use super::words::{KPA, MILLISECONDS, MM, MM3, NEWTON, PA, PERCENT, STRETCH, Unit, count};
-use crate::design_file::{Calibration, DesignFile, ModelSection, RestSection, TransducerKindSection};
-use crate::generate::{Errors, Generated, TABLE_VERSION};
-use crate::material::Law;
-use crate::material::preset::Preset;
-use crate::press::EndsBy;
-use crate::rung::Kind;
 use maud::{Markup, PreEscaped, html};
+use model_tables::design_file::{Calibration, DesignFile, ModelSection, RestSection, TransducerKindSection};
+use model_tables::generate::{Errors, Generated, TABLE_VERSION};
+use model_tables::material::Law;
+use model_tables::material::preset::Preset;
+use model_tables::membrane::press::EndsBy;
+use model_tables::model::Kind;
+use output::rows::plain;
 use std::fmt::Write as _;
 use std::path::Path;
 

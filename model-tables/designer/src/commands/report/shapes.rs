@@ -1,9 +1,9 @@
 //! Pressed shapes: sections through the axis, wall and all, to one scale.
 
-use super::super::drawing::{Anchor, BLACK, BLUE, Drawing, GREY};
 use super::findings::{Findings, Meridian};
 use super::words::{MM, NEWTON};
-use crate::rung::state::Station;
+use model_tables::model::state::Station;
+use output::drawing::{Anchor, BLACK, BLUE, Drawing, GREY};
 
 const WIDTH: f64 = 300.0;
 /// From the axis to the widest place of any state, pixels.

@@ -1,7 +1,7 @@
 //! Numbers of a report, each with its unit, and the units that SI quantities are given in.
 
-use super::super::rows::plain;
 use maud::{Markup, html};
+use output::rows::plain;
 
 /// Digits of a number.
 const DIGITS: i32 = 4;

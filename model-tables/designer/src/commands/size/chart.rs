@@ -1,11 +1,11 @@
 //! The chart of a sizing: the target beside the best designs, and what they cost.
 
-use super::super::drawing::{Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION};
-use super::super::linear::{Axis, Panel};
-use crate::membrane::TensionField;
-use crate::press::Press;
 use crate::size::Sized;
 use crate::size::target::Target;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::press::Press;
+use output::drawing::{Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION};
+use output::linear::{LinearAxis, LinearPanel};
 
 const WIDTH: f64 = 1000.0;
 const HEIGHT: f64 = 470.0;
@@ -33,9 +33,9 @@ pub(super) fn draw(target: &Target, designs: &[Sized]) -> String {
 /// Force over the indentation.
 fn curves(drawing: &mut Drawing, target: &Target, designs: &[Sized]) {
     let largest = target.forces.iter().copied().fold(0.0, f64::max);
-    let panel = Panel {
-        x: Axis::from_zero(1e3 * target.deepest(), [75.0, 455.0]),
-        y: Axis::from_zero(1.15 * largest, [HEIGHT - 60.0, 55.0]),
+    let panel = LinearPanel {
+        x: LinearAxis::from_zero(1e3 * target.deepest(), [75.0, 455.0]),
+        y: LinearAxis::from_zero(1.15 * largest, [HEIGHT - 60.0, 55.0]),
     };
     panel.draw(drawing);
     drawing.text(
@@ -77,9 +77,9 @@ fn curves(drawing: &mut Drawing, target: &Target, designs: &[Sized]) {
 /// What making does to the force over the peak pressure; what nothing beats is filled.
 fn costs(drawing: &mut Drawing, designs: &[Sized]) {
     let largest = |of: fn(&Sized) -> f64| designs.iter().map(of).fold(0.0, f64::max);
-    let panel = Panel {
-        x: Axis::from_zero(1e-3 * largest(|sized| sized.peak_pressure), [575.0, 965.0]),
-        y: Axis::from_zero(100.0 * largest(Sized::making), [HEIGHT - 60.0, 55.0]),
+    let panel = LinearPanel {
+        x: LinearAxis::from_zero(1e-3 * largest(|sized| sized.peak_pressure), [575.0, 965.0]),
+        y: LinearAxis::from_zero(100.0 * largest(Sized::making), [HEIGHT - 60.0, 55.0]),
     };
     panel.draw(drawing);
     drawing.text(

@@ -2,12 +2,14 @@
 
 mod chart;
 
-use super::progress::Progress;
-use super::rows::{Cell, Rows, significant};
-use super::{Answer, Refusal, bench, output};
-use crate::design::RestBy;
+use super::bench;
 use crate::size::target::Target;
 use crate::size::{self, Sized};
+use model_tables::design::RestBy;
+use output::files;
+use output::progress::Progress;
+use output::rows::{Cell, Rows, significant};
+use output::{Answer, Refusal};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -61,7 +63,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
-    let target = Target::read(&arguments.target)?;
+    let target = Target::read(&arguments.target).map_err(Refusal::of)?;
     let start = Instant::now();
     let progress = Progress::new("sizing");
     let mut sizing = size::size(&target, &|part| progress.set(part));
@@ -115,7 +117,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             .iter()
             .map(|(name, content)| (name.as_str(), content.clone()))
             .collect();
-        output::write_all(out, &contents)?;
+        files::write_all(out, &contents)?;
         notes.push(format!(
             "wrote size.svg and {} designs to {}",
             sizing.designs.len(),

@@ -1,24 +1,24 @@
-//! The ladder of models: from the closed form for light contact to the full membrane.
+//! Approximations of the membrane, from the closed form for light contact to the full model.
 //!
-//! Each rung is measured over the press asked about, its error against the membrane on a finer mesh of higher order and
-//! its cost by the clock, and [`cheapest`] takes what costs least of those that are accurate enough, with the evidence.
+//! Each is measured over the press asked about: its error against the membrane on a finer mesh of higher order, and its
+//! cost by the clock. Which model a design takes is another matter: `model_tables::model::choice`.
 
 use super::Failure;
 use super::few_states::FewStates;
 use super::light_contact::LightContact;
-use crate::adapt::Resolution;
-use crate::curve::Contact;
-use crate::design::Design;
-use crate::material::Law;
-use crate::membrane::TensionField;
-use crate::press::{FULL, Press, SWEEP};
+use model_tables::curve::Contact;
+use model_tables::design::Design;
+use model_tables::material::Law;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::{FULL, Press, SWEEP};
 use std::fmt;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// A model; the one that knows least first.
+/// A way to the states; the one that knows least first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Rung {
+pub enum Approximation {
     /// The closed form: no pressed state of the membrane.
     LightContact,
     /// A curve through so many pressed states of the membrane.
@@ -29,21 +29,21 @@ pub enum Rung {
     Membrane,
 }
 
-/// All rungs.
-pub const RUNGS: [Rung; 7] = [
-    Rung::LightContact,
-    Rung::FewStates(2),
-    Rung::FewStates(4),
-    Rung::FewStates(8),
-    Rung::FewStates(16),
-    Rung::Sweep,
-    Rung::Membrane,
+/// All of them.
+pub const APPROXIMATIONS: [Approximation; 7] = [
+    Approximation::LightContact,
+    Approximation::FewStates(2),
+    Approximation::FewStates(4),
+    Approximation::FewStates(8),
+    Approximation::FewStates(16),
+    Approximation::Sweep,
+    Approximation::Membrane,
 ];
-/// Indentations at which rungs are measured.
+/// Indentations at which they are measured.
 pub const SAMPLES: usize = 65;
-/// Times that a rung's answers are taken; the fastest counts.
+/// Times that the answers are taken; the fastest counts.
 const REPETITIONS: usize = 3;
-/// Gauss points of what the rungs are measured against: order sixteen.
+/// Gauss points of what they are measured against: order sixteen.
 const TRUTH_STAGES: usize = 8;
 /// Its mesh.
 const TRUTH: Resolution = Resolution {
@@ -55,7 +55,7 @@ const TRUTH: Resolution = Resolution {
 /// Gauss points of the mesh for sweeps.
 const SWEEP_STAGES: usize = 5;
 
-impl fmt::Display for Rung {
+impl fmt::Display for Approximation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::LightContact => write!(f, "closed form"),
@@ -66,7 +66,7 @@ impl fmt::Display for Rung {
     }
 }
 
-/// Relative errors of a rung at one indentation.
+/// Relative errors at one indentation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// The indentation, metres.
@@ -77,11 +77,11 @@ pub struct Sample {
     pub rise: f64,
 }
 
-/// What a rung was measured to do.
+/// What an approximation was measured to do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
-    /// The rung.
-    pub rung: Rung,
+    /// Which.
+    pub approximation: Approximation,
     /// Its errors, from the shallowest indentation to the deepest.
     pub samples: Vec<Sample>,
     /// What all its answers took together, from the rest state on, seconds.
@@ -98,45 +98,25 @@ impl Evidence {
     }
 }
 
-/// The cheapest rung, and what was measured on the way to it.
+/// Why there is nothing to measure against.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
-    /// The rung.
-    pub rung: Rung,
-    /// Evidence of all rungs.
-    pub evidence: Vec<Evidence>,
-}
-
-/// Why there is no choice.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NoChoice {
+pub enum NoTruth {
     /// The full membrane gave no answer to measure against.
     Membrane(Failure),
-    /// No model here is that accurate.
-    TooAccurate {
-        /// What was asked, relative.
-        asked: f64,
-        /// The smallest error measured.
-        best: f64,
-    },
     /// The range is empty or not one of indentations.
     NoRange,
 }
 
-impl fmt::Display for NoChoice {
+impl fmt::Display for NoTruth {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Membrane(failure) => failure.fmt(f),
-            Self::TooAccurate { asked, best } => write!(
-                f,
-                "no model meets a relative error of {asked:.1e}: the best was measured to reach {best:.1e}"
-            ),
             Self::NoRange => write!(f, "the indentations must be 0 < from <= to"),
         }
     }
 }
 
-impl core::error::Error for NoChoice {}
+impl core::error::Error for NoTruth {}
 
 /// States over a range of indentations, to measure against.
 #[derive(Clone, Debug)]
@@ -151,12 +131,12 @@ impl Yardstick {
     /// Solves the membrane at [`SAMPLES`] indentations spread geometrically over a range, metres.
     ///
     /// # Errors
-    /// [`NoChoice`].
-    pub fn new(design: &Design, field: TensionField, [from, to]: [f64; 2]) -> Result<Self, NoChoice> {
+    /// [`NoTruth`].
+    pub fn new(design: &Design, field: TensionField, [from, to]: [f64; 2]) -> Result<Self, NoTruth> {
         if !(from > 0.0 && from <= to && to.is_finite()) {
-            return Err(NoChoice::NoRange);
+            return Err(NoTruth::NoRange);
         }
-        let lost = |error| NoChoice::Membrane(Failure::Membrane(error));
+        let lost = |error| NoTruth::Membrane(Failure::Membrane(error));
         let mut press = Press::<Law, TRUTH_STAGES>::with_resolution(design, field, TRUTH).map_err(lost)?;
         let mut truth = Vec::with_capacity(SAMPLES);
         for k in 0..SAMPLES {
@@ -176,13 +156,13 @@ impl Yardstick {
         })
     }
 
-    /// Measures a rung.
-    pub fn measure(&self, rung: Rung) -> Evidence {
+    /// Measures an approximation.
+    pub fn measure(&self, approximation: Approximation) -> Evidence {
         let mut seconds = f64::INFINITY;
         let mut answers = Vec::new();
         for _ in 0..REPETITIONS {
             let start = Instant::now();
-            answers = black_box(self.answers(rung));
+            answers = black_box(self.answers(approximation));
             seconds = seconds.min(start.elapsed().as_secs_f64());
         }
         let samples = self
@@ -198,23 +178,23 @@ impl Yardstick {
             })
             .collect();
         Evidence {
-            rung,
+            approximation,
             samples,
             seconds,
         }
     }
 
-    /// What a rung says to every indentation.
-    fn answers(&self, rung: Rung) -> Vec<Result<Contact, Failure>> {
+    /// The answers at every indentation.
+    fn answers(&self, approximation: Approximation) -> Vec<Result<Contact, Failure>> {
         let indentations = self.truth.iter().map(|truth| truth.indentation);
-        match rung {
-            Rung::LightContact => {
+        match approximation {
+            Approximation::LightContact => {
                 let light = LightContact::new(&self.design);
                 indentations
                     .map(|h| light.and_then(|light| light.at_indentation(h)))
                     .collect()
             }
-            Rung::FewStates(states) => {
+            Approximation::FewStates(states) => {
                 let deepest = self.truth[SAMPLES - 1].indentation;
                 let curve = FewStates::new(&self.design, &mut self.sweep.clone(), deepest, states);
                 indentations
@@ -224,13 +204,13 @@ impl Yardstick {
                     })
                     .collect()
             }
-            Rung::Sweep => {
+            Approximation::Sweep => {
                 let mut press = self.sweep.clone();
                 indentations
                     .map(|h| press.contact_at(h).map_err(Failure::Membrane))
                     .collect()
             }
-            Rung::Membrane => {
+            Approximation::Membrane => {
                 let mut press = self.rest.clone();
                 indentations
                     .map(|h| press.contact_at(h).map_err(Failure::Membrane))
@@ -238,39 +218,4 @@ impl Yardstick {
             }
         }
     }
-}
-
-/// What was measured to cost least of the rungs whose force is off by at most `accuracy`, relative, over a range of
-/// indentations in metres.
-///
-/// # Errors
-/// [`NoChoice`].
-pub fn cheapest(
-    design: &Design,
-    field: TensionField,
-    range: [f64; 2],
-    accuracy: f64,
-) -> Result<Choice, NoChoice> {
-    let yardstick = Yardstick::new(design, field, range)?;
-    let evidence = RUNGS.map(|rung| yardstick.measure(rung)).to_vec();
-    evidence
-        .iter()
-        .filter(|measured| measured.worst() <= accuracy)
-        .min_by(|a, b| a.seconds.total_cmp(&b.seconds))
-        .map(|measured| measured.rung)
-        .map_or_else(
-            || {
-                let best = evidence.iter().map(Evidence::worst).fold(f64::INFINITY, f64::min);
-                Err(NoChoice::TooAccurate {
-                    asked: accuracy,
-                    best,
-                })
-            },
-            |rung| {
-                Ok(Choice {
-                    rung,
-                    evidence: evidence.clone(),
-                })
-            },
-        )
 }

@@ -1,19 +1,20 @@
 //! The methods kept for comparison: right where they answer, loud where they do not.
 
+#[path = "../../tests/common/mod.rs"]
 mod common;
 
 use common::{AGILUS30, design};
+use compare::methods::approximations::{Approximation, NoTruth, Yardstick};
+use compare::methods::bisection::{Bisection, Fineness, PAPER};
+use compare::methods::contest::{self, DESIGNS, Sweep};
+use compare::methods::few_states::FewStates;
+use compare::methods::light_contact::LightContact;
+use compare::methods::shooting::Shooting;
+use compare::methods::{Failure, Found};
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::methods::bisection::{Bisection, Fineness, PAPER};
-use model_tables::methods::contest::{self, DESIGNS, Sweep};
-use model_tables::methods::few_states::FewStates;
-use model_tables::methods::ladder::{self, NoChoice, Rung};
-use model_tables::methods::light_contact::LightContact;
-use model_tables::methods::shooting::Shooting;
-use model_tables::methods::{Failure, Found};
-use model_tables::press::Press;
+use model_tables::membrane::press::Press;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -64,7 +65,7 @@ struct State {
 fn cases() -> Vec<(String, Design, Model)> {
     let text = include_str!(concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/tests/reference/membrane.json"
+        "/../tests/reference/membrane.json"
     ));
     let cases: Cases = serde_json::from_str(text).expect("the reference file is JSON");
     let cases = cases.cases.into_iter();
@@ -300,43 +301,30 @@ fn more_states_make_a_better_curve() {
 }
 
 #[test]
-fn the_cheapest_model_is_taken_with_its_evidence() {
+fn approximations_are_measured_over_the_press_that_is_asked_about() {
     let (design, model) = case(PAPER_DESIGN);
-    let choose =
-        |range: [f64; 2], accuracy: f64| ladder::cheapest(&design, TensionField::Relaxed, range, accuracy);
+    let worst = |range: [f64; 2], approximation| {
+        Yardstick::new(&design, TensionField::Relaxed, range)
+            .expect("the membrane has every state")
+            .measure(approximation)
+            .worst()
+    };
     // A touch of a micrometre: the reference's second state is off by 2e-4.
-    let touch = choose([1e-7, 1e-6], 1e-3).expect("a choice");
-    assert_eq!(touch.rung, Rung::LightContact);
+    let touch = worst([1e-7, 1e-6], Approximation::LightContact);
+    assert!(touch < 1e-3, "{touch:e}");
     let deep = model.states[8].H;
-    let press = choose([1e-5, deep], 1e-6).expect("a choice");
     assert!(
-        matches!(press.rung, Rung::Sweep | Rung::Membrane),
-        "{:?}",
-        press.rung
-    );
-    assert_eq!(press.evidence.len(), ladder::RUNGS.len());
-    assert!(
-        press.evidence[0].worst().is_infinite(),
+        worst([1e-5, deep], Approximation::LightContact).is_infinite(),
         "the closed form does not reach that deep"
     );
-    let rough = choose([0.1 * deep, deep], 0.05).expect("a choice");
-    assert_ne!(rough.rung, Rung::Membrane);
-    let cost = |rung: Rung| {
-        rough
-            .evidence
-            .iter()
-            .find(|evidence| evidence.rung == rung)
-            .map(|evidence| evidence.seconds)
-    };
-    for evidence in &rough.evidence {
-        assert!(evidence.worst() > 0.05 || cost(rough.rung) <= Some(evidence.seconds));
-    }
+    assert!(worst([1e-5, deep], Approximation::Sweep) < 1e-6);
     // The full membrane's own error is measured, not stated.
-    match choose([1e-5, deep], 1e-17) {
-        Err(NoChoice::TooAccurate { best, .. }) => assert!(best > 0.0 && best < 1e-8, "{best:e}"),
-        other => panic!("{other:?}"),
-    }
-    assert_eq!(choose([0.0, deep], 0.1), Err(NoChoice::NoRange));
+    let own = worst([1e-5, deep], Approximation::Membrane);
+    assert!(own > 0.0 && own < 1e-8, "{own:e}");
+    assert_eq!(
+        Yardstick::new(&design, TensionField::Relaxed, [0.0, deep]).map(|_| ()),
+        Err(NoTruth::NoRange)
+    );
 }
 
 #[test]
