@@ -18,7 +18,7 @@
 //! let mut press = Press::new(&design, TensionField::Relaxed)?;
 //! let state = press.at_indentation(1.5e-3)?;
 //! assert!((state.force - 8.371).abs() < 1e-3, "{} N", state.force);
-//! # Ok::<(), model_tables::membrane::press::ModelError>(())
+//! # Ok::<(), model_tables::membrane::press::MembraneError>(())
 //! ```
 //!
 //! # The way through the crate
@@ -51,7 +51,7 @@
 //! - Host mathematics is `f64` in SI units; transcendental functions come from `libm`, so that every host computes the
 //!   same bits.
 //! - No global state: a [`Press`](membrane::press::Press) is `Send` and `Sync`, and as many as wanted run side by side.
-//! - No unsafe code; what cannot be solved is a [`ModelError`](membrane::press::ModelError), never a number.
+//! - No unsafe code; what cannot be solved is an error with its reason ([`MembraneError`](membrane::press::MembraneError)), never a number.
 //! - Rust 1.95 or later (`rust-version`), the version it is tested with.
 //!
 //! How its numbers compare with published ones, and how far a membrane is from a real dome with a wall that bends, is
@@ -67,6 +67,7 @@ pub mod design;
 pub mod design_file;
 #[cfg(feature = "std")]
 pub mod generate;
+pub mod limit;
 pub mod material;
 pub mod membrane;
 #[cfg(feature = "std")]

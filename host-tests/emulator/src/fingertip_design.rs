@@ -3,11 +3,12 @@
 use crate::plant::Plant;
 use crate::scenario::{Scenario, WireFault};
 use crate::transducer::{Part, Transducer, Wiring};
+use model_tables::curve::CurveFailure;
 use model_tables::curve::{Contact, Curve};
 use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
 use model_tables::generate::{self, GenerateError};
-use model_tables::membrane::press::{CurveFailure, ModelError};
 use model_tables::model::Fingertip;
+use model_tables::model::ModelError;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -33,7 +34,7 @@ pub enum FingertipDesignError {
     /// The model has no rest state.
     Rest(ModelError),
     /// The model does not reach the deepest indentation.
-    Press(CurveFailure),
+    Press(CurveFailure<ModelError>),
     /// The data of a design from data do not.
     Data(PathBuf, Box<GenerateError>),
 }

@@ -18,6 +18,9 @@ use std::path::Path;
 pub use calibration::{Calibration, DataCurve};
 pub use error::{DesignFileError, Problem};
 
+/// Elements of a solid where a design does not say: through the wall and along it. Enough for a few tenths of a percent.
+pub const DEFAULT_ELEMENTS: [u32; 2] = [2, 60];
+
 /// A design file's content.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignFile {

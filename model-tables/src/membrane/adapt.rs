@@ -24,8 +24,6 @@ pub enum Failure {
     },
     /// The press turns back: with more contact the indentation is less, and a plate that goes on would find the tip snap.
     SnapsThrough,
-    /// The solid model's.
-    Solid(crate::solid::Failure),
     /// The edge of a wrinkled zone, or the kind of the pole, did not settle.
     Unsettled,
 }
@@ -50,7 +48,6 @@ impl fmt::Display for Failure {
                 f,
                 "the press turns back there, more contact goes with less indentation, and the tip would snap through"
             ),
-            Self::Solid(failure) => failure.fmt(f),
             Self::Unsettled => write!(f, "the edge of a wrinkled or slack zone did not settle"),
         }
     }

@@ -7,12 +7,12 @@
 //! kind, and two of them agreed with each other where both were wrong. `designer ladder` holds the rule to the refined solid over
 //! random walls.
 
-use super::{Fingertip, Kind};
+use super::{Fingertip, Kind, ModelError};
 use crate::curve::Contact;
 use crate::design::Design;
-use crate::design_file::DesignFile;
-use crate::membrane::press::ModelError;
+use crate::design_file::{DEFAULT_ELEMENTS, DesignFile};
 use crate::solid;
+use crate::solid::SolidError;
 use crate::solid::mesh::Elements;
 
 /// The ladder that `auto` climbs.
@@ -25,8 +25,8 @@ pub const LADDER: [Kind; 5] = [
 ];
 /// Enough elements for a few tenths of a percent.
 pub const FINE: Elements = Elements {
-    through: 2,
-    along: 60,
+    through: DEFAULT_ELEMENTS[0] as usize,
+    along: DEFAULT_ELEMENTS[1] as usize,
 };
 /// What the other rungs are measured against.
 pub const REFINED: Elements = Elements {
@@ -150,7 +150,7 @@ pub struct Choice {
 /// [`ModelError`] of the last rung.
 pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
     let mut solved: Vec<(Kind, Fingertip, Vec<Contact>)> = Vec::new();
-    let mut failure = ModelError::RestNotForSolid;
+    let mut failure = ModelError::Solid(SolidError::RestNotForSolid);
     for judge in LADDER {
         if !judge.applies(design) {
             continue;

@@ -2,19 +2,24 @@
 //!
 //! [`choice`] is what `kind = "auto"` does; [`state`] is what is read off a state of either.
 
-use crate::curve::{Contact, Curve};
+use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};
 use crate::design_file::{DesignFile, ModelSection};
+use crate::limit::Limit;
 use crate::membrane::TensionField;
 use crate::membrane::adapt::Resolution;
-use crate::membrane::press::{self, CurveFailure, Limit, ModelError};
+use crate::membrane::press;
 use crate::solid;
 use crate::solid::inflation::mid_surface;
 use crate::solid::mesh::Elements;
 use std::fmt;
 
 pub mod choice;
+mod error;
+mod inflation;
 pub mod state;
+
+pub use error::ModelError;
 
 /// A model of a fingertip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -138,19 +143,19 @@ impl Fingertip {
     /// [`ModelError`], as the model's own.
     pub fn contact_at(&mut self, indentation: f64) -> Result<Contact, ModelError> {
         match self {
-            Self::Membrane(press) => press.contact_at(indentation),
-            Self::Solid(press) => press.contact_at(indentation),
+            Self::Membrane(press) => Ok(press.contact_at(indentation)?),
+            Self::Solid(press) => Ok(press.contact_at(indentation)?),
         }
     }
 
     /// The end of the press.
     ///
     /// # Errors
-    /// [`ModelError::PressUnsolved`] if the way there fails.
+    /// [`ModelError`] if the way there fails.
     pub fn limit(&mut self) -> Result<Limit, ModelError> {
         match self {
-            Self::Membrane(press) => press.limit(),
-            Self::Solid(press) => press.limit(),
+            Self::Membrane(press) => Ok(press.limit()?),
+            Self::Solid(press) => Ok(press.limit()?),
         }
     }
 
@@ -158,10 +163,10 @@ impl Fingertip {
     ///
     /// # Errors
     /// [`CurveFailure`] if a state is missing, or pressure or force do not grow throughout.
-    pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure> {
+    pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure<ModelError>> {
         match self {
-            Self::Membrane(press) => press.curve(deepest),
-            Self::Solid(press) => press.curve(deepest),
+            Self::Membrane(press) => press.curve(deepest).map_err(CurveFailure::of),
+            Self::Solid(press) => press.curve(deepest).map_err(CurveFailure::of),
         }
     }
 }

@@ -1,8 +1,7 @@
 //! What either model says of a state, in the same words.
 
-use super::Fingertip;
+use super::{Fingertip, ModelError};
 use crate::membrane::Zone;
-use crate::membrane::press::ModelError;
 
 /// A state of rest.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,6 +15,8 @@ pub mod element;
 #[cfg(feature = "std")]
 pub mod equilibrium;
 #[cfg(feature = "std")]
+mod error;
+#[cfg(feature = "std")]
 pub mod fluid;
 #[cfg(feature = "std")]
 pub mod front;
@@ -30,6 +32,9 @@ pub mod press;
 pub mod section;
 #[cfg(feature = "std")]
 pub mod trail;
+
+#[cfg(feature = "std")]
+pub use error::SolidError;
 
 use core::fmt;
 

@@ -5,7 +5,7 @@ use crate::methods::shooting::Shooting;
 use model_tables::design::{Design, RestBy};
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::Resolution;
-use model_tables::membrane::press::{FULL, ModelError, Press};
+use model_tables::membrane::press::{FULL, MembraneError, Press};
 use output::Refusal;
 use output::drawing::{
     Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, Panel, VERMILION, power,
@@ -45,7 +45,7 @@ fn ours(
     stretch: f64,
     field: TensionField,
     resolution: Resolution,
-) -> Result<Cost, ModelError> {
+) -> Result<Cost, MembraneError> {
     let press: Press = Press::with_resolution(&design(stretch), field, resolution)?;
     let limit = press.clone().limit()?.indentation;
     let mut best = f64::INFINITY;
@@ -97,7 +97,7 @@ fn shooting(stretch: f64) -> Option<Cost> {
 /// Measures all.
 pub(super) fn measure(stride: usize) -> Result<Vec<Cost>, Refusal> {
     let mut costs = Vec::new();
-    let refuse = |error: ModelError| Refusal(format!("the cost of a state: {error}"));
+    let refuse = |error: MembraneError| Refusal(format!("the cost of a state: {error}"));
     for k in (0..=16).step_by(stride) {
         let over_one = 1e-3 * libm::pow(2000.0, f64::from(k) / 16.0);
         let stretch = 1.0 + over_one;

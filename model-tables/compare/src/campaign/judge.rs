@@ -9,7 +9,7 @@ use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::{Failure, Resolution};
 use model_tables::membrane::equilibrium::Outcome;
-use model_tables::membrane::press::{FULL, ModelError, Press};
+use model_tables::membrane::press::{FULL, MembraneError, Press};
 use model_tables::membrane::state::PressedState;
 
 /// What became of a state.
@@ -73,7 +73,7 @@ const ENERGY_ROUNDING: f64 = 1e-14;
 const SECOND_TOLERANCE: f64 = 1e-5;
 
 /// Force by virtual work over the force of the state, less 1, and what of it rounding explains.
-fn work_error(press: &mut Press, state: &PressedState, step: f64) -> Result<(f64, f64), ModelError> {
+fn work_error(press: &mut Press, state: &PressedState, step: f64) -> Result<(f64, f64), MembraneError> {
     let (mut energy, mut volume) = (0.0, 0.0);
     for (k, weight) in (1..).zip(WEIGHTS) {
         let shift = libm::exp(step * f64::from(k));
@@ -92,40 +92,36 @@ fn work_error(press: &mut Press, state: &PressedState, step: f64) -> Result<(f64
 }
 
 /// Why a refusal was made, in a word that can be counted.
-fn reason(error: &ModelError, press: Option<&Press>) -> &'static str {
+fn reason(error: &MembraneError, press: Option<&Press>) -> &'static str {
     let failure = match error {
-        ModelError::NoRestState { .. } => return "pole-stretch-turns",
-        ModelError::BeyondLimit { .. } => return "beyond-limit",
-        ModelError::NotAnIndentation { .. } => return "not-an-indentation",
-        ModelError::LawUnstable { .. } => return "law-unstable",
-        ModelError::Unstretched | ModelError::RestNotForSolid | ModelError::PressureOutOfReach { .. } => {
-            return "no-rest-state";
-        }
-        ModelError::Unheld { .. } => return "inflates-by-itself",
-        ModelError::RestUnsolved { failure } | ModelError::PressUnsolved { failure, .. } => failure,
+        MembraneError::NoRestState { .. } => return "pole-stretch-turns",
+        MembraneError::BeyondLimit { .. } => return "beyond-limit",
+        MembraneError::NotAnIndentation { .. } => return "not-an-indentation",
+        MembraneError::LawUnstable { .. } => return "law-unstable",
+        MembraneError::Unstretched => return "no-rest-state",
+        MembraneError::Unheld { .. } => return "inflates-by-itself",
+        MembraneError::RestUnsolved { failure } | MembraneError::PressUnsolved { failure, .. } => failure,
     };
     match (error, failure) {
-        (ModelError::PressUnsolved { .. }, _)
+        (MembraneError::PressUnsolved { .. }, _)
             if press.is_some_and(|press| press.stability().value < NO_MARGIN) =>
         {
             "press-law-unstable"
         }
-        (ModelError::RestUnsolved { .. }, Failure::Newton(Outcome::Inadmissible { .. })) => {
+        (MembraneError::RestUnsolved { .. }, Failure::Newton(Outcome::Inadmissible { .. })) => {
             "rest-inadmissible"
         }
-        (ModelError::RestUnsolved { .. }, _) => "rest-unsolved",
+        (MembraneError::RestUnsolved { .. }, _) => "rest-unsolved",
         (_, Failure::Newton(Outcome::Inadmissible { .. })) => "press-inadmissible",
         (_, Failure::Newton(Outcome::Singular { .. })) => "press-singular",
         (_, Failure::Newton(_)) => "press-stalled",
         (_, Failure::EdgePushes { .. }) => "plain-edge-pushes",
         (_, Failure::SnapsThrough) => "press-snaps-through",
-        // Membranes alone are judged here.
-        (_, Failure::Solid(_)) => "solid",
         (_, Failure::Unsettled) => "press-unsettled",
     }
 }
 
-fn refused(part: f64, error: &ModelError, why: &'static str) -> Judged {
+fn refused(part: f64, error: &MembraneError, why: &'static str) -> Judged {
     Judged {
         part,
         state: None,

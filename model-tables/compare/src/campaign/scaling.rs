@@ -2,8 +2,9 @@
 
 use model_tables::curve::Contact;
 use model_tables::design::{Design, Membrane, RestBy};
-use model_tables::membrane::press::ModelError;
+use model_tables::model::ModelError;
 use model_tables::model::choice::REFINED;
+use model_tables::solid::SolidError;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::Press;
 use std::time::Instant;
@@ -53,8 +54,8 @@ pub struct Cost {
 /// Every state of a press, shallowest first.
 ///
 /// # Errors
-/// [`ModelError`] of a state.
-pub fn sweep(press: &mut Press) -> Result<Vec<Contact>, ModelError> {
+/// [`SolidError`] of a state.
+pub fn sweep(press: &mut Press) -> Result<Vec<Contact>, SolidError> {
     (1..=STATES).map(|k| press.contact_at(STEP * k as f64)).collect()
 }
 

@@ -5,7 +5,7 @@ use model_tables::curve::Contact;
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::material::preset::{AGILUS30, SKIN};
-use model_tables::membrane::press::ModelError;
+use model_tables::model::ModelError;
 use model_tables::model::choice::{LADDER, PARTS, Wanted};
 use model_tables::model::{Fingertip, Kind};
 use model_tables::random::Random;

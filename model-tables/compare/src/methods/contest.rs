@@ -13,7 +13,7 @@ use model_tables::material::Law;
 use model_tables::material::preset::{AGILUS30, SKIN};
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::Resolution;
-use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::press::{MembraneError, Press};
 use std::time::{Duration, Instant};
 
 /// States of a sweep.
@@ -205,8 +205,8 @@ impl Sweep {
     /// Equal steps of indentation down to a part of the limit, and the truth at each.
     ///
     /// # Errors
-    /// [`ModelError`].
-    pub fn new(contestant: &Contestant) -> core::result::Result<Self, ModelError> {
+    /// [`MembraneError`].
+    pub fn new(contestant: &Contestant) -> core::result::Result<Self, MembraneError> {
         let design = &contestant.design;
         let mut press = Press::<Law, 8>::with_resolution(design, TensionField::Plain, TRUTH)?;
         let mut check = Press::<Law, 7>::with_resolution(design, TensionField::Plain, CHECK)?;

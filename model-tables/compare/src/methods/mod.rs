@@ -17,7 +17,7 @@ pub mod light_contact;
 pub mod plain;
 pub mod shooting;
 
-use model_tables::membrane::press::ModelError;
+use model_tables::membrane::press::MembraneError;
 use std::fmt;
 
 /// A pressed state, as the methods for comparison find it; SI units.
@@ -117,7 +117,7 @@ pub enum Failure {
         largest: f64,
     },
     /// The full membrane, on which the model is built, gave no answer.
-    Membrane(ModelError),
+    Membrane(MembraneError),
 }
 
 impl fmt::Display for Failure {
@@ -194,8 +194,8 @@ impl fmt::Display for Unknown {
 
 impl core::error::Error for Failure {}
 
-impl From<ModelError> for Failure {
-    fn from(error: ModelError) -> Self {
+impl From<MembraneError> for Failure {
+    fn from(error: MembraneError) -> Self {
         Self::Membrane(error)
     }
 }

@@ -3,8 +3,8 @@
 use super::warn;
 use model_tables::design_file::{Calibration, DesignFile};
 use model_tables::material::preset::Preset;
-use model_tables::membrane::press::ModelError;
 use model_tables::model::Fingertip;
+use model_tables::model::ModelError;
 use std::path::Path;
 
 /// The depth to press to, metres, for what the bench's stage reads, millimetres: from first touch on.
@@ -19,27 +19,10 @@ pub(super) fn depth(calibration: &Calibration, read_mm: f64) -> f64 {
 }
 
 /// An error of the model in the frame of the bench.
-pub(super) fn as_read(calibration: &Calibration, error: ModelError) -> ModelError {
-    let read = |metres: f64| calibration.indentation_read(metres);
-    match error {
-        ModelError::BeyondLimit { asked, mut limit } => {
-            limit.indentation = read(limit.indentation);
-            ModelError::BeyondLimit {
-                asked: read(asked),
-                limit,
-            }
-        }
-        ModelError::PressUnsolved {
-            asked,
-            reached,
-            failure,
-        } => ModelError::PressUnsolved {
-            asked: read(asked),
-            reached: read(reached),
-            failure,
-        },
-        other => other,
-    }
+pub(super) fn as_read(calibration: &Calibration, error: impl Into<ModelError>) -> ModelError {
+    error
+        .into()
+        .read_by(|metres| calibration.indentation_read(metres))
 }
 
 /// What a report says of the design's material.

@@ -4,8 +4,9 @@ use super::model::{self, Model};
 use super::{Field, bench, finite, read, refuse_plain};
 use model_tables::design_file::DesignFile;
 use model_tables::membrane::Zone;
-use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::press::Press;
 use model_tables::model::Kind;
+use model_tables::model::ModelError;
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
 use output::rows::{Cell, Rows};
@@ -124,7 +125,7 @@ fn solid(
             bench::depth(calibration, arguments.indentation_mm),
             arguments.points as usize,
         )
-        .map_err(refuse)?;
+        .map_err(|error| refuse(error.into()))?;
     let mut rows = Rows::new(COLUMNS);
     for station in stations {
         let zone = if station.in_contact {

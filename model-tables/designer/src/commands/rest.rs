@@ -4,8 +4,9 @@ use super::model::{self, Model};
 use super::{bench, read, warn_of_instability};
 use model_tables::design_file::DesignFile;
 use model_tables::membrane::TensionField;
-use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::press::Press;
 use model_tables::membrane::rest::Branch;
+use model_tables::model::ModelError;
 use model_tables::model::{Fingertip, Kind};
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
@@ -74,7 +75,7 @@ fn solid(
     let refuse = |error: ModelError| Refusal::about(file, &error);
     let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
     let rest = *press.rest();
-    let limit = press.limit().map_err(refuse)?;
+    let limit = press.limit().map_err(|error| refuse(error.into()))?;
     let mut rows = Rows::new(COLUMNS);
     rows.push(vec![
         Cell::Number(calibration.pressure_read(rest.pressure) * 1e-3),

@@ -4,8 +4,9 @@ use super::model::{self, Model};
 use super::{Field, bench, finite, read, refuse_plain, warn, warn_of_instability};
 use model_tables::design_file::DesignFile;
 use model_tables::material::stability::Margin;
-use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::press::Press;
 use model_tables::membrane::state::PressedState;
+use model_tables::model::ModelError;
 use model_tables::model::{Fingertip, Kind};
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
@@ -114,7 +115,9 @@ fn solid(
     // States on the way serve all that follow, in whatever order.
     for &asked in &arguments.indentation_mm {
         let depth = bench::depth(calibration, asked);
-        let state = press.at_indentation(depth).map_err(refuse)?;
+        let state = press
+            .at_indentation(depth)
+            .map_err(|error| refuse(error.into()))?;
         deepest = deepest.max(depth);
         rows.push(vec![
             Cell::Number(asked),

@@ -2,7 +2,7 @@
 
 use super::model::Quantity;
 use super::parameter::Parameter;
-use model_tables::membrane::press::ModelError;
+use model_tables::model::ModelError;
 use std::fmt;
 
 /// Why there is no fit. `Display` is one line with the remedy.

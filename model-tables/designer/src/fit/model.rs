@@ -11,7 +11,8 @@ use model_tables::design_file::{DesignFile, ModelSection};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::Resolution;
-use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::press::{MembraneError, Press};
+use model_tables::model::ModelError;
 use model_tables::model::{self, choice};
 use model_tables::solid;
 use model_tables::solid::inflation::mid_surface;
@@ -174,8 +175,8 @@ enum Ready {
 impl Ready {
     fn new(kind: Kind, design: &Design) -> Result<Self, ModelError> {
         let membrane = |design: &Design| {
-            Press::with_resolution(design, TensionField::Relaxed, MESH)
-                .map(|press| Self::Membrane(Box::new(press)))
+            let press = Press::with_resolution(design, TensionField::Relaxed, MESH)?;
+            Ok(Self::Membrane(Box::new(press)))
         };
         match kind {
             Kind::Membrane => membrane(design),
@@ -198,8 +199,8 @@ impl Ready {
 
     fn contact_at(&mut self, indentation: f64) -> Result<Contact, ModelError> {
         match self {
-            Self::Membrane(press) => press.contact_at(indentation),
-            Self::Solid(press) => press.contact_at(indentation),
+            Self::Membrane(press) => Ok(press.contact_at(indentation)?),
+            Self::Solid(press) => Ok(press.contact_at(indentation)?),
         }
     }
 }
@@ -316,7 +317,8 @@ impl Model {
         while points.len() < MOST_STATES {
             match press.contact_at(indentation) {
                 Ok(point) => points.push(point),
-                Err(ModelError::BeyondLimit { limit, .. }) => {
+                Err(error) => {
+                    let limit = error.beyond().ok_or(error)?;
                     ends = true;
                     let last = NEARLY * limit.indentation;
                     if points.last().is_none_or(|point| point.indentation < last) {
@@ -324,7 +326,6 @@ impl Model {
                     }
                     break;
                 }
-                Err(error) => return Err(error),
             }
             let last = points[points.len() - 1];
             if last.indentation >= deepest && last.pressure_rise >= largest_rise {
@@ -336,13 +337,13 @@ impl Model {
             }
         }
         let [.., before, end] = points[..] else {
-            return Err(ModelError::NotAnIndentation { asked: deepest });
+            return Err(MembraneError::NotAnIndentation { asked: deepest }.into());
         };
         let slope = |of: fn(&Contact) -> f64| {
             libm::log(of(&end) / of(&before)) / libm::log(end.indentation / before.indentation)
         };
         let end_slopes = [slope(|c| c.pressure_rise), slope(|c| c.force)];
-        let unsolved = ModelError::NotAnIndentation { asked: deepest };
+        let unsolved = ModelError::from(MembraneError::NotAnIndentation { asked: deepest });
         Ok(Shape {
             curve: Curve::new(points).map_err(|_| unsolved)?,
             end_slopes,

@@ -7,7 +7,7 @@ use super::noise::{Noise, ROUNDING};
 use super::parameter::{Parameter, Units, Values};
 use super::robust;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use model_tables::membrane::press::ModelError;
+use model_tables::model::ModelError;
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 

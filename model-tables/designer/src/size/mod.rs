@@ -13,7 +13,7 @@ use model_tables::material::Law;
 use model_tables::material::preset::Preset;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::Resolution;
-use model_tables::membrane::press::{ModelError, Press, SWEEP};
+use model_tables::membrane::press::{MembraneError, Press, SWEEP};
 use model_tables::membrane::state::Wrinkling;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -233,7 +233,7 @@ fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Pressure at the deepest indentation, largest `I1 - 3` at rest, and forces of a design.
-fn pressed(target: &Target, design: &Design) -> Result<(f64, f64, Vec<f64>), ModelError> {
+fn pressed(target: &Target, design: &Design) -> Result<(f64, f64, Vec<f64>), MembraneError> {
     let mut press = Press::<Law, 4>::with_resolution(design, TensionField::Relaxed, MESH)?;
     let strain = invariant(&mut press, 0.0);
     let rest = press.rest().pressure;
@@ -248,7 +248,7 @@ fn pressed(target: &Target, design: &Design) -> Result<(f64, f64, Vec<f64>), Mod
 }
 
 /// Everything there is to say of a design.
-fn judge(target: &Target, material: &'static Preset, start: &Start) -> Result<Sized, ModelError> {
+fn judge(target: &Target, material: &'static Preset, start: &Start) -> Result<Sized, MembraneError> {
     let design = start.design(target);
     let mut press = Press::<Law, 5>::with_resolution(&design, TensionField::Relaxed, SWEEP)?;
     let rest = *press.rest();
@@ -278,7 +278,7 @@ fn judge(target: &Target, material: &'static Preset, start: &Start) -> Result<Si
     let limit = match press.limit() {
         Ok(limit) => limit.indentation,
         // A law with `C3 < 0` loses its stability before the press ends: that deep it goes.
-        Err(ModelError::PressUnsolved { reached, .. }) => reached,
+        Err(MembraneError::PressUnsolved { reached, .. }) => reached,
         Err(error) => return Err(error),
     };
     let mut by_tolerance = [0.0; 3];

@@ -2,12 +2,11 @@
 
 use super::{Certified, NoTables, emit, tables};
 use crate::constants::{Transducer, TransducerKind};
-use crate::curve::{Contact, Curve};
+use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{
     DataCurve, DesignFile, DesignFileError, Supply, TransducerKindSection, TransducerSection, Transfer,
 };
-use crate::membrane::press::{CurveFailure, ModelError};
-use crate::model::Fingertip;
+use crate::model::{Fingertip, ModelError};
 use sha2::{Digest as _, Sha256};
 use std::fmt;
 use std::path::Path;
@@ -77,7 +76,7 @@ pub enum GenerateError {
     /// The model gives no answer, or ends before `max_indentation_mm`.
     Model(ModelError),
     /// Pressure or force do not grow throughout.
-    Curve(CurveFailure),
+    Curve(CurveFailure<ModelError>),
     /// A pressure lies outside the transducer's range.
     OutOfRange {
         /// Which pressure.

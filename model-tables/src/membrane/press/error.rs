@@ -1,14 +1,14 @@
-//! Why the model gives no answer, in words.
+//! Why the membrane gives no answer, in words.
 
-use super::Limit;
+use crate::limit::{Limit, refuse_indentation, refuse_unsolved};
 use crate::material::stability::Margin;
 use crate::membrane::adapt::Failure;
 use crate::membrane::rest::Quantity;
 use core::fmt;
 
-/// Why the model gives no answer.
+/// Why the membrane gives no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ModelError {
+pub enum MembraneError {
     /// A rest state of this pressure, radius or height does not exist; SI units.
     NoRestState {
         /// Which quantity was given.
@@ -29,15 +29,6 @@ pub enum ModelError {
     },
     /// A membrane that nothing stretches has no shape to press.
     Unstretched,
-    /// A solid rests unstretched, or at a pressure.
-    RestNotForSolid,
-    /// Inflation of a solid does not reach this pressure; pascals.
-    PressureOutOfReach {
-        /// What was asked for.
-        asked: f64,
-        /// The greatest that inflation passes.
-        greatest: f64,
-    },
     /// The rest state does not hold: it would go on inflating by itself.
     Unheld {
         /// Compliance of the fluid path, cubic metres per pascal.
@@ -73,7 +64,7 @@ pub enum ModelError {
     },
 }
 
-impl fmt::Display for ModelError {
+impl fmt::Display for MembraneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NoRestState {
@@ -113,16 +104,6 @@ impl fmt::Display for ModelError {
                 f,
                 "an unstretched membrane has no rest state: give one in [rest], or set model.kind to \"solid\""
             ),
-            Self::RestNotForSolid => write!(
-                f,
-                "a solid rests unstretched or at a pressure: leave [rest] out, or give rest.pressure_kpa"
-            ),
-            Self::PressureOutOfReach { asked, greatest } => write!(
-                f,
-                "no rest state has a pressure of {} kPa: inflation reaches {:.6} kPa and softens there; ask for less",
-                asked * 1e-3,
-                greatest * 1e-3
-            ),
             Self::Unheld { compliance, largest } => match largest {
                 Some(largest) => write!(
                     f,
@@ -142,32 +123,37 @@ impl fmt::Display for ModelError {
                     "the rest state was not found ({failure}); ask for a less inflated one"
                 )
             }
-            Self::BeyondLimit { asked, limit } => write!(
-                f,
-                "indentation {} mm is beyond the limit of {:.6} mm, where the press ends ({}); ask for less",
-                asked * 1e3,
-                limit.indentation * 1e3,
-                limit.ends_by.word()
-            ),
-            Self::NotAnIndentation { asked } => {
-                write!(
-                    f,
-                    "indentation {} mm is not possible: it must be a number of at least 0",
-                    asked * 1e3
-                )
-            }
+            Self::BeyondLimit { asked, limit } => limit.refuse(f, asked),
+            Self::NotAnIndentation { asked } => refuse_indentation(f, asked),
             Self::PressUnsolved {
                 asked,
                 reached,
                 failure,
-            } => write!(
-                f,
-                "the state at indentation {} mm was not found ({failure}); the last one found is at {:.6} mm",
-                asked * 1e3,
-                reached * 1e3
-            ),
+            } => refuse_unsolved(f, asked, reached, &failure),
         }
     }
 }
 
-impl core::error::Error for ModelError {}
+impl core::error::Error for MembraneError {}
+
+impl MembraneError {
+    /// The same with every indentation as `read` has it.
+    pub fn read_by(self, read: impl Fn(f64) -> f64) -> Self {
+        match self {
+            Self::BeyondLimit { asked, limit } => Self::BeyondLimit {
+                asked: read(asked),
+                limit: limit.read_by(read),
+            },
+            Self::PressUnsolved {
+                asked,
+                reached,
+                failure,
+            } => Self::PressUnsolved {
+                asked: read(asked),
+                reached: read(reached),
+                failure,
+            },
+            other => other,
+        }
+    }
+}

@@ -1,47 +1,13 @@
 //! Where a press ends, and by what.
 
 use super::way::Stop;
-use super::{LARGEST_STEP, ModelError, Press, SMALLEST_STEP};
+use super::{LARGEST_STEP, MembraneError, Press, SMALLEST_STEP};
+use crate::limit::{EndsBy, Limit};
 use crate::material::Hyperelastic;
 use crate::membrane::adapt::Failure;
 use crate::membrane::equations::{CONTACT_RADIUS, PRESSURE};
 use crate::membrane::equilibrium::PressControl;
 use core::f64::consts::PI;
-
-/// What ends a press.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EndsBy {
-    /// The bulge becomes tangent to the base plane.
-    BulgeTouchesBase,
-    /// All fluid has been pressed into the compliance: the membrane lies flat.
-    FluidDrained,
-    /// The inner surface of a solid wall reaches the base plane.
-    WallTouchesBase,
-}
-
-impl EndsBy {
-    /// The word used in tables.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::BulgeTouchesBase => "bulge-touches-base",
-            Self::FluidDrained => "fluid-drained",
-            Self::WallTouchesBase => "wall-touches-base",
-        }
-    }
-}
-
-/// The end of a press.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
-    /// Largest indentation, metres.
-    pub indentation: f64,
-    /// Pressure there, pascals.
-    pub pressure: f64,
-    /// Force there, newtons.
-    pub force: f64,
-    /// Why it ends.
-    pub ends_by: EndsBy,
-}
 
 /// Indentation over the height up to which a press is followed before its fluid counts as drained.
 const NEARLY_FLAT: f64 = 0.9995;
@@ -61,8 +27,8 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// The end of the press.
     ///
     /// # Errors
-    /// [`ModelError::PressUnsolved`] if the way there fails.
-    pub fn limit(&mut self) -> Result<Limit, ModelError> {
+    /// [`MembraneError::PressUnsolved`] if the way there fails.
+    pub fn limit(&mut self) -> Result<Limit, MembraneError> {
         if let Some(limit) = self.limit {
             return limit;
         }
@@ -82,7 +48,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 .is_ok_and(|limit| indentation * unit > limit.indentation)
     }
 
-    fn find_limit(&mut self) -> Result<Limit, ModelError> {
+    fn find_limit(&mut self) -> Result<Limit, MembraneError> {
         let height = self.rest.solution.height;
         let edge = self.edge();
         let scale = self.scale;
@@ -130,7 +96,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             {
                 // Where nothing more is found, the press has ended there.
                 let beyond = reached + LARGEST_GAP * height;
-                self.reach(beyond).map_err(|_| ModelError::PressUnsolved {
+                self.reach(beyond).map_err(|_| MembraneError::PressUnsolved {
                     asked: next * unit,
                     reached: reached * unit,
                     failure,
@@ -163,7 +129,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                     return Ok(end(at, pressure, EndsBy::BulgeTouchesBase));
                 }
                 Stop::Failed { failure, .. } if step < SMALLEST_STEP * height => {
-                    return Err(ModelError::PressUnsolved {
+                    return Err(MembraneError::PressUnsolved {
                         asked: next * unit,
                         reached: at * unit,
                         failure,

@@ -6,14 +6,12 @@ mod limit;
 mod sampled;
 mod way;
 
-pub use error::ModelError;
-pub use limit::{EndsBy, Limit};
-#[cfg(feature = "std")]
-pub use sampled::CurveFailure;
+pub use error::MembraneError;
 
 use crate::curve::Contact;
 use crate::design::Membrane as Dimensions;
 use crate::design::{Design, RestBy};
+use crate::limit::Limit;
 use crate::material::stability::Margin;
 use crate::material::{Hyperelastic, Law, Scaled};
 use crate::membrane::adapt::{Adaptive, Graded, Resolution};
@@ -74,15 +72,15 @@ pub struct Press<L = Law, const S: usize = STAGES> {
     rest_shape: Shape,
     branch: Branch,
     history: History<S>,
-    limit: Option<Result<Limit, ModelError>>,
+    limit: Option<Result<Limit, MembraneError>>,
 }
 
 impl Press {
     /// Inflates a design to its rest state, on the mesh of the full model.
     ///
     /// # Errors
-    /// [`ModelError::NoRestState`] and [`ModelError::RestUnsolved`].
-    pub fn new(design: &Design, tension_field: TensionField) -> Result<Self, ModelError> {
+    /// [`MembraneError::NoRestState`] and [`MembraneError::RestUnsolved`].
+    pub fn new(design: &Design, tension_field: TensionField) -> Result<Self, MembraneError> {
         Self::with_resolution(design, tension_field, FULL)
     }
 }
@@ -91,12 +89,12 @@ impl<const S: usize> Press<Law, S> {
     /// Inflates a design to its rest state, on a mesh of a given resolution.
     ///
     /// # Errors
-    /// [`ModelError::NoRestState`] and [`ModelError::RestUnsolved`].
+    /// [`MembraneError::NoRestState`] and [`MembraneError::RestUnsolved`].
     pub fn with_resolution(
         design: &Design,
         tension_field: TensionField,
         resolution: Resolution,
-    ) -> Result<Self, ModelError> {
+    ) -> Result<Self, MembraneError> {
         let Design {
             membrane,
             law,
@@ -113,7 +111,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// The press passes through the caller's stack: where that is small, inflate it in a [`Workspace`].
     ///
     /// # Errors
-    /// [`ModelError::NoRestState`] and [`ModelError::RestUnsolved`].
+    /// [`MembraneError::NoRestState`] and [`MembraneError::RestUnsolved`].
     pub fn inflate(
         dimensions: &Dimensions,
         law: L,
@@ -121,7 +119,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         compliance: f64,
         tension_field: TensionField,
         resolution: Resolution,
-    ) -> Result<Self, ModelError> {
+    ) -> Result<Self, MembraneError> {
         let mut workspace = Workspace::new(law);
         workspace.inflate(dimensions, rest, compliance, tension_field, resolution)?;
         Ok(workspace.into_press())
@@ -155,8 +153,8 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// The pressed state at an indentation in metres, 0 ..= limit.
     ///
     /// # Errors
-    /// [`ModelError::NotAnIndentation`], [`ModelError::BeyondLimit`], [`ModelError::PressUnsolved`].
-    pub fn at_indentation(&mut self, indentation: f64) -> Result<PressedState, ModelError> {
+    /// [`MembraneError::NotAnIndentation`], [`MembraneError::BeyondLimit`], [`MembraneError::PressUnsolved`].
+    pub fn at_indentation(&mut self, indentation: f64) -> Result<PressedState, MembraneError> {
         let contact = self.contact_at(indentation)?;
         if indentation == 0.0 {
             return Ok(PressedState {
@@ -184,9 +182,9 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     ///
     /// # Errors
     /// As [`Press::at_indentation`].
-    pub fn contact_at(&mut self, indentation: f64) -> Result<Contact, ModelError> {
+    pub fn contact_at(&mut self, indentation: f64) -> Result<Contact, MembraneError> {
         if !(indentation >= 0.0 && indentation.is_finite()) {
-            return Err(ModelError::NotAnIndentation { asked: indentation });
+            return Err(MembraneError::NotAnIndentation { asked: indentation });
         }
         if indentation == 0.0 {
             return Ok(Contact::default());
@@ -198,11 +196,11 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         };
         if let Err(stop) = reached {
             return Err(match stop {
-                Stop::BeyondLimit => ModelError::BeyondLimit {
+                Stop::BeyondLimit => MembraneError::BeyondLimit {
                     asked: indentation,
                     limit: self.limit()?,
                 },
-                Stop::Failed { reached, failure } => ModelError::PressUnsolved {
+                Stop::Failed { reached, failure } => MembraneError::PressUnsolved {
                     asked: indentation,
                     reached: reached * self.scale.length,
                     failure,
@@ -249,7 +247,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         &mut self,
         indentation: f64,
         points: usize,
-    ) -> Result<impl Iterator<Item = MeridianPoint>, ModelError> {
+    ) -> Result<impl Iterator<Item = MeridianPoint>, MembraneError> {
         let edge = self.at_indentation(indentation)?.contact_parameter;
         let graded = if indentation == 0.0 {
             &self.rest

@@ -1,9 +1,8 @@
 //! A press as a curve.
 
-use super::{ModelError, Press};
-use crate::curve::{Curve, CurveError};
+use super::{MembraneError, Press};
+use crate::curve::{Curve, CurveFailure};
 use crate::material::Hyperelastic;
-use std::fmt;
 
 impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// The curve of a press down to `deepest`, metres: states from a hundred-thousandth of it on, closest at the end. On the
@@ -12,7 +11,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     ///
     /// # Errors
     /// As [`Press::at_indentation`], and [`CurveFailure::Shape`] if pressure or force do not grow throughout.
-    pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure> {
+    pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure<MembraneError>> {
         let mut points = Vec::with_capacity(CURVE_INTERVALS + 1);
         for k in (0..=CURVE_INTERVALS).rev() {
             let back = k as f64 / CURVE_INTERVALS as f64;
@@ -32,23 +31,3 @@ const CURVE_RANGE: f64 = 1e5;
 /// vanish there. Near the limit everything changes with the distance to it, and beyond the last state there is none to
 /// lean on.
 const CROWDING: f64 = 0.93;
-
-/// Why there is no curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum CurveFailure {
-    /// A state is missing.
-    Model(ModelError),
-    /// Pressure or force do not grow with indentation.
-    Shape(CurveError),
-}
-
-impl fmt::Display for CurveFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Model(error) => error.fmt(f),
-            Self::Shape(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for CurveFailure {}

@@ -10,7 +10,7 @@ use crate::membrane::adapt::{Adaptive, Graded};
 use crate::membrane::equations::{Membrane, TensionField};
 use crate::membrane::history::History;
 use crate::membrane::inflation::End;
-use crate::membrane::press::{ModelError, Press, STAGES};
+use crate::membrane::press::{MembraneError, Press, STAGES};
 use crate::membrane::rest::{Branch, Quantity, RestFailure};
 use crate::membrane::state::{self, Scale, Shape};
 
@@ -47,8 +47,8 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
     /// Inflates a membrane to its rest state, in place of whatever was here; `compliance` in cubic metres per pascal.
     ///
     /// # Errors
-    /// [`ModelError::NoRestState`], [`ModelError::LawUnstable`], [`ModelError::Unheld`] and
-    /// [`ModelError::RestUnsolved`].
+    /// [`MembraneError::NoRestState`], [`MembraneError::LawUnstable`], [`MembraneError::Unheld`] and
+    /// [`MembraneError::RestUnsolved`].
     pub fn inflate(
         &mut self,
         dimensions: &Dimensions,
@@ -56,7 +56,7 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
         compliance: f64,
         tension_field: TensionField,
         resolution: Resolution,
-    ) -> Result<&mut Press<L, S>, ModelError> {
+    ) -> Result<&mut Press<L, S>, MembraneError> {
         let press = &mut self.press;
         let membrane = &mut press.solver.equilibrium.membrane;
         let modulus = membrane.law.law.shear_modulus();
@@ -70,25 +70,25 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
         press.history.clear();
         press.limit = None;
         match rest {
-            RestBy::Unstretched => return Err(ModelError::Unstretched),
+            RestBy::Unstretched => return Err(MembraneError::Unstretched),
             RestBy::PoleStretch(stretch) => {
                 let found = press.solver.rest_by_pole_stretch(stretch, &mut press.rest);
                 found.map_err(|end| match end {
-                    End::Turns { greatest } => ModelError::NoRestState {
+                    End::Turns { greatest } => MembraneError::NoRestState {
                         quantity: Quantity::PoleStretch,
                         asked: stretch,
                         least: 1.0,
                         greatest,
                     },
-                    End::Unstable(margin) => ModelError::LawUnstable {
+                    End::Unstable(margin) => MembraneError::LawUnstable {
                         asked: stretch,
                         margin,
                     },
-                    End::Bulges => ModelError::Unheld {
+                    End::Bulges => MembraneError::Unheld {
                         compliance,
                         largest: None,
                     },
-                    End::Lost(failure) => ModelError::RestUnsolved { failure },
+                    End::Lost(failure) => MembraneError::RestUnsolved { failure },
                 })?;
                 press.branch = Branch::Only;
             }
@@ -107,7 +107,7 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
         if let Some(largest) = held_below
             && compliance >= largest
         {
-            return Err(ModelError::Unheld {
+            return Err(MembraneError::Unheld {
                 compliance,
                 largest: Some(largest),
             });
@@ -124,16 +124,16 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
 
 impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// The rest state in which a quantity is `asked`, in its SI `unit`.
-    fn rest_by(&mut self, quantity: Quantity, asked: f64, unit: f64) -> Result<(), ModelError> {
+    fn rest_by(&mut self, quantity: Quantity, asked: f64, unit: f64) -> Result<(), MembraneError> {
         let found = self.solver.rest_by(quantity, asked / unit);
         (self.rest, self.branch) = found.map_err(|failure| match failure {
-            RestFailure::OutOfReach { least, greatest, .. } => ModelError::NoRestState {
+            RestFailure::OutOfReach { least, greatest, .. } => MembraneError::NoRestState {
                 quantity,
                 asked,
                 least: least * unit,
                 greatest: greatest * unit,
             },
-            RestFailure::Solver(failure) => ModelError::RestUnsolved { failure },
+            RestFailure::Solver(failure) => MembraneError::RestUnsolved { failure },
         })?;
         Ok(())
     }

@@ -8,7 +8,7 @@ use core::f64::consts::{FRAC_PI_4, PI};
 use model_tables::actuator::{Actuator, Blocked, FREE_DIAMETER};
 use model_tables::design::{Design, RestBy};
 use model_tables::membrane::TensionField;
-use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::press::{MembraneError, Press};
 use model_tables::membrane::state::{PressedState, Shape};
 use output::Refusal;
 
@@ -86,7 +86,7 @@ impl Paper {
             )),
         )?;
         let design = file.design();
-        let failed = |error: ModelError| Refusal(format!("the paper's design: {error}"));
+        let failed = |error: MembraneError| Refusal(format!("the paper's design: {error}"));
         let mut press = Press::new(&design, TensionField::Relaxed).map_err(failed)?;
         let rest = *press.rest();
         let mut states = Vec::new();

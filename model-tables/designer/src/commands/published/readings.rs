@@ -4,7 +4,7 @@ use super::paper::{EQUATOR_RADIUS, INDENTATIONS, REST_PRESSURE};
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::press::{MembraneError, Press};
 use output::Refusal;
 
 /// The paper's skin.
@@ -73,14 +73,14 @@ pub(super) fn readings(design: &Design) -> Result<Vec<Reading>, Refusal> {
 }
 
 fn reading(title: String, design: &Design) -> Result<Reading, Refusal> {
-    let failed = |error: ModelError| Refusal(format!("the paper's design, {title}: {error}"));
+    let failed = |error: MembraneError| Refusal(format!("the paper's design, {title}: {error}"));
     let mut press = Press::new(design, TensionField::Relaxed).map_err(failed)?;
     let rest = *press.rest();
     let mut forces = [None; 3];
     for (force, indentation) in forces.iter_mut().zip(INDENTATIONS) {
         *force = match press.at_indentation(indentation) {
             Ok(state) => Some(state.force),
-            Err(ModelError::BeyondLimit { .. }) => None,
+            Err(MembraneError::BeyondLimit { .. }) => None,
             Err(error) => return Err(failed(error)),
         };
     }

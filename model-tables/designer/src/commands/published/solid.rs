@@ -1,12 +1,13 @@
 //! The membrane beside a solid dome with a real wall.
 
 use super::shipped;
-use model_tables::curve::Contact;
+use model_tables::curve::{Contact, CurveFailure};
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::preset::AGILUS30;
 use model_tables::membrane::TensionField;
-use model_tables::membrane::press::{ModelError, Press};
+use model_tables::membrane::press::Press;
 use model_tables::model::Fingertip;
+use model_tables::model::ModelError;
 use output::Refusal;
 
 /// A pressed dome of solid finite elements.
@@ -111,7 +112,8 @@ impl Solid {
         let curves = [
             Press::new(&stretched, TensionField::Relaxed)
                 .map_err(failed)?
-                .curve(deepest),
+                .curve(deepest)
+                .map_err(CurveFailure::of),
             Fingertip::new(&file).map_err(failed)?.curve(deepest),
         ];
         let [before, after] =
@@ -135,8 +137,8 @@ impl Solid {
     }
 }
 
-fn failed(error: ModelError) -> Refusal {
-    Refusal(format!("the membrane beside the solid dome: {error}"))
+fn failed(error: impl Into<ModelError>) -> Refusal {
+    Refusal(format!("the membrane beside the solid dome: {}", error.into()))
 }
 
 fn beside(design: &Design) -> Result<Beside, Refusal> {

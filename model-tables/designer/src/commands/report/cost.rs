@@ -6,7 +6,8 @@ use model_tables::design_file::DesignFile;
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::Resolution;
-use model_tables::membrane::press::{CURVE, FINER, FULL, ModelError, Press, SWEEP};
+use model_tables::membrane::press::{CURVE, FINER, FULL, Press, SWEEP};
+use model_tables::model::ModelError;
 use model_tables::model::choice::{LADDER, PARTS, REFINED, Wanted};
 use model_tables::model::{Fingertip, Kind};
 use std::time::Instant;
@@ -89,7 +90,7 @@ fn membrane<const S: usize>(
     deepest: f64,
 ) -> Result<Solved, ModelError> {
     let mut press: Press<Law, S> = Press::with_resolution(design, TensionField::Relaxed, resolution)?;
-    timed(deepest, |indentation| press.contact_at(indentation))
+    Ok(timed(deepest, |indentation| press.contact_at(indentation))?)
 }
 
 fn rung(kind: Kind, design: &Design, deepest: f64) -> Result<Solved, ModelError> {
@@ -97,10 +98,7 @@ fn rung(kind: Kind, design: &Design, deepest: f64) -> Result<Solved, ModelError>
     timed(deepest, |indentation| rung.contact_at(indentation))
 }
 
-fn timed(
-    deepest: f64,
-    mut contact_at: impl FnMut(f64) -> Result<Contact, ModelError>,
-) -> Result<Solved, ModelError> {
+fn timed<E>(deepest: f64, mut contact_at: impl FnMut(f64) -> Result<Contact, E>) -> Result<Solved, E> {
     let start = Instant::now();
     let contacts = PARTS
         .iter()

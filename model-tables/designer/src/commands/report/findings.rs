@@ -8,10 +8,12 @@ use model_tables::actuator::{Actuator, Blocked};
 use model_tables::design::{Design, RestBy};
 use model_tables::design_file::{Calibration, DesignFile};
 use model_tables::generate::{Generated, from_design};
+use model_tables::limit::Limit;
 use model_tables::membrane::TensionField;
-use model_tables::membrane::press::{Limit, ModelError, Press};
+use model_tables::membrane::press::Press;
 use model_tables::membrane::rest::Branch;
 use model_tables::membrane::state::Wrinkling;
+use model_tables::model::ModelError;
 use model_tables::model::choice::FINE;
 use model_tables::model::state::{Pressed, Rest, Station};
 use model_tables::model::{Fingertip, Kind};
@@ -90,7 +92,7 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     progress.set(0.1);
     let mut rung = match kind {
         Kind::Membrane => Fingertip::Membrane(Box::new(
-            Press::new(&design, TensionField::Relaxed).map_err(refuse)?,
+            Press::new(&design, TensionField::Relaxed).map_err(|error| refuse(error.into()))?,
         )),
         Kind::Solid(_) => Fingertip::of(kind, &design).map_err(refuse)?,
     };

@@ -7,9 +7,9 @@ use super::words::{KPA, MILLISECONDS, MM, MM3, NEWTON, PA, PERCENT, STRETCH, Uni
 use maud::{Markup, PreEscaped, html};
 use model_tables::design_file::{Calibration, DesignFile, ModelSection, RestSection, TransducerKindSection};
 use model_tables::generate::{Errors, Generated, TABLE_VERSION};
+use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::material::preset::Preset;
-use model_tables::membrane::press::EndsBy;
 use model_tables::model::Kind;
 use output::rows::plain;
 use std::fmt::Write as _;
