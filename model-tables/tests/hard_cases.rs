@@ -9,9 +9,9 @@ use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::material::stability::Mode;
 use model_tables::membrane::TensionField;
-use model_tables::membrane::adapt::Failure;
+use model_tables::membrane::adapt::Unsolved;
 use model_tables::membrane::press::{MembraneError, Press};
-use model_tables::membrane::rest::Quantity;
+use model_tables::membrane::rest::RestQuantity;
 use model_tables::membrane::state::Wrinkling;
 
 fn relaxed(design: &Design) -> Result<Press, MembraneError> {
@@ -47,7 +47,7 @@ fn a_pole_that_inflation_does_not_stretch_so_far_is_refused_by_its_greatest_stre
     let long = |stretch| design(6.0, 7.458, 0.5, law, stretch);
     let greatest = match relaxed(&long(1.3)).map(|press| *press.rest()) {
         Err(MembraneError::NoRestState {
-            quantity: Quantity::PoleStretch,
+            quantity: RestQuantity::PoleStretch,
             greatest,
             ..
         }) => greatest,
@@ -68,7 +68,7 @@ fn a_plain_membrane_that_would_push_at_the_contact_edge_is_refused() {
     let reached = match plain.at_indentation(3e-3) {
         Err(MembraneError::PressUnsolved {
             reached,
-            failure: Failure::EdgePushes { .. },
+            failure: Unsolved::EdgePushes { .. },
             ..
         }) => reached,
         other => panic!("{other:?}"),
@@ -248,7 +248,7 @@ fn a_plain_membrane_is_pressed_beyond_the_indentations_without_a_state() {
             matches!(
                 between,
                 Err(MembraneError::PressUnsolved {
-                    failure: Failure::EdgePushes { .. },
+                    failure: Unsolved::EdgePushes { .. },
                     ..
                 })
             ),

@@ -1,6 +1,6 @@
 //! `designer monitor`: live readings of a board in a terminal, or as rows in a pipe.
-use crate::link::{Address, BAUD, Event, Link};
-use crate::readings::{Monitor, Reading};
+use crate::link::{Address, BAUD, Link, LinkEvent};
+use crate::readings::{LiveReading, Monitor};
 use crate::rows::{Form, Writer};
 use crate::view::{self, Surroundings};
 use clap::{Parser, ValueEnum};
@@ -111,7 +111,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
                 .map_err(|error| format!("{}: {error}; choose another --csv", path.display()))
         })
         .transpose()?;
-    let keep = |reading: &Reading| match &mut log {
+    let keep = |reading: &LiveReading| match &mut log {
         Some(log) => log.write(reading).map_err(|error| format!("--csv: {error}")),
         None => Ok(()),
     };
@@ -122,7 +122,10 @@ fn run(arguments: &Arguments) -> Result<(), String> {
 }
 
 /// The view.
-fn watch(arguments: &Arguments, mut keep: impl FnMut(&Reading) -> Result<(), String>) -> Result<(), String> {
+fn watch(
+    arguments: &Arguments,
+    mut keep: impl FnMut(&LiveReading) -> Result<(), String>,
+) -> Result<(), String> {
     let surroundings = Surroundings {
         address: arguments.address.to_string(),
         log: arguments.csv.as_ref().map(|path| path.display().to_string()),
@@ -166,7 +169,7 @@ fn watch(arguments: &Arguments, mut keep: impl FnMut(&Reading) -> Result<(), Str
 fn pipe(
     arguments: &Arguments,
     form: Form,
-    mut keep: impl FnMut(&Reading) -> Result<(), String>,
+    mut keep: impl FnMut(&LiveReading) -> Result<(), String>,
 ) -> Result<(), String> {
     let ended = Arc::new(AtomicBool::new(false));
     let ends = Arc::clone(&ended);
@@ -179,7 +182,7 @@ fn pipe(
     let mut connected = false;
     while !ended.load(Ordering::Relaxed) && arguments.for_s.is_none_or(|end| start.elapsed() < end) {
         let Some(event) = link.next(PICTURE) else { continue };
-        if let Event::Lost(reason) = &event {
+        if let LinkEvent::Lost(reason) = &event {
             if !connected {
                 return Err(format!(
                     "{} cannot be opened: {reason}; see that the board is plugged in, or serve one with `cargo demo --serve`",
@@ -188,8 +191,8 @@ fn pipe(
             }
             eprintln!("warning: no connection, trying again: {reason}");
         }
-        connected |= event == Event::Connected;
-        let mut write = |reading: &Reading| -> Result<bool, String> {
+        connected |= event == LinkEvent::Connected;
+        let mut write = |reading: &LiveReading| -> Result<bool, String> {
             keep(reading)?;
             let written = match &mut writer {
                 Some(writer) => Writer::write(writer, reading),
@@ -225,15 +228,15 @@ fn pipe(
 
 /// Takes an event of the link; every report of it goes to `each`.
 fn take(
-    event: Event,
+    event: LinkEvent,
     monitor: &mut Monitor,
     now: Duration,
-    each: &mut impl FnMut(&Reading) -> Result<(), String>,
+    each: &mut impl FnMut(&LiveReading) -> Result<(), String>,
 ) -> Result<(), String> {
     match event {
-        Event::Connected => monitor.connected(),
-        Event::Lost(reason) => monitor.lost(&reason),
-        Event::Bytes(bytes) => {
+        LinkEvent::Connected => monitor.connected(),
+        LinkEvent::Lost(reason) => monitor.lost(&reason),
+        LinkEvent::Bytes(bytes) => {
             for byte in bytes {
                 if let Some(reading) = monitor.hear(byte, now) {
                     each(&reading)?;

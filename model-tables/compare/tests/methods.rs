@@ -10,7 +10,7 @@ use compare::methods::contest::{self, DESIGNS, Sweep};
 use compare::methods::few_states::FewStates;
 use compare::methods::light_contact::LightContact;
 use compare::methods::shooting::Shooting;
-use compare::methods::{Failure, Found};
+use compare::methods::{MethodFailure, MethodState};
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
@@ -141,7 +141,7 @@ fn shooting_fails_loudly_at_low_stretch() {
             Err(failure) => assert!(
                 matches!(
                     failure,
-                    Failure::Stalled { .. } | Failure::BlewUp { .. } | Failure::Singular
+                    MethodFailure::Stalled { .. } | MethodFailure::BlewUp { .. } | MethodFailure::Singular
                 ),
                 "{failure}"
             ),
@@ -150,7 +150,7 @@ fn shooting_fails_loudly_at_low_stretch() {
 }
 
 /// Shoots at a state from the truth with each unknown off by a part.
-fn from_nearby(pole_stretch: f64, indentation: f64, part: f64) -> (Result<Found, Failure>, f64) {
+fn from_nearby(pole_stretch: f64, indentation: f64, part: f64) -> (Result<MethodState, MethodFailure>, f64) {
     let design = design(9.0, 7.0, 1.0, AGILUS30, pole_stretch);
     let mut press = Press::new(&design, TensionField::Plain).expect("rest state");
     let truth = press.at_indentation(indentation).expect("state");
@@ -174,7 +174,7 @@ fn shooting_needs_guesses_that_no_one_has_at_low_stretch() {
         let (found, force) = from_nearby(1.005, 0.3e-3, part);
         match found {
             Ok(found) => assert!(off(found.force, force) < 1e-4, "silently wrong"),
-            Err(Failure::Stalled { condition, .. }) => {
+            Err(MethodFailure::Stalled { condition, .. }) => {
                 failed += 1;
                 assert!(condition > 1e4, "well conditioned and stalled: {condition:e}");
             }
@@ -192,7 +192,7 @@ fn bisection_is_as_accurate_as_the_paper_needs_and_no_more() {
     for state in model.states.iter().filter(|state| state.H > 1e-4) {
         match bisection.at_indentation(state.H) {
             Ok(found) => errors.push(off(found.force, state.F)),
-            Err(failure) => assert!(!matches!(failure, Failure::Membrane(_)), "{failure}"),
+            Err(failure) => assert!(!matches!(failure, MethodFailure::Membrane(_)), "{failure}"),
         }
     }
     errors.sort_by(f64::total_cmp);
@@ -209,7 +209,7 @@ fn bisection_says_what_it_cannot_resolve() {
     let mut bisection = Bisection::new(&design, PAPER).expect("rest state");
     let outcome = bisection.at_indentation(1e-6);
     assert!(
-        matches!(outcome, Err(Failure::BelowResolution { .. })),
+        matches!(outcome, Err(MethodFailure::BelowResolution { .. })),
         "{outcome:?}"
     );
     let (low, _) = case(LOW_STRETCH);
@@ -246,7 +246,7 @@ fn light_contact_is_the_limit_of_every_design() {
             Err(failure) => {
                 assert_eq!(
                     (failure, name.as_str()),
-                    (Failure::RestWrinkled, "agilus_oblate_b0.45_l1.05_wrinkled")
+                    (MethodFailure::RestWrinkled, "agilus_oblate_b0.45_l1.05_wrinkled")
                 );
                 continue;
             }
@@ -266,7 +266,7 @@ fn light_contact_is_the_limit_of_every_design() {
             .pressure_rise;
         assert!(off(rise, model.states[1].dP) < 0.01, "{name}");
         let beyond = light.at_indentation(1.01 * light.largest_indentation());
-        assert!(matches!(beyond, Err(Failure::BeyondModel { .. })), "{name}");
+        assert!(matches!(beyond, Err(MethodFailure::BeyondModel { .. })), "{name}");
         let end = light.at_indentation(light.largest_indentation() * (1.0 - 1e-9));
         assert!(end.is_ok(), "{name}");
     }
@@ -281,7 +281,7 @@ fn more_states_make_a_better_curve() {
         let curve = FewStates::new(&design, &mut press, deepest, states).expect("states");
         assert!(matches!(
             curve.at_indentation(1.01 * deepest),
-            Err(Failure::BeyondModel { .. })
+            Err(MethodFailure::BeyondModel { .. })
         ));
         model.states[3..=9]
             .iter()
@@ -371,7 +371,7 @@ fn the_contest_times_what_it_solves() {
 fn rest_states_given_otherwise_are_refused() {
     let mut design = design(9.0, 7.0, 1.0, AGILUS30, 1.1);
     design.rest = RestBy::Pressure(2e4);
-    let refused = Failure::RestNotByPoleStretch;
+    let refused = MethodFailure::RestNotByPoleStretch;
     assert_eq!(Shooting::new(&design, 1e-8).err(), Some(refused));
     assert_eq!(Bisection::new(&design, PAPER).err(), Some(refused));
     assert_eq!(LightContact::new(&design).err(), Some(refused));

@@ -3,7 +3,7 @@
 //! Coverage over more repeats than a test has time for: `FIT_REPEATS=200 cargo test --release -p designer --test fit
 //! standard_errors -- --nocapture`.
 
-use designer::fit::data::{Choice, Data};
+use designer::fit::data::{Data, DataChoice};
 use designer::fit::parameter::Parameter;
 use designer::fit::{self, Fit, FitError, Held};
 use model_tables::design_file::DesignFile;
@@ -67,7 +67,7 @@ fn bench(rows: &[[f64; 3]], noise: f64, random: &mut Random) -> String {
 }
 
 fn data(text: &str) -> Data {
-    Data::parse(text, "bench.csv", &Choice::default()).expect("good data")
+    Data::parse(text, "bench.csv", &DataChoice::default()).expect("good data")
 }
 
 fn value(fit: &Fit, parameter: Parameter) -> (f64, f64) {

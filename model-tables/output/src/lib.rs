@@ -16,7 +16,7 @@ use std::path::Path;
 
 /// What a subcommand gives.
 #[derive(Clone, Debug)]
-pub struct Answer {
+pub struct CommandAnswer {
     /// For standard output.
     pub rows: Rows,
     /// Remarks for a person, one line each, on standard error.

@@ -5,8 +5,8 @@
 //! method its order), and a pole that has gone slack, or taut again, changes its kind.
 
 use crate::material::Hyperelastic;
-use crate::membrane::equations::{CONTACT_PARAMETER, Membrane, POLE, PRESSURE, TensionField};
-use crate::membrane::equilibrium::{Closure, Equilibrium, Outcome};
+use crate::membrane::equations::{CONTACT_PARAMETER, LocalEquations, POLE, PRESSURE, TensionField};
+use crate::membrane::equilibrium::{Closure, Equilibrium, NewtonOutcome};
 use crate::membrane::mesh::{Breaks, Depth};
 use crate::membrane::solution::{MAX_ELEMENTS, Pole, Solution};
 use core::f64::consts::FRAC_PI_2;
@@ -14,9 +14,9 @@ use core::fmt;
 
 /// Why there is no state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Failure {
+pub enum Unsolved {
     /// Newton's method did not converge.
-    Newton(Outcome),
+    Newton(NewtonOutcome),
     /// The membrane would have to push where it leaves the plate, which no membrane in equilibrium does.
     EdgePushes {
         /// The contact parameter.
@@ -28,16 +28,16 @@ pub enum Failure {
     Unsettled,
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for Unsolved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Newton(Outcome::Converged { .. }) => write!(f, "converged"),
-            Self::Newton(Outcome::Inadmissible { position, .. }) => write!(
+            Self::Newton(NewtonOutcome::Converged { .. }) => write!(f, "converged"),
+            Self::Newton(NewtonOutcome::Inadmissible { position, .. }) => write!(
                 f,
                 "at parameter {position:.4} of the meridian the membrane lost its tension or its law its stability"
             ),
-            Self::Newton(Outcome::Singular { .. }) => write!(f, "the equations became singular"),
-            Self::Newton(Outcome::Stalled { step }) => {
+            Self::Newton(NewtonOutcome::Singular { .. }) => write!(f, "the equations became singular"),
+            Self::Newton(NewtonOutcome::Stalled { step }) => {
                 write!(f, "Newton's method did not converge, last step {step:.1e}")
             }
             Self::EdgePushes { position } => write!(
@@ -106,7 +106,7 @@ pub struct Graded<const S: usize> {
     /// Kinks that have a node.
     pub breaks: Breaks,
     /// How Newton's method ended.
-    pub outcome: Outcome,
+    pub outcome: NewtonOutcome,
 }
 
 impl<const S: usize> Graded<S> {
@@ -118,13 +118,13 @@ impl<const S: usize> Graded<S> {
             bend: LARGEST_BEND,
         },
         breaks: Breaks::NONE,
-        outcome: Outcome::Stalled { step: f64::INFINITY },
+        outcome: NewtonOutcome::Stalled { step: f64::INFINITY },
     };
 }
 
 impl<L, const S: usize> Adaptive<L, S> {
     /// Room to work in, to be set.
-    pub(crate) const fn blank(membrane: Membrane<L>) -> Self {
+    pub(crate) const fn blank(membrane: LocalEquations<L>) -> Self {
         Self {
             equilibrium: Equilibrium::blank(membrane),
             resolution: Resolution {
@@ -140,7 +140,7 @@ impl<L, const S: usize> Adaptive<L, S> {
 
 impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// Ready to solve.
-    pub fn new(membrane: Membrane<L>, resolution: Resolution) -> Self {
+    pub fn new(membrane: LocalEquations<L>, resolution: Resolution) -> Self {
         let mut adaptive = Self::blank(membrane);
         adaptive.set(resolution);
         adaptive
@@ -153,27 +153,27 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         self.iterations = 0;
     }
 
-    fn membrane(&self) -> &Membrane<L> {
+    fn membrane(&self) -> &LocalEquations<L> {
         &self.equilibrium.membrane
     }
 
     /// Turns a guess on any mesh into the state that `closure` asks for.
     ///
     /// # Errors
-    /// [`Failure`] when Newton's method fails, or mesh and pole do not settle; the guess is then of no more use.
-    pub fn settle(&mut self, guess: &mut Graded<S>, closure: &Closure) -> Result<(), Failure> {
+    /// [`Unsolved`] when Newton's method fails, or mesh and pole do not settle; the guess is then of no more use.
+    pub fn settle(&mut self, guess: &mut Graded<S>, closure: &Closure) -> Result<(), Unsolved> {
         let mut refinements = 0;
         for _ in 0..MAX_ROUNDS {
             if Self::stale(guess) {
                 *guess = self.relay(guess);
             }
             guess.outcome = self.equilibrium.solve(&mut guess.solution, closure);
-            let Outcome::Converged { iterations, .. } = guess.outcome else {
-                return Err(Failure::Newton(guess.outcome));
+            let NewtonOutcome::Converged { iterations, .. } = guess.outcome else {
+                return Err(Unsolved::Newton(guess.outcome));
             };
             self.iterations += u64::from(iterations);
             if let Some(position) = Self::turned_edge(&guess.solution) {
-                return Err(Failure::EdgePushes { position });
+                return Err(Unsolved::EdgePushes { position });
             }
             if self.change_pole(guess) || Self::stale(guess) {
                 continue;
@@ -188,7 +188,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             }
             *guess = self.relay(guess);
         }
-        Err(Failure::Unsettled)
+        Err(Unsolved::Unsettled)
     }
 
     /// The same state with a pole of the other kind, where that can help: a relaxed membrane under a plate.
@@ -211,12 +211,12 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
 
     /// That the way ends at this state because the contact edge is about to lose its tension: the bend there is
     /// sharper than a mesh can follow.
-    pub fn edge_pushes(&self, graded: &Graded<S>) -> Option<Failure> {
+    pub fn edge_pushes(&self, graded: &Graded<S>) -> Option<Unsolved> {
         let solution = &graded.solution;
         let plain = self.membrane().tension_field == TensionField::Plain;
         (plain && solution.contact_elements > 0 && Self::bend(solution) < VANISHING_BEND).then(|| {
             let position = solution.parameters[CONTACT_PARAMETER];
-            Failure::EdgePushes { position }
+            Unsolved::EdgePushes { position }
         })
     }
 

@@ -19,7 +19,7 @@
 //! `W(l1, l1^-1/2)` of uniaxial tension.
 
 use crate::material::{Derivatives, Hyperelastic};
-use crate::solver::collocation::Point;
+use crate::solver::collocation::GaussPoint;
 use core::f64::consts::PI;
 
 /// Index of the pole parameter among the parameters of the problem (pole stretch, or edge of the slack core).
@@ -86,7 +86,7 @@ pub struct Response {
 
 /// The membrane: shape and law, dimensionless.
 #[derive(Clone, Copy, Debug)]
-pub struct Membrane<L> {
+pub struct LocalEquations<L> {
     /// Axial over radial semi-axis.
     pub aspect: f64,
     /// The law over its shear modulus.
@@ -106,7 +106,7 @@ pub struct Meridian {
     pub arc_rate: f64,
 }
 
-impl<L: Hyperelastic> Membrane<L> {
+impl<L: Hyperelastic> LocalEquations<L> {
     /// The undeformed meridian at `t` (0 = pole, pi/2 = equator).
     #[inline]
     pub fn meridian(&self, t: f64) -> Meridian {
@@ -257,7 +257,7 @@ impl<L: Hyperelastic> Membrane<L> {
         pressure: f64,
         contact_radius: f64,
         guess: f64,
-    ) -> Option<(Point, Response)> {
+    ) -> Option<(GaussPoint, Response)> {
         let Meridian {
             x,
             x_rate,
@@ -265,7 +265,7 @@ impl<L: Hyperelastic> Membrane<L> {
         } = *meridian;
         let g_t = (self.aspect * self.aspect - 1.0) * x * x_rate / g;
         let over_x = 1.0 / x;
-        let mut point = Point::default();
+        let mut point = GaussPoint::default();
         if zone == Zone::Contact {
             let r = self.respond(w, u, guess)?;
             let rate = [(g * r.l1 - x_rate * u) * over_x, (g * r.w2 - x_rate * w) * over_x];
@@ -356,7 +356,7 @@ impl<L: Hyperelastic> Membrane<L> {
     }
 }
 
-/// Longest interval of [`Membrane::meridians`] over which the series are summed.
+/// Longest interval of [`LocalEquations::meridians`] over which the series are summed.
 const LONGEST_SERIES: f64 = 0.5;
 /// Newton steps the inversion of the law may take; four suffice from a guess a factor of two off.
 const MAX_INVERSIONS: usize = 60;
@@ -368,24 +368,31 @@ mod tests {
     use super::*;
     use crate::material::Law;
 
-    fn membrane(tension_field: TensionField) -> Membrane<Law> {
-        Membrane {
+    fn membrane(tension_field: TensionField) -> LocalEquations<Law> {
+        LocalEquations {
             aspect: 0.7,
             law: Law::MooneyRivlin { c1: 0.4, c2: 0.1 },
             tension_field,
         }
     }
 
-    /// Every derivative of [`Membrane::point`] against central differences of fourth order.
-    fn check_derivatives(m: &Membrane<Law>, zone: Zone, t: f64, y: [f64; 2], pressure: f64, radius: f64) {
+    /// Every derivative of [`LocalEquations::point`] against central differences of fourth order.
+    fn check_derivatives(
+        m: &LocalEquations<Law>,
+        zone: Zone,
+        t: f64,
+        y: [f64; 2],
+        pressure: f64,
+        radius: f64,
+    ) {
         let at = |t: f64, u: f64, w: f64, p: f64, r: f64| {
             m.point(zone, &m.meridian(t), [u, w], p, r, 1.2)
                 .expect("an admissible state")
                 .0
         };
         let h = 1e-4;
-        let values = |p: &Point| [p.rate[0], p.rate[1], p.integrand[0], p.integrand[1]];
-        let slope = |of: &dyn Fn(f64) -> Point| {
+        let values = |p: &GaussPoint| [p.rate[0], p.rate[1], p.integrand[0], p.integrand[1]];
+        let slope = |of: &dyn Fn(f64) -> GaussPoint| {
             let (a, b, c, d) = (
                 values(&of(h)),
                 values(&of(-h)),

@@ -7,11 +7,11 @@
 
 use crate::material::Hyperelastic;
 use crate::membrane::equations::{
-    CONTACT_PARAMETER, CONTACT_RADIUS, HEIGHT, Membrane, POLE, PRESSURE, Response, VOLUME,
+    CONTACT_PARAMETER, CONTACT_RADIUS, HEIGHT, LocalEquations, POLE, PRESSURE, Response, VOLUME,
 };
 use crate::membrane::solution::{MAX_ELEMENTS, Pole, Solution};
-use crate::solver::chain::{self, BORDERS, Chain, Row, UNKNOWNS};
-use crate::solver::collocation::{self, Condensed, Gauss, PARAMETERS, Point, STATES, Span};
+use crate::solver::chain::{self, BORDERS, BlockRow, Chain, UNKNOWNS};
+use crate::solver::collocation::{self, Condensed, Gauss, GaussPoint, PARAMETERS, STATES, Span};
 use core::f64::consts::FRAC_PI_2;
 
 /// What fixes a rest state.
@@ -70,7 +70,7 @@ pub struct Tangent {
 
 /// How Newton's method ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
+pub enum NewtonOutcome {
     /// The step became negligible.
     Converged {
         /// Iterations taken.
@@ -99,7 +99,7 @@ pub enum Outcome {
     },
 }
 
-impl Outcome {
+impl NewtonOutcome {
     /// Whether there is a solution.
     pub fn converged(&self) -> bool {
         matches!(self, Self::Converged { .. })
@@ -119,7 +119,7 @@ const LARGEST_CHANGE: f64 = 0.3;
 #[derive(Clone, Debug)]
 pub struct Equilibrium<L, const S: usize> {
     /// The membrane.
-    pub membrane: Membrane<L>,
+    pub membrane: LocalEquations<L>,
     /// The collocation method.
     pub gauss: Gauss<S>,
     condensed: [Condensed<S>; MAX_ELEMENTS],
@@ -129,7 +129,7 @@ pub struct Equilibrium<L, const S: usize> {
 }
 
 /// `row . x + constant = 0` with one coefficient 1.
-fn unit_row(index: usize, residual: f64) -> Row {
+fn unit_row(index: usize, residual: f64) -> BlockRow {
     let mut row = [0.0; UNKNOWNS + 1];
     row[index] = 1.0;
     row[UNKNOWNS] = residual;
@@ -140,7 +140,7 @@ const CONTACT_EDGE: usize = 2;
 
 impl<L, const S: usize> Equilibrium<L, S> {
     /// Room to work in, to be set.
-    pub(crate) const fn blank(membrane: Membrane<L>) -> Self {
+    pub(crate) const fn blank(membrane: LocalEquations<L>) -> Self {
         Self {
             membrane,
             gauss: Gauss::BLANK,
@@ -161,7 +161,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     /// Ready to solve.
     ///
     /// `tolerance` bounds the relative change that one more iteration would make.
-    pub fn new(membrane: Membrane<L>, tolerance: f64) -> Self {
+    pub fn new(membrane: LocalEquations<L>, tolerance: f64) -> Self {
         let mut equilibrium = Self::blank(membrane);
         equilibrium.set(tolerance);
         equilibrium
@@ -190,7 +190,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             }
         }
         let mut residual: f64 = 0.0;
-        let mut points = [Point::default(); S];
+        let mut points = [GaussPoint::default(); S];
         for e in 0..solution.elements() {
             let span = solution.span(e);
             let zone = solution.zone(e);
@@ -264,10 +264,10 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     fn step(&mut self, solution: &mut Solution<S>, closure: &Closure) -> Option<[f64; UNKNOWNS]> {
         self.eliminate(solution)?;
         let [pole, pressure, contact_radius, contact_parameter] = solution.parameters;
-        let borders: [Row; BORDERS] = self.chain.borders;
+        let borders: [BlockRow; BORDERS] = self.chain.borders;
         let [link_0, link_1] = self.chain.link();
         let last = solution.nodes[solution.elements()];
-        let shifted = |mut row: Row, target: f64| {
+        let shifted = |mut row: BlockRow, target: f64| {
             row[UNKNOWNS] -= target;
             row
         };
@@ -328,7 +328,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             unit_row(STATES + CONTACT_RADIUS, 0.0),
             unit_row(STATES + CONTACT_PARAMETER, 0.0),
         ])?;
-        let of = |row: &Row| row.iter().zip(&change).map(|(a, x)| a * x).sum::<f64>();
+        let of = |row: &BlockRow| row.iter().zip(&change).map(|(a, x)| a * x).sum::<f64>();
         Some(Tangent {
             pressure: change[STATES + PRESSURE],
             volume: of(&self.chain.borders[VOLUME]),
@@ -337,22 +337,22 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     }
 
     /// Newton's method from the values in `solution`, which it replaces.
-    pub fn solve(&mut self, solution: &mut Solution<S>, closure: &Closure) -> Outcome {
+    pub fn solve(&mut self, solution: &mut Solution<S>, closure: &Closure) -> NewtonOutcome {
         let mut step_before = f64::INFINITY;
         for iterations in 1..=MAX_ITERATIONS {
             let residual = match self.linearise(solution) {
                 Ok(residual) => residual,
                 Err(LineariseError::Inadmissible(position)) => {
-                    return Outcome::Inadmissible { iterations, position };
+                    return NewtonOutcome::Inadmissible { iterations, position };
                 }
-                Err(LineariseError::Singular) => return Outcome::Singular { iterations },
+                Err(LineariseError::Singular) => return NewtonOutcome::Singular { iterations },
             };
             let Some(change) = self.step(solution, closure) else {
-                return Outcome::Singular { iterations };
+                return NewtonOutcome::Singular { iterations };
             };
             let Step { size, pole, damping } = self.apply(solution, &change);
             if !size.is_finite() {
-                return Outcome::Singular { iterations };
+                return NewtonOutcome::Singular { iterations };
             }
             if damping >= 1.0 {
                 // Quadratic convergence: the next step is at most this.
@@ -368,7 +368,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
                     || rounding
                     || (step_before.is_finite() && next < self.tolerance && pole < libm::sqrt(self.tolerance))
                 {
-                    return Outcome::Converged {
+                    return NewtonOutcome::Converged {
                         iterations,
                         residual,
                         step: size,
@@ -379,7 +379,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
                 step_before = f64::INFINITY;
             }
         }
-        Outcome::Stalled { step: step_before }
+        NewtonOutcome::Stalled { step: step_before }
     }
 
     /// Adds a damped step to the solution.
@@ -485,7 +485,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     pub fn for_each_point(
         &self,
         solution: &Solution<S>,
-        mut visit: impl FnMut(usize, usize, &Span, &Point, &Response),
+        mut visit: impl FnMut(usize, usize, &Span, &GaussPoint, &Response),
     ) {
         let [_, pressure, contact_radius, _] = solution.parameters;
         for e in 0..solution.elements() {

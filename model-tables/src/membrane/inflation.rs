@@ -7,7 +7,7 @@
 
 use crate::material::Hyperelastic;
 use crate::material::stability::{self, Margin};
-use crate::membrane::adapt::{Adaptive, Failure, Graded};
+use crate::membrane::adapt::{Adaptive, Graded, Unsolved};
 use crate::membrane::equations::{POLE, PRESSURE};
 use crate::membrane::equilibrium::{Closure, RestControl};
 
@@ -24,7 +24,7 @@ pub enum End {
     /// At a given volume and with the edge held, the dome bulges by itself: its volume has a maximum along inflation.
     Bulges,
     /// The solver failed.
-    Lost(Failure),
+    Lost(Unsolved),
 }
 
 /// Stiffness over that of a neo-Hookean law under which a law softens.
@@ -122,7 +122,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             .map_err(End::Lost)?;
         let mut step = LARGEST_STEP.min(4.0 * FIRST);
         let mut greatest = pole_of(state);
-        let mut failure = Failure::Unsettled;
+        let mut failure = Unsolved::Unsettled;
         let mut direction = [0.0, 1.0, 0.0];
         loop {
             if !self.holds_its_volume(state, &mut direction) {

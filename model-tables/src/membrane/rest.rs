@@ -1,9 +1,9 @@
 //! The rest state: inflated, not pressed.
 
 use crate::material::Hyperelastic;
-use crate::membrane::adapt::{Adaptive, Failure, Graded, REST_FINENESS};
+use crate::membrane::adapt::{Adaptive, Graded, REST_FINENESS, Unsolved};
 use crate::membrane::equations::{POLE, PRESSURE, TensionField};
-use crate::membrane::equilibrium::{Closure, Outcome, RestControl};
+use crate::membrane::equilibrium::{Closure, NewtonOutcome, RestControl};
 use crate::membrane::inflation::End;
 use crate::membrane::mesh::{Breaks, Depth};
 use crate::membrane::solution::Pole;
@@ -11,7 +11,7 @@ use core::f64::consts::FRAC_PI_2;
 
 /// What the rest state is given by, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum RestQuantity {
     /// Stretch of the pole.
     PoleStretch,
     /// Gauge pressure.
@@ -46,14 +46,14 @@ pub enum RestFailure {
     /// (dimensionless: pressure over `mu h0 / a0`, lengths over `a0`).
     OutOfReach {
         /// Which quantity.
-        quantity: Quantity,
+        quantity: RestQuantity,
         /// The least value found.
         least: f64,
         /// The greatest value found.
         greatest: f64,
     },
     /// The solver failed.
-    Solver(Failure),
+    Solver(Unsolved),
 }
 
 /// Largest pole stretch at which a rest state of given pressure, radius or height is looked for.
@@ -80,7 +80,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             bend: 0.5,
         };
         state.breaks = Breaks::default();
-        state.outcome = Outcome::Stalled { step: f64::INFINITY };
+        state.outcome = NewtonOutcome::Stalled { step: f64::INFINITY };
         let solution = &mut state.solution;
         let fractions = &mut solution.fractions;
         fractions[..2].fill(0.0);
@@ -135,7 +135,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         &mut self,
         pole_stretch: f64,
         state: &mut Graded<S>,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), Unsolved> {
         let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
         self.guess_inflated(pole_stretch, state);
         if self.settle(state, &closure).is_ok() {
@@ -146,7 +146,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             self.equilibrium.membrane.aspect,
             self.equilibrium.membrane.tension_field,
         );
-        let mut result: Result<(), Failure> = Err(Failure::Unsettled);
+        let mut result: Result<(), Unsolved> = Err(Unsolved::Unsettled);
         for steps in [4, 16, 64] {
             self.equilibrium.membrane.tension_field = TensionField::Plain;
             self.equilibrium.membrane.aspect = 1.0;
@@ -179,7 +179,11 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// # Errors
     /// [`RestFailure`] with the reachable values if there is no such state.
     #[inline(never)] // its copies of a solution stay off the caller's stack
-    pub fn rest_by(&mut self, quantity: Quantity, value: f64) -> Result<(Graded<S>, Branch), RestFailure> {
+    pub fn rest_by(
+        &mut self,
+        quantity: RestQuantity,
+        value: f64,
+    ) -> Result<(Graded<S>, Branch), RestFailure> {
         let mut scan = Scan {
             quantity,
             value,
@@ -205,7 +209,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                 greatest,
             }),
             ([Some(only), None], _) => Ok((only, Branch::Only)),
-            ([Some(lower), Some(upper)], Quantity::Pressure) => {
+            ([Some(lower), Some(upper)], RestQuantity::Pressure) => {
                 let other = stretch(&upper);
                 Ok((lower, Branch::Lower { other }))
             }
@@ -217,7 +221,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     }
 
     /// The rest state of a pole stretch, from a neighbour if there is one.
-    fn rest_near(&mut self, from: Option<&Graded<S>>, pole_stretch: f64) -> Result<Graded<S>, Failure> {
+    fn rest_near(&mut self, from: Option<&Graded<S>>, pole_stretch: f64) -> Result<Graded<S>, Unsolved> {
         let closure = Closure::Rest(RestControl::PoleStretch(pole_stretch));
         let mut state = Graded::BLANK;
         if let Some(from) = from {
@@ -232,7 +236,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
 
 /// A scan of the pole stretch for a value of a quantity.
 struct Scan<const S: usize> {
-    quantity: Quantity,
+    quantity: RestQuantity,
     value: f64,
     /// The last two states, newest last.
     before: [Option<Graded<S>>; 2],
@@ -244,10 +248,10 @@ impl<const S: usize> Scan<S> {
     fn excess(&self, state: &Graded<S>) -> f64 {
         let solution = &state.solution;
         let found = match self.quantity {
-            Quantity::PoleStretch => solution.parameters[POLE],
-            Quantity::Pressure => solution.parameters[PRESSURE],
-            Quantity::EquatorRadius => solution.nodes[solution.elements()][0],
-            Quantity::Height => solution.height,
+            RestQuantity::PoleStretch => solution.parameters[POLE],
+            RestQuantity::Pressure => solution.parameters[PRESSURE],
+            RestQuantity::EquatorRadius => solution.nodes[solution.elements()][0],
+            RestQuantity::Height => solution.height,
         };
         found - self.value
     }
@@ -291,7 +295,7 @@ impl<const S: usize> Scan<S> {
                 self.root_between(solver, middle, state.clone());
             }
             // Below the first stretch looked at, pressure falls to nothing.
-            None if self.quantity == Quantity::Pressure && excess >= 0.0 => {
+            None if self.quantity == RestQuantity::Pressure && excess >= 0.0 => {
                 let closure = Closure::Rest(RestControl::Pressure(self.value));
                 let mut root = state.clone();
                 if solver.settle(&mut root, &closure).is_ok() {

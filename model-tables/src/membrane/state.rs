@@ -10,7 +10,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Units of the dimensionless equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
+pub struct UnitScale {
     /// Length: the radial semi-axis, metres.
     pub length: f64,
     /// Stress: the shear modulus, pascals.
@@ -21,7 +21,7 @@ pub struct Scale {
     pub pressure: f64,
 }
 
-impl Scale {
+impl UnitScale {
     /// Units to be set.
     pub(crate) const BLANK: Self = Self {
         length: 1.0,
@@ -220,7 +220,7 @@ fn local<L: Hyperelastic, const S: usize>(
 /// The meridian at `t` with its height left open.
 pub(crate) fn meridian_point<L: Hyperelastic, const S: usize>(
     equilibrium: &Equilibrium<L, S>,
-    scale: &Scale,
+    scale: &UnitScale,
     solution: &Solution<S>,
     t: f64,
     height: f64,
@@ -290,7 +290,7 @@ fn least<const S: usize>(solution: &Solution<S>, of: impl Fn(f64) -> f64) -> f64
 /// Everything but the press itself.
 pub(crate) fn shape<L: Hyperelastic, const S: usize>(
     equilibrium: &Equilibrium<L, S>,
-    scale: &Scale,
+    scale: &UnitScale,
     solution: &Solution<S>,
 ) -> Shape {
     let membrane = &equilibrium.membrane;

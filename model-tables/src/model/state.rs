@@ -5,7 +5,7 @@ use crate::membrane::Zone;
 
 /// A state of rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rest {
+pub struct RestState {
     /// Gauge pressure of the fluid, pascals.
     pub pressure: f64,
     /// Stretch of the pole, of the middle of the wall.
@@ -33,7 +33,7 @@ pub struct Pressed {
 
 /// A point of the meridian, in the middle of the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Station {
+pub struct MeridianStation {
     /// Meridian's parameter, 0 = pole, pi/2 = equator.
     pub parameter: f64,
     /// Deformed radius, metres.
@@ -54,11 +54,11 @@ pub struct Station {
 
 impl Fingertip {
     /// The rest state.
-    pub fn rest(&self) -> Rest {
+    pub fn rest(&self) -> RestState {
         match self {
             Self::Membrane(press) => {
                 let rest = press.rest();
-                Rest {
+                RestState {
                     pressure: rest.pressure,
                     pole_stretch: rest.pole_stretch,
                     edge_radius: rest.edge_radius,
@@ -68,7 +68,7 @@ impl Fingertip {
             }
             Self::Solid(press) => {
                 let rest = press.rest();
-                Rest {
+                RestState {
                     pressure: rest.pressure,
                     pole_stretch: rest.pole_stretch,
                     edge_radius: rest.edge_radius,
@@ -107,11 +107,11 @@ impl Fingertip {
     ///
     /// # Errors
     /// As [`Fingertip::at_indentation`].
-    pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<Station>, ModelError> {
+    pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<MeridianStation>, ModelError> {
         Ok(match self {
             Self::Membrane(press) => press
                 .profile(indentation, points)?
-                .map(|point| Station {
+                .map(|point| MeridianStation {
                     parameter: point.parameter,
                     radius: point.radius,
                     height: point.height,
@@ -126,7 +126,7 @@ impl Fingertip {
             Self::Solid(press) => press
                 .profile(indentation, points)?
                 .into_iter()
-                .map(|point| Station {
+                .map(|point| MeridianStation {
                     parameter: point.parameter,
                     radius: point.radius,
                     height: point.height,

@@ -155,7 +155,7 @@ fn lagrange<const S: usize>(nodes: &[f64; S], k: usize, t: f64) -> f64 {
 
 /// Right-hand side, integrands and all their derivatives at one point.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Point {
+pub struct GaussPoint {
     /// `f`, the derivative of the state.
     pub rate: [f64; STATES],
     /// `df_i/dy_l`.
@@ -228,7 +228,7 @@ pub fn condense<const S: usize>(
     left: [f64; STATES],
     right: [f64; STATES],
     stages: &[[f64; STATES]; S],
-    points: &[Point; S],
+    points: &[GaussPoint; S],
     into: &mut Condensed<S>,
 ) -> Option<()> {
     let h = span.length;
@@ -427,9 +427,9 @@ mod tests {
             length: h,
             ..Span::default()
         };
-        let mut point = Point {
+        let mut point = GaussPoint {
             rate_by_state: [[0.0, 1.0], [-1.0, 0.0]],
-            ..Point::default()
+            ..GaussPoint::default()
         };
         point.rate_by_parameter[1][0] = 1.0;
         point.integrand_by_state[0] = [1.0, 0.0];
@@ -480,10 +480,10 @@ mod tests {
         span.length_by[1] = 1.0;
         let points = gauss.nodes.map(|c| {
             let t = span.start + c * span.length;
-            Point {
+            GaussPoint {
                 rate: [2.0 * t, 0.0],
                 rate_by_position: [2.0, 0.0],
-                ..Point::default()
+                ..GaussPoint::default()
             }
         });
         let mut condensed = Condensed::<3>::default();

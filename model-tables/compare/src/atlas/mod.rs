@@ -7,7 +7,7 @@ mod survey;
 use output::files::write_all;
 use output::progress::Progress;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 use survey::{MAPS, METHODS, Survey, VERDICTS};
 
@@ -15,7 +15,7 @@ const COLUMNS: &[&str] = &["map", "method", "verdict", "cells"];
 
 /// What is asked.
 #[derive(Debug, clap::Args)]
-pub struct Arguments {
+pub struct AtlasArguments {
     /// The folder to write to; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "target/atlas")]
     out: PathBuf,
@@ -28,7 +28,7 @@ pub struct Arguments {
 ///
 /// # Errors
 /// [`Refusal`] where a design cannot be solved or a file not be written.
-pub fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub fn run(arguments: &AtlasArguments) -> Result<CommandAnswer, Refusal> {
     let stride = arguments.stride as usize;
     let mut contents: Vec<(String, Vec<u8>)> = Vec::new();
     let mut rows = Rows::new(COLUMNS);
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         .map(|(name, content)| (name.as_str(), content.clone()))
         .collect();
     write_all(&arguments.out, &files)?;
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: vec![format!(
             "wrote {} files to {}",

@@ -7,8 +7,8 @@
 use super::draw::{Case, INDENTATIONS};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::membrane::adapt::{Failure, Resolution};
-use model_tables::membrane::equilibrium::Outcome;
+use model_tables::membrane::adapt::{Resolution, Unsolved};
+use model_tables::membrane::equilibrium::NewtonOutcome;
 use model_tables::membrane::press::{FULL, MembraneError, Press};
 use model_tables::membrane::state::PressedState;
 
@@ -108,16 +108,16 @@ fn reason(error: &MembraneError, press: Option<&Press>) -> &'static str {
         {
             "press-law-unstable"
         }
-        (MembraneError::RestUnsolved { .. }, Failure::Newton(Outcome::Inadmissible { .. })) => {
+        (MembraneError::RestUnsolved { .. }, Unsolved::Newton(NewtonOutcome::Inadmissible { .. })) => {
             "rest-inadmissible"
         }
         (MembraneError::RestUnsolved { .. }, _) => "rest-unsolved",
-        (_, Failure::Newton(Outcome::Inadmissible { .. })) => "press-inadmissible",
-        (_, Failure::Newton(Outcome::Singular { .. })) => "press-singular",
-        (_, Failure::Newton(_)) => "press-stalled",
-        (_, Failure::EdgePushes { .. }) => "plain-edge-pushes",
-        (_, Failure::SnapsThrough) => "press-snaps-through",
-        (_, Failure::Unsettled) => "press-unsettled",
+        (_, Unsolved::Newton(NewtonOutcome::Inadmissible { .. })) => "press-inadmissible",
+        (_, Unsolved::Newton(NewtonOutcome::Singular { .. })) => "press-singular",
+        (_, Unsolved::Newton(_)) => "press-stalled",
+        (_, Unsolved::EdgePushes { .. }) => "plain-edge-pushes",
+        (_, Unsolved::SnapsThrough) => "press-snaps-through",
+        (_, Unsolved::Unsettled) => "press-unsettled",
     }
 }
 

@@ -4,12 +4,12 @@ mod ladder;
 mod speed;
 mod tables;
 
-use crate::methods::approximations::{APPROXIMATIONS, Evidence, SAMPLES, Yardstick};
+use crate::methods::approximations::{APPROXIMATIONS, Measurement, SAMPLES, Yardstick};
 use crate::methods::contest::{self, Contestant, DESIGNS, Sweep};
 use model_tables::membrane::TensionField;
 use output::files::write_all;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ const LADDER_FROM: f64 = 1e-5;
 
 /// What is asked.
 #[derive(Debug, clap::Args)]
-pub struct Arguments {
+pub struct ChartArguments {
     /// The designs: paper, finger, skin [default: all three]
     #[arg(value_parser = ["paper", "finger", "skin"])]
     designs: Vec<String>,
@@ -35,14 +35,14 @@ pub struct Arguments {
 struct Measured {
     sweep: Sweep,
     results: Vec<contest::Result>,
-    ladder: Vec<Evidence>,
+    ladder: Vec<Measurement>,
 }
 
 /// Measures, writes the files, and gives a row a file.
 ///
 /// # Errors
 /// [`Refusal`] where a design cannot be solved or a file not be written.
-pub fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub fn run(arguments: &ChartArguments) -> Result<CommandAnswer, Refusal> {
     let contents = if arguments.tables {
         tables::contents()?
     } else {
@@ -56,14 +56,14 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             Cell::Count(content.len()),
         ]);
     }
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: Vec::new(),
     })
 }
 
 /// The methods of solving, and the ladder of models.
-fn methods(arguments: &Arguments) -> Result<Vec<(&'static str, Vec<u8>)>, Refusal> {
+fn methods(arguments: &ChartArguments) -> Result<Vec<(&'static str, Vec<u8>)>, Refusal> {
     let chosen: Vec<Contestant> = DESIGNS
         .into_iter()
         .filter(|d| arguments.designs.is_empty() || arguments.designs.iter().any(|name| name == d.name))

@@ -10,7 +10,7 @@ use output::drawing::{
 use output::files::write_all;
 use output::progress::Progress;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -36,7 +36,7 @@ const UNSTRETCHED: [f64; 2] = [0.0024, 0.0065];
 
 /// What is asked.
 #[derive(Debug, clap::Args)]
-pub struct Arguments {
+pub struct LadderArguments {
     /// Number of random walls
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     designs: u64,
@@ -49,7 +49,7 @@ pub struct Arguments {
 ///
 /// # Errors
 /// [`Refusal`] where a design cannot be solved or a file not be written.
-pub fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub fn run(arguments: &LadderArguments) -> Result<CommandAnswer, Refusal> {
     let mut measured = Vec::new();
     let progress = Progress::new("random walls");
     // One after another: what is measured is time.
@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             measured.len() - judged.len()
         ));
     }
-    Ok(Answer { rows, notes })
+    Ok(CommandAnswer { rows, notes })
 }
 
 fn pre_stretch(wall: &Measured) -> f64 {

@@ -3,7 +3,7 @@
 //! Each is measured over the press asked about: its error against the membrane on a finer mesh of higher order, and its
 //! cost by the clock. Which model a design takes is another matter: `model_tables::model::choice`.
 
-use super::Failure;
+use super::MethodFailure;
 use super::few_states::FewStates;
 use super::light_contact::LightContact;
 use model_tables::curve::Contact;
@@ -68,27 +68,27 @@ impl fmt::Display for Approximation {
 
 /// Relative errors at one indentation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct ErrorSample {
     /// The indentation, metres.
     pub indentation: f64,
     /// Error of the force, relative; what failed where there is none.
-    pub force: Result<f64, Failure>,
+    pub force: Result<f64, MethodFailure>,
     /// Error of the pressure rise, relative; infinite where there is none.
     pub rise: f64,
 }
 
 /// What an approximation was measured to do.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Evidence {
+pub struct Measurement {
     /// Which.
     pub approximation: Approximation,
     /// Its errors, from the shallowest indentation to the deepest.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<ErrorSample>,
     /// What all its answers took together, from the rest state on, seconds.
     pub seconds: f64,
 }
 
-impl Evidence {
+impl Measurement {
     /// The largest relative error of the force; infinite where a state is missing.
     pub fn worst(&self) -> f64 {
         self.samples
@@ -102,7 +102,7 @@ impl Evidence {
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoTruth {
     /// The full membrane gave no answer to measure against.
-    Membrane(Failure),
+    Membrane(MethodFailure),
     /// The range is empty or not one of indentations.
     NoRange,
 }
@@ -136,7 +136,7 @@ impl Yardstick {
         if !(from > 0.0 && from <= to && to.is_finite()) {
             return Err(NoTruth::NoRange);
         }
-        let lost = |error| NoTruth::Membrane(Failure::Membrane(error));
+        let lost = |error| NoTruth::Membrane(MethodFailure::Membrane(error));
         let mut press = Press::<Law, TRUTH_STAGES>::with_resolution(design, field, TRUTH).map_err(lost)?;
         let mut truth = Vec::with_capacity(SAMPLES);
         for k in 0..SAMPLES {
@@ -157,7 +157,7 @@ impl Yardstick {
     }
 
     /// Measures an approximation.
-    pub fn measure(&self, approximation: Approximation) -> Evidence {
+    pub fn measure(&self, approximation: Approximation) -> Measurement {
         let mut seconds = f64::INFINITY;
         let mut answers = Vec::new();
         for _ in 0..REPETITIONS {
@@ -169,7 +169,7 @@ impl Yardstick {
             .truth
             .iter()
             .zip(answers)
-            .map(|(truth, found)| Sample {
+            .map(|(truth, found)| ErrorSample {
                 indentation: truth.indentation,
                 force: found.map(|found| (found.force / truth.force - 1.0).abs()),
                 rise: found.map_or(f64::INFINITY, |found| {
@@ -177,7 +177,7 @@ impl Yardstick {
                 }),
             })
             .collect();
-        Evidence {
+        Measurement {
             approximation,
             samples,
             seconds,
@@ -185,7 +185,7 @@ impl Yardstick {
     }
 
     /// The answers at every indentation.
-    fn answers(&self, approximation: Approximation) -> Vec<Result<Contact, Failure>> {
+    fn answers(&self, approximation: Approximation) -> Vec<Result<Contact, MethodFailure>> {
         let indentations = self.truth.iter().map(|truth| truth.indentation);
         match approximation {
             Approximation::LightContact => {
@@ -207,13 +207,13 @@ impl Yardstick {
             Approximation::Sweep => {
                 let mut press = self.sweep.clone();
                 indentations
-                    .map(|h| press.contact_at(h).map_err(Failure::Membrane))
+                    .map(|h| press.contact_at(h).map_err(MethodFailure::Membrane))
                     .collect()
             }
             Approximation::Membrane => {
                 let mut press = self.rest.clone();
                 indentations
-                    .map(|h| press.contact_at(h).map_err(Failure::Membrane))
+                    .map(|h| press.contact_at(h).map_err(MethodFailure::Membrane))
                     .collect()
             }
         }

@@ -10,9 +10,9 @@
 //! pole. So a state is shown to twice the steps before it is believed: one Newton step from it says how far it is
 //! off, and one that is further off than half a per cent is refused.
 
-use super::plain::{Met, Problem};
+use super::plain::{Met, PlainMembrane};
 use super::shooting::invert;
-use super::{Failure, Found, Unknown};
+use super::{MethodFailure, MethodState, Unknown};
 use core::f64::consts::{FRAC_PI_2, PI};
 use model_tables::design::Design;
 use model_tables::material::Hyperelastic;
@@ -54,7 +54,7 @@ pub const PAPER: Fineness = Fineness {
 /// Nested bisection for one design.
 #[derive(Clone, Debug)]
 pub struct Bisection {
-    problem: Problem,
+    problem: PlainMembrane,
     fineness: Fineness,
     rest: Rest,
     /// The rest state with twice the steps.
@@ -95,8 +95,8 @@ fn bisect(
     tolerance: f64,
     guess: f64,
     limits: [f64; 2],
-    mut of: impl FnMut(f64) -> Result<f64, Failure>,
-) -> Result<f64, Failure> {
+    mut of: impl FnMut(f64) -> Result<f64, MethodFailure>,
+) -> Result<f64, MethodFailure> {
     let mut last = None;
     let mut value = |x: f64| match of(x) {
         Ok(value) => value,
@@ -128,7 +128,7 @@ fn bisect(
         spread *= SPREAD_GROWTH;
     }
     if below >= 0.0 || above < 0.0 {
-        return Err(last.unwrap_or(Failure::NoBracket { unknown }));
+        return Err(last.unwrap_or(MethodFailure::NoBracket { unknown }));
     }
     while high - low > tolerance * high {
         let middle = 0.5 * (low + high);
@@ -141,18 +141,18 @@ fn bisect(
     }
     let residual = above.min(-below);
     if residual.is_infinite() {
-        return Err(last.unwrap_or(Failure::NoBracket { unknown }));
+        return Err(last.unwrap_or(MethodFailure::NoBracket { unknown }));
     }
     if residual > JUMP * tolerance {
-        return Err(Failure::Jump { unknown, residual });
+        return Err(MethodFailure::Jump { unknown, residual });
     }
     Ok(0.5 * (low + high))
 }
 
 impl Rest {
-    fn of(pressure: f64, reached: &Reached) -> Result<Self, Failure> {
+    fn of(pressure: f64, reached: &Reached) -> Result<Self, MethodFailure> {
         if reached.met.unstable {
-            return Err(Failure::LawUnstable);
+            return Err(MethodFailure::LawUnstable);
         }
         let [edge, _, _, height, volume] = reached.end;
         Ok(Self {
@@ -169,9 +169,9 @@ impl Bisection {
     /// Inflates a design to its rest state.
     ///
     /// # Errors
-    /// [`Failure`].
-    pub fn new(design: &Design, fineness: Fineness) -> Result<Self, Failure> {
-        let problem = Problem::new(design)?;
+    /// [`MethodFailure`].
+    pub fn new(design: &Design, fineness: Fineness) -> Result<Self, MethodFailure> {
+        let problem = PlainMembrane::new(design)?;
         let stretch = problem.pole_stretch;
         let mut found = Self {
             problem,
@@ -214,10 +214,10 @@ impl Bisection {
     /// The state at an indentation in metres.
     ///
     /// # Errors
-    /// [`Failure`].
-    pub fn at_indentation(&mut self, indentation: f64) -> Result<Found, Failure> {
+    /// [`MethodFailure`].
+    pub fn at_indentation(&mut self, indentation: f64) -> Result<MethodState, MethodFailure> {
         if !(indentation > 0.0 && indentation.is_finite()) {
-            return Err(Failure::NotAnIndentation { asked: indentation });
+            return Err(MethodFailure::NotAnIndentation { asked: indentation });
         }
         let scale = self.problem.scale;
         let target = indentation / scale.length;
@@ -225,7 +225,7 @@ impl Bisection {
         let tolerance = self.fineness.tolerance;
         let least = LEAST_INDENTATION * tolerance * self.rest.height;
         if target < least {
-            return Err(Failure::BelowResolution {
+            return Err(MethodFailure::BelowResolution {
                 asked: indentation,
                 least: least * scale.length,
             });
@@ -248,17 +248,17 @@ impl Bisection {
         self.latest = Some([pole_stretch, pressure, contact]);
         let ratio = reached.contact_radius / self.rest.edge;
         if ratio > 1.0 + tolerance {
-            return Err(Failure::BeyondLimit { ratio });
+            return Err(MethodFailure::BeyondLimit { ratio });
         }
         if reached.met.unstable {
-            return Err(Failure::LawUnstable);
+            return Err(MethodFailure::LawUnstable);
         }
         let estimate = self.error([pole_stretch, pressure, contact], target)?;
         if estimate.is_nan() || estimate > MOST_ERROR {
-            return Err(Failure::Inaccurate { estimate });
+            return Err(MethodFailure::Inaccurate { estimate });
         }
         let contact_radius = reached.contact_radius * scale.length;
-        Ok(Found {
+        Ok(MethodState {
             indentation,
             pressure: pressure * scale.pressure,
             pressure_rise: (pressure - self.rest.pressure) * scale.pressure,
@@ -271,7 +271,7 @@ impl Bisection {
     }
 
     /// How far the force of a state is off, relative: by what a Newton step with twice the steps changes it.
-    fn error(&mut self, state: [f64; 3], target: f64) -> Result<f64, Failure> {
+    fn error(&mut self, state: [f64; 3], target: f64) -> Result<f64, MethodFailure> {
         let steps = 2 * self.fineness.steps;
         let (rest, compliance) = (self.finer_rest, self.problem.compliance);
         let fluid = rest.volume + compliance * rest.pressure;
@@ -284,7 +284,7 @@ impl Bisection {
                 (end[4] + compliance * state[1]) / fluid - 1.0,
                 (rest.height - target - end[3]) / target,
             ];
-            Ok::<_, Failure>((left, state[1] * contact_radius * contact_radius))
+            Ok::<_, MethodFailure>((left, state[1] * contact_radius * contact_radius))
         };
         let (left, force) = at(state)?;
         let mut matrix = [[0.0; 3]; 3];
@@ -296,7 +296,7 @@ impl Bisection {
                 matrix[row][column] = (moved[row] - left[row]) / (aside[column] - state[column]);
             }
         }
-        let (inverse, _) = invert(&matrix).ok_or(Failure::Singular)?;
+        let (inverse, _) = invert(&matrix).ok_or(MethodFailure::Singular)?;
         let step = inverse.map(|row| row[0] * left[0] + row[1] * left[1] + row[2] * left[2]);
         let (_, better) = at(core::array::from_fn(|i| state[i] - step[i]))?;
         Ok((better / force - 1.0).abs())
@@ -311,7 +311,7 @@ impl Bisection {
     }
 
     /// The state of a contact edge: bisects the pressure for the volume.
-    fn at_contact(&mut self, contact: f64, inner: &mut (f64, f64)) -> Result<Reached, Failure> {
+    fn at_contact(&mut self, contact: f64, inner: &mut (f64, f64)) -> Result<Reached, MethodFailure> {
         let (mut stretch, guess) = *inner;
         let compliance = self.problem.compliance;
         let fluid = self.rest.volume + compliance * self.rest.pressure;
@@ -333,7 +333,12 @@ impl Bisection {
     }
 
     /// The state of a contact edge and a pressure: bisects the pole stretch for the clamped edge.
-    fn at_pressure(&mut self, contact: f64, pressure: f64, stretch: &mut f64) -> Result<Reached, Failure> {
+    fn at_pressure(
+        &mut self,
+        contact: f64,
+        pressure: f64,
+        stretch: &mut f64,
+    ) -> Result<Reached, MethodFailure> {
         let this = &mut *self;
         let found = bisect(
             Unknown::PoleStretch,
@@ -351,7 +356,7 @@ impl Bisection {
     }
 
     /// From the pole to the equator; a contact edge at 0 means no plate.
-    fn integrate(&mut self, state: [f64; 3]) -> Result<Reached, Failure> {
+    fn integrate(&mut self, state: [f64; 3]) -> Result<Reached, MethodFailure> {
         self.integrate_in(self.fineness.steps, state)
     }
 
@@ -359,7 +364,7 @@ impl Bisection {
         &mut self,
         steps: usize,
         [stretch, pressure, contact]: [f64; 3],
-    ) -> Result<Reached, Failure> {
+    ) -> Result<Reached, MethodFailure> {
         self.integrations += 1;
         let problem = &self.problem;
         let mut met = Met::NOTHING;
@@ -393,7 +398,7 @@ impl Bisection {
 
 /// Rates of the state: under the plate without a pressure, in the free zone with one.
 fn rates(
-    problem: &Problem,
+    problem: &PlainMembrane,
     t: f64,
     &[rho, l1, angle, _, _]: &State,
     pressure: Option<f64>,
@@ -427,11 +432,11 @@ fn runge_kutta<const N: usize>(
     [from, to]: [f64; 2],
     steps: usize,
     mut y: [f64; N],
-) -> Result<[f64; N], Failure> {
+) -> Result<[f64; N], MethodFailure> {
     let step = (to - from) / steps as f64;
     for k in 0..steps {
         let t = from + step * k as f64;
-        let blew_up = Failure::BlewUp { position: t };
+        let blew_up = MethodFailure::BlewUp { position: t };
         let mut along = |by: f64, slope: Option<&[f64; N]>| {
             let mut at = y;
             for (value, rate) in at.iter_mut().zip(slope.into_iter().flatten()) {
@@ -480,7 +485,7 @@ mod tests {
         // Undefined below 1.2: the root above is found all the same.
         let edge = bisect(Unknown::Pressure, Undefined::Below, 1e-8, 1.1, limits, |x| {
             if x < 1.2 {
-                Err(Failure::Singular)
+                Err(MethodFailure::Singular)
             } else {
                 Ok(x - 1.3)
             }
@@ -489,13 +494,13 @@ mod tests {
         let jump = bisect(Unknown::Contact, Undefined::Below, 1e-8, 1.0, limits, |x| {
             Ok(if x < 1.5 { -1.0 } else { 1.0 })
         });
-        assert!(matches!(jump, Err(Failure::Jump { .. })), "{jump:?}");
+        assert!(matches!(jump, Err(MethodFailure::Jump { .. })), "{jump:?}");
         let none = bisect(Unknown::PoleStretch, Undefined::Below, 1e-8, 1.0, limits, |_| {
             Ok(-1.0)
         });
         assert_eq!(
             none,
-            Err(Failure::NoBracket {
+            Err(MethodFailure::NoBracket {
                 unknown: Unknown::PoleStretch
             })
         );

@@ -282,7 +282,7 @@ fn timed(
 }
 
 fn ready(method: Method, design: &Design) -> core::result::Result<Ready, String> {
-    let words = |failure: super::Failure| failure.to_string();
+    let words = |failure: super::MethodFailure| failure.to_string();
     let design = *design;
     match method {
         Method::Collocation { stages, density } => match stages {

@@ -5,7 +5,7 @@
 //! closed form to the end of the press. Its weakness: next to first contact the terms left are `r^2 ln r`, so the
 //! order of convergence is low there; and it knows nothing of zones that appear on the way.
 
-use super::Failure;
+use super::MethodFailure;
 use super::light_contact::LightContact;
 use core::f64::consts::PI;
 use model_tables::curve::Contact;
@@ -36,13 +36,13 @@ impl FewStates {
     /// A curve down to `deepest`, metres, through so many states of the press, 1 to [`MOST`].
     ///
     /// # Errors
-    /// [`Failure`].
+    /// [`MethodFailure`].
     pub fn new<const S: usize>(
         design: &Design,
         press: &mut Press<model_tables::material::Law, S>,
         deepest: f64,
         states: usize,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, MethodFailure> {
         let light = LightContact::new(design)?;
         let slope = 0.5 * light.rest_pressure / light.rest_tension;
         let states = states.clamp(1, MOST);
@@ -102,13 +102,13 @@ impl FewStates {
     /// The state at an indentation in metres.
     ///
     /// # Errors
-    /// [`Failure::NotAnIndentation`], [`Failure::BeyondModel`] beyond the deepest state.
-    pub fn at_indentation(&self, indentation: f64) -> Result<Contact, Failure> {
+    /// [`MethodFailure::NotAnIndentation`], [`MethodFailure::BeyondModel`] beyond the deepest state.
+    pub fn at_indentation(&self, indentation: f64) -> Result<Contact, MethodFailure> {
         if !(indentation >= 0.0 && indentation.is_finite()) {
-            return Err(Failure::NotAnIndentation { asked: indentation });
+            return Err(MethodFailure::NotAnIndentation { asked: indentation });
         }
         if indentation > self.deepest {
-            return Err(Failure::BeyondModel {
+            return Err(MethodFailure::BeyondModel {
                 asked: indentation,
                 largest: self.deepest,
             });

@@ -14,9 +14,9 @@
 //! and point force; after that a state costs a microsecond. Its weakness: errors of the order `(r / K)^2 ln K / r`,
 //! and no state at all beyond the largest indentation of the formula.
 
-use super::Failure;
-use super::plain::{HEIGHT, Problem, RADIUS, STATE, VOLUME};
-use super::shooting::{Rest, inflate};
+use super::MethodFailure;
+use super::plain::{HEIGHT, PlainMembrane, RADIUS, STATE, VOLUME};
+use super::shooting::{ShootingRest, inflate};
 use core::f64::consts::{E, PI};
 use model_tables::curve::Contact;
 use model_tables::design::Design;
@@ -46,12 +46,12 @@ impl LightContact {
     /// The constants of a design.
     ///
     /// # Errors
-    /// [`Failure`]; [`Failure::RestWrinkled`] where some tension of the rest state is negative.
-    pub fn new(design: &Design) -> Result<Self, Failure> {
-        let problem = Problem::new(design)?;
-        let rest = Rest::new(&problem, TOLERANCE)?;
+    /// [`MethodFailure`]; [`MethodFailure::RestWrinkled`] where some tension of the rest state is negative.
+    pub fn new(design: &Design) -> Result<Self, MethodFailure> {
+        let problem = PlainMembrane::new(design)?;
+        let rest = ShootingRest::new(&problem, TOLERANCE)?;
         if rest.met.least < 0.0 {
-            return Err(Failure::RestWrinkled);
+            return Err(MethodFailure::RestWrinkled);
         }
         let stretch = problem.pole_stretch;
         // All variations control the step: that by the point force is singular at the pole.
@@ -63,7 +63,7 @@ impl LightContact {
         let (c, d) = (by(0, VOLUME), by(1, VOLUME) + problem.compliance);
         let determinant = a * d - b * c;
         if determinant == 0.0 || !determinant.is_finite() {
-            return Err(Failure::Singular);
+            return Err(MethodFailure::Singular);
         }
         let (e, f) = (-by(2, RADIUS), -by(2, VOLUME));
         let stretch_by = (e * d - b * f) / determinant;
@@ -101,14 +101,14 @@ impl LightContact {
     /// The contact radius of an indentation, both metres.
     ///
     /// # Errors
-    /// [`Failure::NotAnIndentation`], [`Failure::BeyondModel`].
-    pub fn contact_radius(&self, indentation: f64) -> Result<f64, Failure> {
+    /// [`MethodFailure::NotAnIndentation`], [`MethodFailure::BeyondModel`].
+    pub fn contact_radius(&self, indentation: f64) -> Result<f64, MethodFailure> {
         if !(indentation >= 0.0 && indentation.is_finite()) {
-            return Err(Failure::NotAnIndentation { asked: indentation });
+            return Err(MethodFailure::NotAnIndentation { asked: indentation });
         }
         let largest = self.largest_indentation();
         if indentation > largest {
-            return Err(Failure::BeyondModel {
+            return Err(MethodFailure::BeyondModel {
                 asked: indentation,
                 largest,
             });
@@ -134,8 +134,8 @@ impl LightContact {
     /// The state of an indentation in metres.
     ///
     /// # Errors
-    /// [`Failure::NotAnIndentation`], [`Failure::BeyondModel`].
-    pub fn at_indentation(&self, indentation: f64) -> Result<Contact, Failure> {
+    /// [`MethodFailure::NotAnIndentation`], [`MethodFailure::BeyondModel`].
+    pub fn at_indentation(&self, indentation: f64) -> Result<Contact, MethodFailure> {
         let radius = self.contact_radius(indentation)?;
         if radius == 0.0 {
             return Ok(Contact::default());

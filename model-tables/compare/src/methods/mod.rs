@@ -22,7 +22,7 @@ use std::fmt;
 
 /// A pressed state, as the methods for comparison find it; SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
+pub struct MethodState {
     /// How far the plate went down from first touch, metres.
     pub indentation: f64,
     /// Gauge pressure, pascals.
@@ -54,7 +54,7 @@ pub enum Unknown {
 
 /// Why a method for comparison gives no state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Failure {
+pub enum MethodFailure {
     /// These methods know the rest state by its pole stretch only.
     RestNotByPoleStretch,
     /// The rest state has hoop wrinkles, which this model does not know.
@@ -120,7 +120,7 @@ pub enum Failure {
     Membrane(MembraneError),
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for MethodFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::RestNotByPoleStretch => {
@@ -192,9 +192,9 @@ impl fmt::Display for Unknown {
     }
 }
 
-impl core::error::Error for Failure {}
+impl core::error::Error for MethodFailure {}
 
-impl From<MembraneError> for Failure {
+impl From<MembraneError> for MethodFailure {
     fn from(error: MembraneError) -> Self {
         Self::Membrane(error)
     }

@@ -12,12 +12,12 @@
 //!
 //! Under the plate `q = 0` and `N = p` keeps its sign. Beside the state run its variations by three parameters.
 
-use super::Failure;
+use super::MethodFailure;
 use core::f64::consts::PI;
 use model_tables::design::{Design, RestBy};
 use model_tables::material::stability;
 use model_tables::material::{Derivatives, Hyperelastic, Law, Scaled};
-use model_tables::membrane::state::Scale;
+use model_tables::membrane::state::UnitScale;
 
 /// Components of the state in the free zone: radius, `p`, height, volume.
 pub const STATE: usize = 4;
@@ -26,7 +26,7 @@ pub const VARIED: usize = 3;
 /// The state of the free zone and its variations.
 pub type Free = [f64; STATE * (1 + VARIED)];
 /// Radius and `p` under the plate, and their variation by the pole stretch.
-pub type Contact = [f64; 4];
+pub type ContactState = [f64; 4];
 
 /// Index of the radius.
 pub const RADIUS: usize = 0;
@@ -39,13 +39,13 @@ pub const VOLUME: usize = 3;
 
 /// The membrane of a design, dimensionless.
 #[derive(Clone, Copy, Debug)]
-pub struct Problem {
+pub struct PlainMembrane {
     /// Axial over radial semi-axis.
     pub aspect: f64,
     /// The law over its shear modulus.
     pub law: Scaled<Law>,
     /// Units.
-    pub scale: Scale,
+    pub scale: UnitScale,
     /// Pole stretch of the rest state.
     pub pole_stretch: f64,
     /// Compliance of tubing, actuator and bubbles.
@@ -69,7 +69,7 @@ pub struct Load {
 
 /// What an integration remembers from stage to stage.
 #[derive(Clone, Copy, Debug)]
-pub struct Memory {
+pub struct LastStretches {
     /// The last meridional stretch: the next one is near.
     pub stretch: f64,
     /// What was met on the way.
@@ -93,7 +93,7 @@ impl Met {
     };
 
     /// Takes note of a point with its stretches.
-    pub fn note(&mut self, problem: &Problem, [l1, l2]: [f64; 2], [w1, w2]: [f64; 2]) {
+    pub fn note(&mut self, problem: &PlainMembrane, [l1, l2]: [f64; 2], [w1, w2]: [f64; 2]) {
         self.least = self.least.min(w1).min(w2);
         if problem.watched && !self.unstable {
             self.unstable = !stability::margin(&problem.law, l1, l2).is_stable();
@@ -101,7 +101,7 @@ impl Met {
     }
 }
 
-impl Memory {
+impl LastStretches {
     /// Nothing met yet; stretches near `stretch` to come.
     pub fn new(stretch: f64) -> Self {
         Self {
@@ -114,17 +114,17 @@ impl Memory {
 /// Newton steps of the inversion of the law.
 const MOST_INVERSIONS: usize = 40;
 
-impl Problem {
+impl PlainMembrane {
     /// The membrane of a design.
     ///
     /// # Errors
-    /// [`Failure::RestNotByPoleStretch`].
-    pub fn new(design: &Design) -> Result<Self, Failure> {
+    /// [`MethodFailure::RestNotByPoleStretch`].
+    pub fn new(design: &Design) -> Result<Self, MethodFailure> {
         let RestBy::PoleStretch(pole_stretch) = design.rest else {
-            return Err(Failure::RestNotByPoleStretch);
+            return Err(MethodFailure::RestNotByPoleStretch);
         };
         let modulus = design.law.shear_modulus();
-        let scale = Scale::new(&design.membrane, modulus);
+        let scale = UnitScale::new(&design.membrane, modulus);
         Ok(Self {
             aspect: design.membrane.axial_semi_axis / design.membrane.radial_semi_axis,
             law: Scaled {
@@ -150,7 +150,7 @@ impl Problem {
     }
 
     /// The law at the meridional stretch with `W_1(l1, u) = n`.
-    pub fn invert(&self, n: f64, u: f64, memory: &mut Memory) -> Option<Derivatives> {
+    pub fn invert(&self, n: f64, u: f64, memory: &mut LastStretches) -> Option<Derivatives> {
         let mut l1 = memory.stretch;
         for _ in 0..MOST_INVERSIONS {
             let d = self.law.derivatives(l1, u);
@@ -181,7 +181,7 @@ impl Problem {
     }
 
     /// The state at a small `t` under the plate.
-    pub fn contact_start(&self, t: f64, pole_stretch: f64) -> Contact {
+    pub fn contact_start(&self, t: f64, pole_stretch: f64) -> ContactState {
         let (second, _, d) = self.pole_series(pole_stretch, 0.0);
         let x = libm::sin(t);
         // W_1 = w0 + W_11 l12 t^2 + W_12 u2 t^2 with l12 = 3 u2 - u0 beta^2 / 2.
@@ -214,7 +214,12 @@ impl Problem {
     }
 
     /// Rates under the plate.
-    pub fn contact_rates(&self, t: f64, y: &Contact, memory: &mut Memory) -> Option<Contact> {
+    pub fn contact_rates(
+        &self,
+        t: f64,
+        y: &ContactState,
+        memory: &mut LastStretches,
+    ) -> Option<ContactState> {
         let (x, _, g) = self.meridian(t);
         let (u, n) = (y[0] / x, y[1] / x);
         let d = self.invert(n, u, memory)?;
@@ -225,7 +230,7 @@ impl Problem {
     }
 
     /// Rates in the free zone.
-    pub fn free_rates(&self, t: f64, y: &Free, load: &Load, memory: &mut Memory) -> Option<Free> {
+    pub fn free_rates(&self, t: f64, y: &Free, load: &Load, memory: &mut LastStretches) -> Option<Free> {
         let (x, _, g) = self.meridian(t);
         let (rho, p) = (y[RADIUS], y[THRUST]);
         let q = 0.5 * load.pressure * rho * rho - load.load;
@@ -270,8 +275,8 @@ mod tests {
     use super::*;
     use model_tables::design::Membrane;
 
-    fn problem() -> Problem {
-        Problem::new(&Design {
+    fn problem() -> PlainMembrane {
+        PlainMembrane::new(&Design {
             membrane: Membrane {
                 radial_semi_axis: 9e-3,
                 axial_semi_axis: 7e-3,
@@ -300,7 +305,7 @@ mod tests {
                 load_by: [0.0, 0.0, 0.5],
             };
             problem
-                .free_rates(0.8, &y, &load, &mut Memory::new(1.3))
+                .free_rates(0.8, &y, &load, &mut LastStretches::new(1.3))
                 .expect("admissible")
         };
         let h = 1e-5;
@@ -342,11 +347,11 @@ mod tests {
                 ..Load::default()
             };
             let rates = problem
-                .free_rates(t, &free(t), &load, &mut Memory::new(stretch))
+                .free_rates(t, &free(t), &load, &mut LastStretches::new(stretch))
                 .expect("admissible");
             let contact = |t: f64| problem.contact_start(t, stretch);
             let under = problem
-                .contact_rates(t, &contact(t), &mut Memory::new(stretch))
+                .contact_rates(t, &contact(t), &mut LastStretches::new(stretch))
                 .expect("admissible");
             let slope = |of: &dyn Fn(f64) -> f64| (of(t + h) - of(t - h)) / (2.0 * h);
             (0..2)

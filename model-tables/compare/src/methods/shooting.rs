@@ -6,8 +6,10 @@
 //! exceeds a million, and Newton's method fails from guesses a few parts in ten thousand off.
 
 use super::dop853::{Tolerance, integrate};
-use super::plain::{Free, HEIGHT, Load, Memory, Met, Problem, RADIUS, STATE, THRUST, VARIED, VOLUME};
-use super::{Failure, Found};
+use super::plain::{
+    Free, HEIGHT, LastStretches, Load, Met, PlainMembrane, RADIUS, STATE, THRUST, VARIED, VOLUME,
+};
+use super::{MethodFailure, MethodState};
 use core::f64::consts::{FRAC_PI_2, PI};
 use model_tables::design::Design;
 
@@ -37,7 +39,7 @@ pub type Unknowns = [f64; VARIED];
 
 /// The rest state, dimensionless.
 #[derive(Clone, Copy, Debug)]
-pub struct Rest {
+pub struct ShootingRest {
     /// Pressure.
     pub pressure: f64,
     /// Radius of the equator.
@@ -55,9 +57,9 @@ pub struct Rest {
 /// Shooting for one design.
 #[derive(Clone, Debug)]
 pub struct Shooting {
-    problem: Problem,
+    problem: PlainMembrane,
     tolerance: f64,
-    rest: Rest,
+    rest: ShootingRest,
     /// Logarithm of the indentation and unknowns of the latest states, newest last.
     history: Vec<(f64, Unknowns)>,
     condition: f64,
@@ -85,19 +87,19 @@ fn tolerance(relative: f64, controlled: usize) -> Tolerance {
 
 /// The plate-free membrane from `start` to the equator, varied by pole stretch, pressure and a point force.
 pub(super) fn inflate(
-    problem: &Problem,
+    problem: &PlainMembrane,
     pole_stretch: f64,
     pressure: f64,
     [start, relative]: [f64; 2],
     controlled: usize,
-) -> Result<(Free, Met), Failure> {
+) -> Result<(Free, Met), MethodFailure> {
     let load = Load {
         pressure,
         load: 0.0,
         pressure_by: [0.0, 1.0, 0.0],
         load_by: [0.0, 0.0, 1.0],
     };
-    let mut memory = Memory::new(pole_stretch);
+    let mut memory = LastStretches::new(pole_stretch);
     let end = integrate(
         |t, y| problem.free_rates(t, y, &load, &mut memory),
         [start, FRAC_PI_2],
@@ -108,12 +110,12 @@ pub(super) fn inflate(
     Ok((end, memory.met))
 }
 
-impl Rest {
+impl ShootingRest {
     /// The rest state of the problem's pole stretch: the pressure at which the equator is vertical, by Newton.
     ///
     /// # Errors
-    /// [`Failure::BlewUp`], [`Failure::Stalled`].
-    pub fn new(problem: &Problem, relative: f64) -> Result<Self, Failure> {
+    /// [`MethodFailure::BlewUp`], [`MethodFailure::Stalled`].
+    pub fn new(problem: &PlainMembrane, relative: f64) -> Result<Self, MethodFailure> {
         let stretch = problem.pole_stretch;
         let d = model_tables::material::Hyperelastic::derivatives(&problem.law, stretch, stretch);
         let mut pressure = 2.0 * d.w1 / (stretch * stretch) * problem.aspect;
@@ -122,7 +124,7 @@ impl Rest {
             let (end, met) = match inflate(problem, stretch, pressure, [start_of(relative), relative], STATE)
             {
                 Ok(reached) => reached,
-                Err(Failure::BlewUp { .. }) => {
+                Err(MethodFailure::BlewUp { .. }) => {
                     // Too much pressure for the stretch.
                     pressure *= 0.7;
                     continue;
@@ -133,7 +135,7 @@ impl Rest {
             moved = (step / pressure).abs();
             if moved < 0.1 * relative {
                 if met.unstable {
-                    return Err(Failure::LawUnstable);
+                    return Err(MethodFailure::LawUnstable);
                 }
                 return Ok(Self {
                     pressure,
@@ -146,7 +148,7 @@ impl Rest {
             }
             pressure += step.clamp(-0.5 * pressure, pressure);
         }
-        Err(Failure::Stalled {
+        Err(MethodFailure::Stalled {
             residual: moved,
             condition: 1.0,
         })
@@ -157,10 +159,10 @@ impl Shooting {
     /// Inflates a design to its rest state; `tolerance` is the relative one of the integration.
     ///
     /// # Errors
-    /// [`Failure`].
-    pub fn new(design: &Design, tolerance: f64) -> Result<Self, Failure> {
-        let problem = Problem::new(design)?;
-        let rest = Rest::new(&problem, tolerance)?;
+    /// [`MethodFailure`].
+    pub fn new(design: &Design, tolerance: f64) -> Result<Self, MethodFailure> {
+        let problem = PlainMembrane::new(design)?;
+        let rest = ShootingRest::new(&problem, tolerance)?;
         Ok(Self {
             problem,
             tolerance,
@@ -171,7 +173,7 @@ impl Shooting {
     }
 
     /// The rest state, dimensionless.
-    pub fn rest(&self) -> &Rest {
+    pub fn rest(&self) -> &ShootingRest {
         &self.rest
     }
 
@@ -183,8 +185,8 @@ impl Shooting {
     /// The state at an indentation in metres, over states in between where it takes them.
     ///
     /// # Errors
-    /// [`Failure`].
-    pub fn at_indentation(&mut self, indentation: f64) -> Result<Found, Failure> {
+    /// [`MethodFailure`].
+    pub fn at_indentation(&mut self, indentation: f64) -> Result<MethodState, MethodFailure> {
         let target = self.dimensionless(indentation)?;
         let mut reached = if let Some(&(place, _)) = self.history.last() {
             libm::exp(place)
@@ -219,27 +221,27 @@ impl Shooting {
     /// The state at an indentation in metres from a guess: pole stretch, pressure in pascals, contact parameter.
     ///
     /// # Errors
-    /// [`Failure`].
-    pub fn from_guess(&mut self, indentation: f64, guess: Unknowns) -> Result<Found, Failure> {
+    /// [`MethodFailure`].
+    pub fn from_guess(&mut self, indentation: f64, guess: Unknowns) -> Result<MethodState, MethodFailure> {
         let target = self.dimensionless(indentation)?;
         let [stretch, pressure, contact] = guess;
         let found = self.solve(target, [stretch, pressure / self.problem.scale.pressure, contact])?;
         Ok(self.found(indentation, &found))
     }
 
-    fn dimensionless(&self, indentation: f64) -> Result<f64, Failure> {
+    fn dimensionless(&self, indentation: f64) -> Result<f64, MethodFailure> {
         if indentation > 0.0 && indentation.is_finite() {
             Ok(indentation / self.problem.scale.length)
         } else {
-            Err(Failure::NotAnIndentation { asked: indentation })
+            Err(MethodFailure::NotAnIndentation { asked: indentation })
         }
     }
 
-    fn found(&self, indentation: f64, (unknowns, shot): &(Unknowns, Shot)) -> Found {
+    fn found(&self, indentation: f64, (unknowns, shot): &(Unknowns, Shot)) -> MethodState {
         let scale = &self.problem.scale;
         let [pole_stretch, pressure, contact_parameter] = *unknowns;
         let contact_radius = shot.contact_radius * scale.length;
-        Found {
+        MethodState {
             indentation,
             pressure: pressure * scale.pressure,
             pressure_rise: (pressure - self.rest.pressure) * scale.pressure,
@@ -293,9 +295,9 @@ impl Shooting {
         }
     }
 
-    fn shoot(&self, [stretch, pressure, contact]: Unknowns) -> Result<Shot, Failure> {
+    fn shoot(&self, [stretch, pressure, contact]: Unknowns) -> Result<Shot, MethodFailure> {
         let problem = &self.problem;
-        let mut memory = Memory::new(stretch);
+        let mut memory = LastStretches::new(stretch);
         let start = start_of(self.tolerance).min(0.5 * contact);
         let [rho, p, rho_by, p_by] = integrate(
             |t, y| problem.contact_rates(t, y, &mut memory),
@@ -307,7 +309,7 @@ impl Shooting {
         // The rate of the edge's radius as the edge moves; radius and thrust themselves are continuous there.
         let edge_rate = problem
             .contact_rates(contact, &[rho, p, 0.0, 0.0], &mut memory)
-            .ok_or(Failure::BlewUp { position: contact })?[RADIUS];
+            .ok_or(MethodFailure::BlewUp { position: contact })?[RADIUS];
         let radius_by = [rho_by, 0.0, edge_rate];
         let load = Load {
             pressure,
@@ -357,9 +359,9 @@ impl Shooting {
         (residual, matrix)
     }
 
-    fn solve(&mut self, target: f64, guess: Unknowns) -> Result<(Unknowns, Shot), Failure> {
+    fn solve(&mut self, target: f64, guess: Unknowns) -> Result<(Unknowns, Shot), MethodFailure> {
         if target >= self.rest.height {
-            return Err(Failure::BeyondLimit {
+            return Err(MethodFailure::BeyondLimit {
                 ratio: target / self.rest.height,
             });
         }
@@ -368,12 +370,12 @@ impl Shooting {
         let mut shot = self.shoot(unknowns)?;
         for _ in 0..MOST_STEPS {
             let (residual, matrix) = self.equations(target, &unknowns, &shot);
-            let (inverse, condition) = invert(&matrix).ok_or(Failure::Singular)?;
+            let (inverse, condition) = invert(&matrix).ok_or(MethodFailure::Singular)?;
             self.condition = condition;
             let step = inverse.map(|row| -row.iter().zip(&residual).map(|(a, r)| a * r).sum::<f64>());
             let largest = size(&step);
             if !largest.is_finite() {
-                return Err(Failure::Singular);
+                return Err(MethodFailure::Singular);
             }
             let moved = |damping: f64| {
                 let mut next = unknowns;
@@ -383,7 +385,7 @@ impl Shooting {
                 next[2] = next[2].min(0.5 * (unknowns[2] + FRAC_PI_2));
                 next
             };
-            let stalled = Failure::Stalled {
+            let stalled = MethodFailure::Stalled {
                 residual: size(&residual),
                 condition,
             };
@@ -419,19 +421,24 @@ impl Shooting {
             unknowns = moved(damping);
         }
         let (residual, _) = self.equations(target, &unknowns, &shot);
-        Err(Failure::Stalled {
+        Err(MethodFailure::Stalled {
             residual: size(&residual),
             condition: self.condition,
         })
     }
 
-    fn accept(&mut self, target: f64, unknowns: Unknowns, shot: Shot) -> Result<(Unknowns, Shot), Failure> {
+    fn accept(
+        &mut self,
+        target: f64,
+        unknowns: Unknowns,
+        shot: Shot,
+    ) -> Result<(Unknowns, Shot), MethodFailure> {
         let ratio = shot.contact_radius / self.rest.edge;
         if ratio > 1.0 + EDGE_ROUNDING {
-            return Err(Failure::BeyondLimit { ratio });
+            return Err(MethodFailure::BeyondLimit { ratio });
         }
         if shot.met.unstable {
-            return Err(Failure::LawUnstable);
+            return Err(MethodFailure::LawUnstable);
         }
         let place = libm::log(target);
         self.history.retain(|(other, _)| (other - place).abs() > 1e-6);

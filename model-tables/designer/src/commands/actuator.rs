@@ -3,7 +3,7 @@
 use super::{finite, read};
 use model_tables::actuator::{Actuator, FREE_DIAMETER};
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &[
@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     pressure_kpa: Vec<f64>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let design_file = read(file)?;
     let design = design_file.design();
@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             Cell::Number(state.volume_change * 1e9),
         ]);
     }
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: Vec::new(),
     })

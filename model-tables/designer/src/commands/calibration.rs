@@ -3,15 +3,15 @@
 use super::fit as command;
 use super::published::paper::{FORCES, INDENTATIONS};
 use super::published::solid::SOLID;
-use crate::fit::data::{Choice, Data};
+use crate::fit::data::{Data, DataChoice};
 use crate::fit::parameter::Parameter;
-use crate::fit::{self, Fit, Quantity};
+use crate::fit::{self, DataQuantity, Fit};
 use crate::size;
 use crate::size::target::Target;
 use model_tables::design_file::DesignFile;
 use output::files;
 use output::rows::{Cell, Rows, significant};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -51,7 +51,7 @@ struct Case {
     fit: Fit,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     use Parameter::{
         Compliance, IndentationOffset, Material, PoleStretch, PressureGain, PressureOffset, Thickness,
     };
@@ -106,7 +106,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             rms(&case.fit.after, 1, 1e-3),
         ]);
     }
-    Ok(Answer { rows, notes })
+    Ok(CommandAnswer { rows, notes })
 }
 
 /// The solid dome as a bench would have measured it.
@@ -121,7 +121,8 @@ fn dome_data() -> Data {
             1e-3 * state.pressure
         );
     }
-    Data::parse(&text, "solid finite elements", &Choice::default()).expect("published numbers are good data")
+    Data::parse(&text, "solid finite elements", &DataChoice::default())
+        .expect("published numbers are good data")
 }
 
 /// The source paper's own points.
@@ -130,7 +131,7 @@ fn paper_data() -> Data {
     for (depth, force) in INDENTATIONS.iter().zip(FORCES) {
         let _ = writeln!(text, "{},{force}", 1e3 * depth);
     }
-    Data::parse(&text, "the paper's points", &Choice::default()).expect("published numbers are good data")
+    Data::parse(&text, "the paper's points", &DataChoice::default()).expect("published numbers are good data")
 }
 
 fn number(value: f64) -> String {
@@ -143,7 +144,7 @@ fn percent(fitted: f64, measured: f64) -> String {
 }
 
 /// The residuals of one quantity, in the order of the data.
-fn of(fit: &Fit, quantity: Quantity) -> Vec<&fit::Residual> {
+fn of(fit: &Fit, quantity: DataQuantity) -> Vec<&fit::Residual> {
     fit.residuals
         .iter()
         .filter(|residual| residual.quantity == quantity)
@@ -164,7 +165,7 @@ fn page(domes: &[Case; 3], papers: &[Case; 3], paper_data: &Data, target: &Targe
     let [usual, every, solid] = domes;
     for (i, state) in SOLID.iter().enumerate() {
         let _ = write!(text, "| {}", number(1e3 * state.indentation));
-        for (quantity, unit) in [(Quantity::Force, 1.0), (Quantity::Rise, 1e-3)] {
+        for (quantity, unit) in [(DataQuantity::Force, 1.0), (DataQuantity::Rise, 1e-3)] {
             let residual = |case: &Case| *of(&case.fit, quantity)[i];
             let drawn = residual(usual);
             let _ = write!(
@@ -240,7 +241,9 @@ fn paper_section(papers: &[Case; 3], data: &Data) -> String {
          | H, mm | published | as drawn | modulus alone | modulus and stretch | usual parameters |\n|---|---|---|---|---|---|\n",
     );
     for (i, row) in data.rows.iter().enumerate() {
-        let residuals = papers.each_ref().map(|case| of(&case.fit, Quantity::Force)[i]);
+        let residuals = papers
+            .each_ref()
+            .map(|case| of(&case.fit, DataQuantity::Force)[i]);
         let _ = write!(
             text,
             "| {} | {} | {}",
@@ -254,7 +257,7 @@ fn paper_section(papers: &[Case; 3], data: &Data) -> String {
         text.push_str(" |\n");
     }
     let exponent = |a: f64, b: f64, from: f64, to: f64| libm::log(b / a) / libm::log(to / from);
-    let forces = of(&papers[0].fit, Quantity::Force);
+    let forces = of(&papers[0].fit, DataQuantity::Force);
     let of_model = exponent(
         forces[1].fitted,
         forces[2].fitted,

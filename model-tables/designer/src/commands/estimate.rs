@@ -4,7 +4,7 @@ use super::finite;
 use model_tables::generate::{GenerateError, from_design_file};
 use model_tables::units::PressureRise;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::{Path, PathBuf};
 
 const COLUMNS: &[&str] = &["pressure_rise_pa", "force_n", "indentation_mm", "status"];
@@ -27,7 +27,7 @@ pub(super) fn refusal(file: &Path, error: GenerateError) -> Refusal {
     }
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let generated = from_design_file(file).map_err(|error| refusal(file, error))?;
     let tables = &generated.certified.tables;
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             Cell::Text(status.to_owned()),
         ]);
     }
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: Vec::new(),
     })

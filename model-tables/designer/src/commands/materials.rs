@@ -3,7 +3,7 @@
 use super::bench;
 use model_tables::material::Law;
 use model_tables::material::preset::PRESETS;
-use output::Answer;
+use output::CommandAnswer;
 use output::rows::{Cell, Rows};
 
 const COLUMNS: &[&str] = &[
@@ -16,7 +16,7 @@ const COLUMNS: &[&str] = &[
     "rate",
 ];
 
-pub(super) fn run() -> Answer {
+pub(super) fn run() -> CommandAnswer {
     let mut rows = Rows::new(COLUMNS);
     for preset in &PRESETS {
         let (law, constants) = match preset.law {
@@ -43,5 +43,5 @@ pub(super) fn run() -> Answer {
         "published moduli of one product differ by a factor of two: calibrate a part with `designer fit`"
             .to_owned(),
     );
-    Answer { rows, notes }
+    CommandAnswer { rows, notes }
 }

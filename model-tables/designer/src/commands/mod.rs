@@ -26,7 +26,7 @@ use model_tables::design_file::DesignFile;
 use model_tables::material::stability::Margin;
 use model_tables::membrane::TensionField;
 use output::rows::Format;
-use output::{Answer, Refusal, files};
+use output::{CommandAnswer, Refusal, files};
 use std::fmt::Display;
 use std::io::{IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
@@ -71,13 +71,13 @@ enum Command {
     Report(report::Arguments),
     /// Speed against accuracy of every method, and the ladder of models: SVG and CSV
     #[command(after_help = "Example:\n  cargo designer chart paper --out target/chart")]
-    Chart(compare::chart::Arguments),
+    Chart(compare::chart::ChartArguments),
     /// Where each method answers, refuses or is silently wrong, over designs; and what a state costs
     #[command(after_help = "Example:\n  cargo designer atlas --stride 4 --out target/atlas")]
-    Atlas(compare::atlas::Arguments),
+    Atlas(compare::atlas::AtlasArguments),
     /// The models over random walls: error against time, and what `model.kind = "auto"` takes: SVG and CSV
     #[command(after_help = "Example:\n  cargo designer ladder --designs 50 --out target/ladder")]
-    Ladder(compare::ladder::Arguments),
+    Ladder(compare::ladder::LadderArguments),
     /// What the chip would say at pressure rises, bit for bit
     #[command(
         after_help = "Example:\n  cargo designer estimate model-tables/designs/index-fingertip.toml --pressure-rise-pa 642,2571"
@@ -166,7 +166,7 @@ pub fn main() -> ExitCode {
 
 /// Runs the subcommand and prints its answer; gives its notes.
 fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
-    let Answer { rows, notes } = match command {
+    let CommandAnswer { rows, notes } = match command {
         Command::Rest { design } => rest::run(design),
         Command::Solve(arguments) => solve::run(arguments),
         Command::Profile(arguments) => profile::run(arguments),

@@ -10,7 +10,7 @@ use model_tables::model::ModelError;
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &[
@@ -64,7 +64,7 @@ pub(super) struct Arguments {
     tension_field: Field,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let design_file = read(file)?;
     let calibration = &design_file.calibration;
@@ -104,7 +104,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         );
         return Err(Refusal::about(file, &reason));
     }
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: model.note.into_iter().collect(),
     })
@@ -116,7 +116,7 @@ fn solid(
     design_file: &DesignFile,
     model: &Model,
     elements: Elements,
-) -> Result<Answer, Refusal> {
+) -> Result<CommandAnswer, Refusal> {
     let calibration = &design_file.calibration;
     let refuse = |error: ModelError| Refusal::about(&arguments.design, &bench::as_read(calibration, error));
     let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
@@ -146,7 +146,7 @@ fn solid(
             Cell::Empty,
         ]);
     }
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: model.note.iter().cloned().collect(),
     })

@@ -11,7 +11,7 @@ use model_tables::model::{Fingertip, Kind};
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::Path;
 
 const COLUMNS: &[&str] = &[
@@ -24,7 +24,7 @@ const COLUMNS: &[&str] = &[
     "ends_by",
 ];
 
-pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
+pub(super) fn run(file: &Path) -> Result<CommandAnswer, Refusal> {
     let design_file = read(file)?;
     let calibration = &design_file.calibration;
     let model = model::of(file, &design_file)?;
@@ -61,7 +61,7 @@ pub(super) fn run(file: &Path) -> Result<Answer, Refusal> {
     bench::warn_of_strain(file, &design_file, &mut Fingertip::Membrane(Box::new(press)), 0.0);
     notes.extend(model.note);
     notes.extend(bench::caution(&design_file));
-    Ok(Answer { rows, notes })
+    Ok(CommandAnswer { rows, notes })
 }
 
 /// The rest state of a solid.
@@ -70,7 +70,7 @@ fn solid(
     design_file: &DesignFile,
     model: &Model,
     elements: Elements,
-) -> Result<Answer, Refusal> {
+) -> Result<CommandAnswer, Refusal> {
     let calibration = &design_file.calibration;
     let refuse = |error: ModelError| Refusal::about(file, &error);
     let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
@@ -87,7 +87,7 @@ fn solid(
         Cell::word(limit.ends_by.word()),
     ]);
     bench::warn_of_strain(file, design_file, &mut Fingertip::Solid(Box::new(press)), 0.0);
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: model
             .note

@@ -11,7 +11,7 @@ use model_tables::model::{Fingertip, Kind};
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &[
@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     tension_field: Field,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let design_file = read(file)?;
     let calibration = &design_file.calibration;
@@ -94,7 +94,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             Cell::word(state.shape.wrinkling.word()),
         ]);
     }
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: model.note.into_iter().collect(),
     })
@@ -106,7 +106,7 @@ fn solid(
     design_file: &DesignFile,
     model: &Model,
     elements: Elements,
-) -> Result<Answer, Refusal> {
+) -> Result<CommandAnswer, Refusal> {
     let calibration = &design_file.calibration;
     let refuse = |error: ModelError| Refusal::about(&arguments.design, &bench::as_read(calibration, error));
     let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
@@ -135,7 +135,7 @@ fn solid(
     }
     let mut rung = Fingertip::Solid(Box::new(press));
     bench::warn_of_strain(&arguments.design, design_file, &mut rung, deepest);
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: model.note.iter().cloned().collect(),
     })

@@ -4,7 +4,7 @@ use super::estimate::refusal;
 use model_tables::generate::from_design_file;
 use output::files::write_all;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     out: PathBuf,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let begun = Instant::now();
     let generated = from_design_file(file).map_err(|error| refusal(file, error))?;
@@ -52,5 +52,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         format!("{name}: {}", generated.choice()),
         format!("{name}: solved, fitted and certified in {seconds:.1} s"),
     ];
-    Ok(Answer { rows, notes })
+    Ok(CommandAnswer { rows, notes })
 }

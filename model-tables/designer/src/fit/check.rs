@@ -2,8 +2,8 @@
 
 use super::Residual;
 use super::data::{Data, Direction};
-use super::model::{Model, Quantity, Target};
-use super::parameter::Values;
+use super::model::{DataQuantity, Model, Target};
+use super::parameter::ParameterValues;
 use super::robust;
 use super::solve::{Task, Weighting, index};
 use model_tables::design_file::DesignFile;
@@ -144,7 +144,7 @@ pub struct Validation {
 }
 
 /// A number measured and predicted.
-type Pair = (Quantity, [f64; 2]);
+type Pair = (DataQuantity, [f64; 2]);
 
 /// Trials from which on each is predicted from the others.
 const LEAST_TRIALS: usize = 3;
@@ -177,7 +177,7 @@ pub(super) fn folds(data: &Data) -> (Vec<usize>, usize, bool) {
 pub(super) fn validate(
     file: &DesignFile,
     task: &Task<'_>,
-    values: &Values,
+    values: &ParameterValues,
     weighting: &Weighting,
 ) -> Option<Validation> {
     let Task {

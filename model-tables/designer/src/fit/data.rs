@@ -15,7 +15,7 @@ pub enum Direction {
 
 /// One row; SI units, `None` where the cell is empty or the column missing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct DataRow {
     /// Line of the file, counted from 1.
     pub line: u64,
     /// Index of its trial, in the order of first appearance.
@@ -30,7 +30,7 @@ pub struct Row {
     pub rise: Option<f64>,
 }
 
-impl Row {
+impl DataRow {
     /// How deep it is pressed, for an order: its indentation or, without, its pressure rise.
     pub fn depth(&self) -> f64 {
         self.indentation.or(self.rise).unwrap_or(0.0)
@@ -43,7 +43,7 @@ pub struct Data {
     /// Where it comes from, for reports.
     pub name: String,
     /// Rows with at least two of the three quantities, in the order of the file.
-    pub rows: Vec<Row>,
+    pub rows: Vec<DataRow>,
     /// Names of the trials; one, empty, where there is no such column.
     pub trials: Vec<String>,
     /// Rows left out because fewer than two quantities were there.
@@ -52,7 +52,7 @@ pub struct Data {
 
 /// How columns are found and rows chosen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
+pub struct DataChoice {
     /// Name of the column with the pressure rise, kilopascals.
     pub pressure_column: String,
     /// Only rows whose column has this value.
@@ -61,7 +61,7 @@ pub struct Choice {
     pub direction: Option<Direction>,
 }
 
-impl Default for Choice {
+impl Default for DataChoice {
     fn default() -> Self {
         Self {
             pressure_column: PRESSURE.to_owned(),
@@ -136,14 +136,14 @@ const FORCE: &str = "force_n";
 const PRESSURE: &str = "pressure_rise_kpa";
 
 /// A column's name, its values and the factor to its unit.
-type Column = (&'static str, fn(&Row) -> Option<f64>, f64);
+type Column = (&'static str, fn(&DataRow) -> Option<f64>, f64);
 
 impl Data {
     /// Reads CSV text; `name` is what reports call it.
     ///
     /// # Errors
     /// [`DataError`] for the first thing that is wrong.
-    pub fn parse(text: &str, name: &str, choice: &Choice) -> Result<Self, DataError> {
+    pub fn parse(text: &str, name: &str, choice: &DataChoice) -> Result<Self, DataError> {
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
             .comment(Some(b'#'))
@@ -212,7 +212,7 @@ impl Data {
                     }),
                 }
             };
-            let row = Row {
+            let row = DataRow {
                 line,
                 trial: data.trial(trial_column.map_or("", cell)),
                 direction: direction(direction_column.map_or("", cell), line)?,
@@ -464,7 +464,7 @@ mod tests {
         b,1.0,0.31,1.4\nb,,0.1,0.6\nb,0.2,,\n";
 
     fn parse(text: &str) -> Result<Data, DataError> {
-        Data::parse(text, "data.csv", &Choice::default())
+        Data::parse(text, "data.csv", &DataChoice::default())
     }
 
     #[test]
@@ -491,7 +491,7 @@ mod tests {
     #[test]
     fn chooses_rows_and_the_pressure_column() {
         let text = "position_mm,indentation_mm,p\n10,0.1,1\n50.0,0.2,2\n50,0.4,4\n50,0.6,6\n";
-        let choice = Choice {
+        let choice = DataChoice {
             pressure_column: "p".to_owned(),
             only: vec![("position_mm".to_owned(), "50".to_owned())],
             direction: None,

@@ -1,6 +1,6 @@
 //! Why there is no fit, in words.
 
-use super::model::Quantity;
+use super::model::DataQuantity;
 use super::parameter::Parameter;
 use model_tables::model::ModelError;
 use std::fmt;
@@ -13,7 +13,7 @@ pub enum FitError {
     /// The data are a large factor away from the design.
     Units {
         /// Which of them.
-        quantity: Quantity,
+        quantity: DataQuantity,
         /// Data over design.
         ratio: f64,
     },

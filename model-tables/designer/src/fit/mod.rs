@@ -30,14 +30,14 @@ use model_tables::membrane::TensionField;
 use model_tables::membrane::press::{Press, SWEEP};
 use model_tables::model::ModelError;
 use nalgebra::DMatrix;
-use parameter::{Parameter, Units, Values};
+use parameter::{Parameter, ParameterValues, Units};
 use search::Found;
 use solve::Task;
 
 pub use error::FitError;
 pub use identify::Unidentified;
-pub use model::Quantity;
-pub use noise::Noise;
+pub use model::DataQuantity;
+pub use noise::NoiseModel;
 
 /// Data so far from the design, as a factor, are in other units or of another device.
 const OTHER_UNITS: f64 = 40.0;
@@ -74,7 +74,7 @@ pub struct Residual {
     /// Index of the row in the data.
     pub row: usize,
     /// What was measured.
-    pub quantity: Quantity,
+    pub quantity: DataQuantity,
     /// Measured, SI.
     pub measured: f64,
     /// What the design says.
@@ -93,7 +93,7 @@ pub struct Fit {
     /// Every parameter chosen, fitted or held.
     pub estimates: Vec<Estimate>,
     /// All values.
-    pub values: Values,
+    pub values: ParameterValues,
     /// The parameters that were fitted.
     pub fitted: Vec<Parameter>,
     /// Their correlations; `None` where there are as many parameters as data.
@@ -103,7 +103,7 @@ pub struct Fit {
     /// Every measured number.
     pub residuals: Vec<Residual>,
     /// Noise of force and of rise, where they were measured.
-    pub noise: [Option<Noise>; 2],
+    pub noise: [Option<NoiseModel>; 2],
     /// Misfit of the design, force and rise.
     pub before: [Option<Misfit>; 2],
     /// Misfit of the fit.
@@ -134,7 +134,7 @@ pub fn fit(file: &DesignFile, data: &Data, chosen: &[Parameter]) -> Result<Fit, 
     }
     let targets = model::targets(data);
     let kind = Kind::of(file)?;
-    let start = Values::of(file, pole_stretch(file, kind)?);
+    let start = ParameterValues::of(file, pole_stretch(file, kind)?);
     if !rests_by_stretch(file, kind) {
         free.retain(|parameter| *parameter != Parameter::PoleStretch);
     }
@@ -158,7 +158,7 @@ fn finish(
     file: &DesignFile,
     task: &Task<'_>,
     chosen: &[Parameter],
-    start: &Values,
+    start: &ParameterValues,
     before: &[f64],
     found: &Found,
 ) -> Result<Fit, FitError> {
@@ -192,7 +192,7 @@ fn finish(
         .collect();
     let slopes = task.slopes(values);
     let covariance = identify::covariance(&jacobian, &counted).map(|covariance| {
-        let groups = [Quantity::Force, Quantity::Rise].map(|quantity| widening::Group {
+        let groups = [DataQuantity::Force, DataQuantity::Rise].map(|quantity| widening::Group {
             members: (0..residuals.len())
                 .filter(|&i| residuals[i].quantity == quantity && !residuals[i].outlier)
                 .collect(),
@@ -222,13 +222,13 @@ fn finish(
         .filter_map(|row| row.indentation)
         .fold(0.0, f64::max);
     let reach = shape.deepest() + 1e-3 * values.get(Parameter::IndentationOffset);
-    let of = |quantity: Quantity| -> Vec<&Residual> {
+    let of = |quantity: DataQuantity| -> Vec<&Residual> {
         residuals
             .iter()
             .filter(|residual| residual.quantity == quantity)
             .collect()
     };
-    let both = [of(Quantity::Force), of(Quantity::Rise)];
+    let both = [of(DataQuantity::Force), of(DataQuantity::Rise)];
     let misfit = |value: fn(&Residual) -> f64| {
         both.each_ref().map(|residuals| {
             Misfit::of(
@@ -276,7 +276,7 @@ fn pole_stretch(file: &DesignFile, kind: Kind) -> Result<f64, ModelError> {
 
 /// What would be a large change of the parameters that are no factors.
 fn units(file: &DesignFile, data: &Data) -> Units {
-    let largest = |of: fn(&data::Row) -> Option<f64>| data.rows.iter().filter_map(of).fold(0.0, f64::max);
+    let largest = |of: fn(&data::DataRow) -> Option<f64>| data.rows.iter().filter_map(of).fold(0.0, f64::max);
     let radius = file.membrane.radial_semi_axis_mm;
     let deepest = match 1e3 * largest(|row| row.indentation) {
         0.0 => 0.3 * file.membrane.axial_semi_axis_mm,
@@ -297,7 +297,7 @@ fn units(file: &DesignFile, data: &Data) -> Units {
 
 /// Data of another unit or device are no work for a fit.
 fn check_units(targets: &[Target], predicted: &[f64]) -> Result<(), FitError> {
-    for quantity in [Quantity::Force, Quantity::Rise] {
+    for quantity in [DataQuantity::Force, DataQuantity::Rise] {
         let ratios: Vec<f64> = targets
             .iter()
             .zip(predicted)

@@ -3,8 +3,8 @@
 //! A membrane's pressure and force are proportional to modulus times wall, a solid's to its modulus, so a curve is
 //! solved once for a rest state and a compliance (of a solid: and a wall), and scaled for the rest.
 
-use super::data::{Data, Row};
-use super::parameter::{Parameter, Values};
+use super::data::{Data, DataRow};
+use super::parameter::{Parameter, ParameterValues};
 use model_tables::curve::{Contact, Curve};
 use model_tables::design::{Design, RestBy};
 use model_tables::design_file::{DesignFile, ModelSection};
@@ -44,14 +44,14 @@ const KEPT: usize = 512;
 
 /// A quantity that is measured and predicted.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Quantity {
+pub enum DataQuantity {
     /// Force, newtons.
     Force,
     /// Pressure rise, pascals.
     Rise,
 }
 
-impl fmt::Display for Quantity {
+impl fmt::Display for DataQuantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Force => "force",
@@ -66,7 +66,7 @@ pub(super) struct Target {
     /// Index of the row.
     pub(super) row: usize,
     /// What is measured.
-    pub(super) quantity: Quantity,
+    pub(super) quantity: DataQuantity,
     /// Its value, SI.
     pub(super) measured: f64,
 }
@@ -82,9 +82,9 @@ pub(super) fn targets(data: &Data) -> Vec<Target> {
                 measured,
             }));
         };
-        push(Quantity::Force, measured.force);
+        push(DataQuantity::Force, measured.force);
         if measured.indentation.is_some() {
-            push(Quantity::Rise, measured.rise);
+            push(DataQuantity::Rise, measured.rise);
         }
     }
     targets
@@ -225,12 +225,12 @@ impl Model {
         let mut nominal = file.clone();
         nominal.calibration = model_tables::design_file::Calibration::default();
         let design = nominal.design();
-        let largest = |of: fn(&Row) -> Option<f64>| data.rows.iter().filter_map(of).fold(0.0, f64::max);
+        let largest = |of: fn(&DataRow) -> Option<f64>| data.rows.iter().filter_map(of).fold(0.0, f64::max);
         let deepest = largest(|row| row.indentation);
         Self {
             kind,
             rest: file.design().rest,
-            by_stretch: Values::rest_by_stretch(file, free),
+            by_stretch: ParameterValues::rest_by_stretch(file, free),
             deepest,
             shallowest: data
                 .rows
@@ -245,7 +245,7 @@ impl Model {
     }
 
     /// What multiplies pressure and force, over that of the design: modulus, of a membrane times wall.
-    pub(super) fn stiffness(&self, values: &Values) -> f64 {
+    pub(super) fn stiffness(&self, values: &ParameterValues) -> f64 {
         let wall = match self.kind {
             Kind::Membrane => values.get(Parameter::Thickness),
             Kind::Wall(_) => 1.0,
@@ -257,7 +257,7 @@ impl Model {
     ///
     /// # Errors
     /// [`ModelError`] when there is no rest state or the press fails.
-    pub(super) fn shape(&self, values: &Values) -> Result<Rc<Shape>, ModelError> {
+    pub(super) fn shape(&self, values: &ParameterValues) -> Result<Rc<Shape>, ModelError> {
         let scale = self.stiffness(values);
         let rest = if self.by_stretch {
             RestBy::PoleStretch(values.get(Parameter::PoleStretch))
@@ -302,7 +302,13 @@ impl Model {
         found
     }
 
-    fn solve(&self, design: &Design, deepest: f64, scale: f64, values: &Values) -> Result<Shape, ModelError> {
+    fn solve(
+        &self,
+        design: &Design,
+        deepest: f64,
+        scale: f64,
+        values: &ParameterValues,
+    ) -> Result<Shape, ModelError> {
         let mut press = Ready::new(self.kind, design)?;
         let largest_rise = 1.1 * self.largest_rise / (scale * values.get(Parameter::PressureGain));
         let offset = 1e-3 * values.get(Parameter::IndentationOffset);
@@ -357,7 +363,7 @@ impl Model {
     /// As [`Model::shape`].
     pub(super) fn predict(
         &self,
-        values: &Values,
+        values: &ParameterValues,
         data: &Data,
         targets: &[Target],
     ) -> Result<Vec<f64>, ModelError> {
@@ -384,8 +390,8 @@ impl Model {
                 if let Some(read) = row.indentation {
                     let contact = shape.at_indentation(read - offset);
                     match target.quantity {
-                        Quantity::Force => scale * contact.force,
-                        Quantity::Rise => gain * scale * contact.pressure_rise + rise_offset,
+                        DataQuantity::Force => scale * contact.force,
+                        DataQuantity::Rise => gain * scale * contact.pressure_rise + rise_offset,
                     }
                 } else {
                     let rise = (row.rise.unwrap_or(0.0) - rise_offset) / gain;

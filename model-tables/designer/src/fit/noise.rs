@@ -22,7 +22,7 @@ const ENOUGH: usize = 12;
 
 /// Noise of one quantity, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Noise {
+pub struct NoiseModel {
     /// Standard deviation of a reading of zero.
     pub floor: f64,
     /// Largest reading of the data, by magnitude.
@@ -30,7 +30,7 @@ pub struct Noise {
     ratio: f64,
 }
 
-impl Noise {
+impl NoiseModel {
     /// Before anything is known; the scale does not matter yet.
     pub(super) fn unknown(largest: f64) -> Self {
         Self {
@@ -144,9 +144,9 @@ mod tests {
         let readings: Vec<f64> = (1..=200).map(|i| 0.05 * f64::from(i)).collect();
         let constant: Vec<f64> = (0..200).map(|i| 0.1 * normal(i)).collect();
         let growing: Vec<f64> = (0..200).map(|i| 0.01 * readings[i] * normal(i)).collect();
-        let flat = Noise::estimate(&constant, &readings, 10.0, 0.0, 0.0);
+        let flat = NoiseModel::estimate(&constant, &readings, 10.0, 0.0, 0.0);
         assert!(flat.at(10.0) < 1.3 * flat.at(0.1), "{flat:?}");
-        let steep = Noise::estimate(&growing, &readings, 10.0, 0.0, 0.0);
+        let steep = NoiseModel::estimate(&growing, &readings, 10.0, 0.0, 0.0);
         assert!(steep.at(10.0) > 8.0 * steep.at(0.1), "{steep:?}");
         assert!((steep.at(10.0) / 0.1 - 1.0).abs() < 0.3, "{}", steep.at(10.0));
     }

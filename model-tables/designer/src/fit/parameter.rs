@@ -124,9 +124,9 @@ pub(super) struct Units {
 
 /// A value for every parameter, in the units of the design file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Values([f64; COUNT]);
+pub struct ParameterValues([f64; COUNT]);
 
-impl Values {
+impl ParameterValues {
     /// The calibration that a design has; `pole_stretch` is that of its rest state.
     pub fn of(file: &DesignFile, pole_stretch: f64) -> Self {
         let calibration = &file.calibration;

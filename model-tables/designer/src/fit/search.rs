@@ -6,7 +6,7 @@ use super::data::Data;
 use super::error::FitError;
 use super::identify::{self, Unidentified};
 use super::model::{Model, Target};
-use super::parameter::{Parameter, Units, Values};
+use super::parameter::{Parameter, ParameterValues, Units};
 use super::solve::{Task, Weighting};
 
 /// Stretches over one, and compliances in their unit, that a fit starts from beside the design's.
@@ -19,7 +19,7 @@ pub(super) struct Found {
     pub(super) free: Vec<Parameter>,
     pub(super) unidentified: Vec<Unidentified>,
     at_bound: Vec<Parameter>,
-    pub(super) values: Values,
+    pub(super) values: ParameterValues,
     pub(super) weighting: Weighting,
 }
 
@@ -43,7 +43,7 @@ pub(super) fn search(
     data: &Data,
     targets: &[Target],
     units: Units,
-    start: &Values,
+    start: &ParameterValues,
     mut free: Vec<Parameter>,
 ) -> Result<Found, FitError> {
     let mut origin = *start;
@@ -106,7 +106,7 @@ pub(super) fn search(
 }
 
 /// Parameters that act as one, found before anything is fitted.
-fn dependent(task: &Task<'_>, start: &Values) -> Result<Option<Unidentified>, FitError> {
+fn dependent(task: &Task<'_>, start: &ParameterValues) -> Result<Option<Unidentified>, FitError> {
     let sigma = Weighting::unknown(task.targets).sigma;
     let factors: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
     let jacobian = task.jacobian(start, &task.predict(start)?, &factors)?;
@@ -114,9 +114,9 @@ fn dependent(task: &Task<'_>, start: &Values) -> Result<Option<Unidentified>, Fi
 }
 
 /// The best of the fits from several starts.
-fn best(task: &Task<'_>, start: &Values) -> Result<(Values, Weighting), FitError> {
+fn best(task: &Task<'_>, start: &ParameterValues) -> Result<(ParameterValues, Weighting), FitError> {
     let weighting = Weighting::unknown(task.targets);
-    let cost = |values: &Values, factor: f64| -> Option<f64> {
+    let cost = |values: &ParameterValues, factor: f64| -> Option<f64> {
         let predicted = task.predict(values).ok()?;
         let squares = predicted.iter().zip(task.targets).zip(&weighting.sigma);
         Some(
@@ -159,7 +159,7 @@ fn best(task: &Task<'_>, start: &Values) -> Result<(Values, Weighting), FitError
         }
     }
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut found: Option<(f64, Values)> = None;
+    let mut found: Option<(f64, ParameterValues)> = None;
     for (_, from) in starts.iter().take(FOLLOWED) {
         let Ok(values) = task.minimise(from, &weighting) else {
             continue;
@@ -175,7 +175,7 @@ fn best(task: &Task<'_>, start: &Values) -> Result<(Values, Weighting), FitError
 }
 
 /// What a prediction has to be multiplied by to meet the data best.
-fn proportion(task: &Task<'_>, values: &Values, sigma: &[f64]) -> Option<f64> {
+fn proportion(task: &Task<'_>, values: &ParameterValues, sigma: &[f64]) -> Option<f64> {
     let predicted = task.predict(values).ok()?;
     let (mut above, mut below) = (0.0, 0.0);
     for ((predicted, target), sigma) in predicted.iter().zip(task.targets).zip(sigma) {

@@ -2,9 +2,9 @@
 //! left, until nothing moves.
 
 use super::data::Data;
-use super::model::{Model, Quantity, Target};
-use super::noise::{Noise, ROUNDING};
-use super::parameter::{Parameter, Units, Values};
+use super::model::{DataQuantity, Model, Target};
+use super::noise::{NoiseModel, ROUNDING};
+use super::parameter::{Parameter, ParameterValues, Units};
 use super::robust;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use model_tables::model::ModelError;
@@ -37,7 +37,7 @@ pub(super) struct Task<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Weighting {
     /// Noise of force and of rise.
-    pub(super) noise: [Noise; 2],
+    pub(super) noise: [NoiseModel; 2],
     /// Standard deviation of each target.
     pub(super) sigma: Vec<f64>,
     /// Which targets are outliers, and do not count.
@@ -45,18 +45,18 @@ pub(super) struct Weighting {
 }
 
 /// Index of a quantity.
-pub(super) fn index(quantity: Quantity) -> usize {
+pub(super) fn index(quantity: DataQuantity) -> usize {
     match quantity {
-        Quantity::Force => 0,
-        Quantity::Rise => 1,
+        DataQuantity::Force => 0,
+        DataQuantity::Rise => 1,
     }
 }
 
 impl Weighting {
     /// Before anything is known.
     pub(super) fn unknown(targets: &[Target]) -> Self {
-        let noise =
-            [Quantity::Force, Quantity::Rise].map(|quantity| Noise::unknown(largest(targets, quantity)));
+        let noise = [DataQuantity::Force, DataQuantity::Rise]
+            .map(|quantity| NoiseModel::unknown(largest(targets, quantity)));
         Self {
             sigma: targets
                 .iter()
@@ -70,7 +70,7 @@ impl Weighting {
     /// From what is left of the targets after a fit of `spent` parameters.
     pub(super) fn from_residuals(data: &Data, targets: &[Target], predicted: &[f64], spent: usize) -> Self {
         let mut weighting = Self::unknown(targets);
-        for quantity in [Quantity::Force, Quantity::Rise] {
+        for quantity in [DataQuantity::Force, DataQuantity::Rise] {
             let mut members: Vec<usize> = (0..targets.len())
                 .filter(|&i| targets[i].quantity == quantity)
                 .collect();
@@ -86,7 +86,7 @@ impl Weighting {
             let readings: Vec<f64> = members.iter().map(|&i| predicted[i]).collect();
             let largest = largest(targets, quantity);
             let share = spent as f64 * members.len() as f64 / targets.len() as f64;
-            let noise = Noise::estimate(&residuals, &readings, largest, share, ROUNDING * largest);
+            let noise = NoiseModel::estimate(&residuals, &readings, largest, share, ROUNDING * largest);
             weighting.noise[index(quantity)] = noise;
             for &i in &members {
                 weighting.sigma[i] = noise.at(predicted[i]);
@@ -113,19 +113,19 @@ impl Weighting {
     }
 }
 
-fn largest(targets: &[Target], quantity: Quantity) -> f64 {
+fn largest(targets: &[Target], quantity: DataQuantity) -> f64 {
     let of = targets.iter().filter(|target| target.quantity == quantity);
     of.map(|target| target.measured.abs()).fold(0.0, f64::max)
 }
 
 impl Task<'_> {
-    pub(super) fn predict(&self, values: &Values) -> Result<Vec<f64>, ModelError> {
+    pub(super) fn predict(&self, values: &ParameterValues) -> Result<Vec<f64>, ModelError> {
         self.model.predict(values, self.data, self.targets)
     }
 
     /// The place of values on the scale of the fit. The compliance counts by what it does to a membrane, which goes with
     /// the stiffness: one curve then serves all stiffnesses.
-    fn coordinates(&self, values: &Values) -> DVector<f64> {
+    fn coordinates(&self, values: &ParameterValues) -> DVector<f64> {
         let mut scaled = *values;
         scaled.set(
             Parameter::Compliance,
@@ -139,7 +139,7 @@ impl Task<'_> {
         )
     }
 
-    fn place(&self, values: &Values, coordinates: &DVector<f64>) -> Values {
+    fn place(&self, values: &ParameterValues, coordinates: &DVector<f64>) -> ParameterValues {
         let mut placed = *values;
         for (&parameter, &coordinate) in self.free.iter().zip(coordinates) {
             placed.set(parameter, parameter.value(coordinate, &self.units));
@@ -152,7 +152,7 @@ impl Task<'_> {
     }
 
     /// Derivatives of the values of the free parameters by their coordinates.
-    pub(super) fn slopes(&self, values: &Values) -> DMatrix<f64> {
+    pub(super) fn slopes(&self, values: &ParameterValues) -> DMatrix<f64> {
         let at = self.coordinates(values);
         let here = self.place(values, &at);
         DMatrix::from_fn(self.free.len(), self.free.len(), |i, j| {
@@ -166,7 +166,7 @@ impl Task<'_> {
     /// Derivatives of the predictions by the coordinates of the free parameters, over the standard deviations.
     pub(super) fn jacobian(
         &self,
-        values: &Values,
+        values: &ParameterValues,
         predicted: &[f64],
         factors: &[f64],
     ) -> Result<DMatrix<f64>, ModelError> {
@@ -188,7 +188,11 @@ impl Task<'_> {
     }
 
     /// The values of least squares from a start, with these weights.
-    pub(super) fn minimise(&self, start: &Values, weighting: &Weighting) -> Result<Values, ModelError> {
+    pub(super) fn minimise(
+        &self,
+        start: &ParameterValues,
+        weighting: &Weighting,
+    ) -> Result<ParameterValues, ModelError> {
         let problem = Problem {
             task: self,
             start: *start,
@@ -206,7 +210,7 @@ impl Task<'_> {
     }
 
     /// Minimises, takes noise and outliers from what is left, and again until nothing moves.
-    pub(super) fn settle(&self, start: &Values) -> Result<(Values, Weighting), ModelError> {
+    pub(super) fn settle(&self, start: &ParameterValues) -> Result<(ParameterValues, Weighting), ModelError> {
         let mut weighting = Weighting::unknown(self.targets);
         let mut values = self.minimise(start, &weighting)?;
         for _ in 0..MOST_ROUNDS {
@@ -225,7 +229,7 @@ impl Task<'_> {
 
 struct Problem<'a, 'b> {
     task: &'a Task<'b>,
-    start: Values,
+    start: ParameterValues,
     factors: Vec<f64>,
     at: DVector<f64>,
     predicted: Vec<f64>,

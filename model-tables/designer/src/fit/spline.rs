@@ -5,8 +5,8 @@
 //! outliers are taken from what is left, as in a fit of the model. The pressure rise is taken as exact.
 
 use super::check::{Hysteresis, Misfit, folds};
-use super::data::{Data, Row};
-use super::noise::Noise;
+use super::data::{Data, DataRow};
+use super::noise::NoiseModel;
 use super::robust;
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
@@ -163,7 +163,7 @@ fn non_negative(matrix: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<
 
 /// One quantity as a function of the pressure rise.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Branch {
+pub struct DataBranch {
     spline: Spline,
     /// Inner knots.
     pub knots: usize,
@@ -172,7 +172,7 @@ pub struct Branch {
     /// Rows that did not count.
     pub outliers: usize,
     /// How noisy the quantity is.
-    pub noise: Noise,
+    pub noise: NoiseModel,
     /// What is left, outliers apart.
     pub misfit: Misfit,
     /// What is left of rows that were predicted from the others, outliers apart.
@@ -202,9 +202,9 @@ pub struct Saturation {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FromData {
     /// Force, newtons.
-    pub force: Branch,
+    pub force: DataBranch,
     /// Indentation, metres, where it was measured.
-    pub indentation: Option<Branch>,
+    pub indentation: Option<DataBranch>,
     /// Largest pressure rise of the data, pascals: what is beyond is refused.
     pub end: f64,
     /// Least positive one: below, the curve goes straight to the origin.
@@ -250,13 +250,13 @@ impl fmt::Display for NoCurve {
 
 impl core::error::Error for NoCurve {}
 
-impl Branch {
+impl DataBranch {
     /// The quantity at a pressure rise in pascals, held at the end.
     pub fn at(&self, rise: f64) -> f64 {
         self.spline.at(rise)
     }
 
-    fn of(data: &Data, quantity: fn(&Row) -> Option<f64>, end: f64) -> Option<Self> {
+    fn of(data: &Data, quantity: fn(&DataRow) -> Option<f64>, end: f64) -> Option<Self> {
         let members: Vec<usize> = (0..data.rows.len())
             .filter(|&i| data.rows[i].rise.is_some() && quantity(&data.rows[i]).is_some())
             .collect();
@@ -359,14 +359,14 @@ impl Branch {
 
 struct Counted {
     spline: Spline,
-    noise: Noise,
+    noise: NoiseModel,
     outliers: Vec<bool>,
 }
 
 /// A spline with outliers and noise from what is left.
 fn counted(places: &[f64], values: &[f64], inner: usize, end: f64) -> Option<Counted> {
     let largest = values.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-    let mut noise = Noise::unknown(largest);
+    let mut noise = NoiseModel::unknown(largest);
     let mut outliers = vec![false; places.len()];
     let mut spline = None;
     for _ in 0..ROUNDS {
@@ -378,7 +378,7 @@ fn counted(places: &[f64], values: &[f64], inner: usize, end: f64) -> Option<Cou
         let fitted = Spline::fit(places, values, &weights, inner, end)?;
         let predicted: Vec<f64> = places.iter().map(|&place| fitted.at(place)).collect();
         let residuals: Vec<f64> = values.iter().zip(&predicted).map(|(a, b)| a - b).collect();
-        noise = Noise::estimate(
+        noise = NoiseModel::estimate(
             &residuals,
             &predicted,
             largest,
@@ -405,7 +405,7 @@ fn counted(places: &[f64], values: &[f64], inner: usize, end: f64) -> Option<Cou
 /// # Errors
 /// [`NoCurve`].
 pub fn from_data(data: &Data) -> Result<FromData, NoCurve> {
-    let both = |row: &&Row| row.rise.is_some() && row.force.is_some();
+    let both = |row: &&DataRow| row.rise.is_some() && row.force.is_some();
     let found = data.rows.iter().filter(both).count();
     if found == 0 {
         return Err(NoCurve::NoPressure);
@@ -420,10 +420,10 @@ pub fn from_data(data: &Data) -> Result<FromData, NoCurve> {
             .filter(|&rise| rise > 0.0)
     };
     let (start, end) = (rises().fold(f64::INFINITY, f64::min), rises().fold(0.0, f64::max));
-    let force = Branch::of(data, |row| row.force, end).ok_or(NoCurve::Lost)?;
+    let force = DataBranch::of(data, |row| row.force, end).ok_or(NoCurve::Lost)?;
     Ok(FromData {
         saturation: saturation(&force, end),
-        indentation: Branch::of(data, |row| row.indentation, end),
+        indentation: DataBranch::of(data, |row| row.indentation, end),
         falls: falls(data),
         force,
         end,
@@ -431,7 +431,7 @@ pub fn from_data(data: &Data) -> Result<FromData, NoCurve> {
     })
 }
 
-fn saturation(force: &Branch, end: f64) -> Option<Saturation> {
+fn saturation(force: &DataBranch, end: f64) -> Option<Saturation> {
     let step = end / PLACES as f64;
     let slopes: Vec<f64> = (0..PLACES)
         .map(|k| (force.at(step * (k + 1) as f64) - force.at(step * k as f64)) / step)
@@ -481,7 +481,7 @@ fn falls(data: &Data) -> Option<[usize; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::data::Choice;
+    use crate::fit::data::DataChoice;
     use std::fmt::Write as _;
 
     /// Pressure that saturates: `P = 3 (1 - exp(-H))` kPa, `F = H^1.5` N, H in millimetres.
@@ -493,7 +493,7 @@ mod tests {
             let (force, rise) = (depth.powf(1.5) * wobble, 3.0 * (1.0 - (-depth).exp()));
             let _ = writeln!(text, "{depth},{force},{rise}");
         }
-        Data::parse(&text, "bench.csv", &Choice::default()).expect("good data")
+        Data::parse(&text, "bench.csv", &DataChoice::default()).expect("good data")
     }
 
     #[test]

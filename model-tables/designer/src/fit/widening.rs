@@ -5,7 +5,7 @@
 //! parametric bootstrap): noise as it was found, the linearised fit with its weights found anew each time, and the
 //! scatter of the estimates over the standard errors that the formula gave them.
 
-use super::noise::{Noise, ROUNDING};
+use super::noise::{NoiseModel, ROUNDING};
 use model_tables::random::Random;
 use nalgebra::{DMatrix, DVector};
 
@@ -104,7 +104,7 @@ impl Bench<'_> {
         let mut sigma = vec![f64::INFINITY; noise.len()];
         for Group { members, largest } in self.groups {
             for &i in members {
-                sigma[i] = Noise::unknown(*largest).at(self.predicted[i]);
+                sigma[i] = NoiseModel::unknown(*largest).at(self.predicted[i]);
             }
         }
         for _ in 0..ROUNDS {
@@ -116,7 +116,7 @@ impl Bench<'_> {
                 let residuals: Vec<f64> = members.iter().map(|&i| noise[i] - fitted[i]).collect();
                 let readings: Vec<f64> = members.iter().map(|&i| self.predicted[i] + fitted[i]).collect();
                 let spent = self.slopes.ncols() as f64 * members.len() as f64 / self.count;
-                let noise = Noise::estimate(&residuals, &readings, *largest, spent, ROUNDING * largest);
+                let noise = NoiseModel::estimate(&residuals, &readings, *largest, spent, ROUNDING * largest);
                 for (&i, reading) in members.iter().zip(readings) {
                     sigma[i] = noise.at(reading);
                 }

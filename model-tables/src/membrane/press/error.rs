@@ -2,8 +2,8 @@
 
 use crate::limit::{Limit, refuse_indentation, refuse_unsolved};
 use crate::material::stability::Margin;
-use crate::membrane::adapt::Failure;
-use crate::membrane::rest::Quantity;
+use crate::membrane::adapt::Unsolved;
+use crate::membrane::rest::RestQuantity;
 use core::fmt;
 
 /// Why the membrane gives no answer.
@@ -12,7 +12,7 @@ pub enum MembraneError {
     /// A rest state of this pressure, radius or height does not exist; SI units.
     NoRestState {
         /// Which quantity was given.
-        quantity: Quantity,
+        quantity: RestQuantity,
         /// Its value.
         asked: f64,
         /// The least value any rest state has.
@@ -39,7 +39,7 @@ pub enum MembraneError {
     /// The rest state was not found.
     RestUnsolved {
         /// What failed.
-        failure: Failure,
+        failure: Unsolved,
     },
     /// The indentation lies beyond the end of the press.
     BeyondLimit {
@@ -60,7 +60,7 @@ pub enum MembraneError {
         /// The largest indentation reached on the way, metres.
         reached: f64,
         /// What failed.
-        failure: Failure,
+        failure: Unsolved,
     },
 }
 
@@ -74,16 +74,16 @@ impl fmt::Display for MembraneError {
                 greatest,
             } => {
                 let (what, unit, factor) = match quantity {
-                    Quantity::PoleStretch => {
+                    RestQuantity::PoleStretch => {
                         return write!(
                             f,
                             "inflation does not lead to a pole stretch of {asked}: it stretches the pole to \
                              {greatest:.6}, and then the equator bulges instead; ask for less"
                         );
                     }
-                    Quantity::Pressure => ("pressure", "kPa", 1e-3),
-                    Quantity::EquatorRadius => ("equator radius", "mm", 1e3),
-                    Quantity::Height => ("height", "mm", 1e3),
+                    RestQuantity::Pressure => ("pressure", "kPa", 1e-3),
+                    RestQuantity::EquatorRadius => ("equator radius", "mm", 1e3),
+                    RestQuantity::Height => ("height", "mm", 1e3),
                 };
                 write!(
                     f,

@@ -4,7 +4,7 @@ use super::way::Stop;
 use super::{LARGEST_STEP, MembraneError, Press, SMALLEST_STEP};
 use crate::limit::{EndsBy, Limit};
 use crate::material::Hyperelastic;
-use crate::membrane::adapt::Failure;
+use crate::membrane::adapt::Unsolved;
 use crate::membrane::equations::{CONTACT_RADIUS, PRESSURE};
 use crate::membrane::equilibrium::PressControl;
 use core::f64::consts::PI;
@@ -90,7 +90,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 Err(stop) => stop,
             };
             if let Stop::Failed {
-                failure: failure @ Failure::EdgePushes { .. },
+                failure: failure @ Unsolved::EdgePushes { .. },
                 reached,
             } = stop
             {

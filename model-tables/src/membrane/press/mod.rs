@@ -20,7 +20,7 @@ use crate::membrane::equilibrium::{Closure, PressControl};
 use crate::membrane::history::History;
 use crate::membrane::press::workspace::Workspace;
 use crate::membrane::rest::Branch;
-use crate::membrane::state::{self, MeridianPoint, PressedState, Scale, Shape};
+use crate::membrane::state::{self, MeridianPoint, PressedState, Shape, UnitScale};
 use core::f64::consts::{FRAC_PI_2, PI};
 use way::Stop;
 
@@ -66,7 +66,7 @@ const SMALLEST_STEP: f64 = 1e-4;
 #[derive(Clone, Debug)]
 pub struct Press<L = Law, const S: usize = STAGES> {
     solver: Adaptive<Scaled<L>, S>,
-    scale: Scale,
+    scale: UnitScale,
     compliance: f64,
     rest: Graded<S>,
     rest_shape: Shape,

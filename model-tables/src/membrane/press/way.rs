@@ -2,7 +2,7 @@
 
 use super::{LARGEST_STEP, Press, SMALLEST_STEP};
 use crate::material::Hyperelastic;
-use crate::membrane::adapt::{Failure, Graded};
+use crate::membrane::adapt::{Graded, Unsolved};
 use crate::membrane::equations::{CONTACT_PARAMETER, CONTACT_RADIUS};
 use crate::membrane::equilibrium::PressControl;
 use core::f64::consts::FRAC_PI_2;
@@ -22,7 +22,7 @@ const TURN_STEPS: usize = 10;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stop {
     BeyondLimit,
-    Failed { reached: f64, failure: Failure },
+    Failed { reached: f64, failure: Unsolved },
 }
 
 /// Where a leap begins, over the indentation at which the contact edge loses its tension: the bend there is still wide.
@@ -54,7 +54,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         };
         while let Stop::Failed {
             reached,
-            failure: Failure::EdgePushes { .. },
+            failure: Unsolved::EdgePushes { .. },
         } = stop
             && reached < indentation
             && self.leap(reached, indentation)
@@ -151,7 +151,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
 
     /// Whether the press turns back just beyond the latest state: as the contact grows on, the plate has to rise.
     #[inline(never)] // its copies of a solution stay off the caller's stack
-    fn turns_back(&mut self) -> Option<Failure> {
+    fn turns_back(&mut self) -> Option<Unsolved> {
         let latest = &self.latest().solution;
         let (height, mut parameter) = (latest.height, latest.parameters[CONTACT_PARAMETER]);
         self.history.repeat();
@@ -161,7 +161,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             let state = self.history.working();
             self.solver.settle(state, &closure).ok()?;
             if state.solution.height > height {
-                return Some(Failure::SnapsThrough);
+                return Some(Unsolved::SnapsThrough);
             }
         }
         None

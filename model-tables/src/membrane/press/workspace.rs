@@ -7,12 +7,12 @@ use crate::design::{Membrane as Dimensions, RestBy};
 use crate::material::{Hyperelastic, Law, Scaled};
 use crate::membrane::adapt::Resolution;
 use crate::membrane::adapt::{Adaptive, Graded};
-use crate::membrane::equations::{Membrane, TensionField};
+use crate::membrane::equations::{LocalEquations, TensionField};
 use crate::membrane::history::History;
 use crate::membrane::inflation::End;
 use crate::membrane::press::{MembraneError, Press, STAGES};
-use crate::membrane::rest::{Branch, Quantity, RestFailure};
-use crate::membrane::state::{self, Scale, Shape};
+use crate::membrane::rest::{Branch, RestFailure, RestQuantity};
+use crate::membrane::state::{self, Shape, UnitScale};
 
 /// Memory for a press of a membrane of the law `L`, with `S` Gauss points an element.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct Workspace<L = Law, const S: usize = STAGES> {
 impl<L, const S: usize> Workspace<L, S> {
     /// Nothing inflated yet.
     pub const fn new(law: L) -> Self {
-        let membrane = Membrane {
+        let membrane = LocalEquations {
             aspect: 1.0,
             law: Scaled { law, factor: 1.0 },
             tension_field: TensionField::Relaxed,
@@ -31,7 +31,7 @@ impl<L, const S: usize> Workspace<L, S> {
         Self {
             press: Press {
                 solver: Adaptive::blank(membrane),
-                scale: Scale::BLANK,
+                scale: UnitScale::BLANK,
                 compliance: 0.0,
                 rest: Graded::BLANK,
                 rest_shape: Shape::BLANK,
@@ -60,7 +60,7 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
         let press = &mut self.press;
         let membrane = &mut press.solver.equilibrium.membrane;
         let modulus = membrane.law.law.shear_modulus();
-        let scale = Scale::new(dimensions, modulus);
+        let scale = UnitScale::new(dimensions, modulus);
         membrane.aspect = dimensions.axial_semi_axis / dimensions.radial_semi_axis;
         membrane.law.factor = 1.0 / modulus;
         membrane.tension_field = tension_field;
@@ -75,7 +75,7 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
                 let found = press.solver.rest_by_pole_stretch(stretch, &mut press.rest);
                 found.map_err(|end| match end {
                     End::Turns { greatest } => MembraneError::NoRestState {
-                        quantity: Quantity::PoleStretch,
+                        quantity: RestQuantity::PoleStretch,
                         asked: stretch,
                         least: 1.0,
                         greatest,
@@ -92,9 +92,11 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
                 })?;
                 press.branch = Branch::Only;
             }
-            RestBy::Pressure(pascals) => press.rest_by(Quantity::Pressure, pascals, scale.pressure)?,
-            RestBy::EquatorRadius(metres) => press.rest_by(Quantity::EquatorRadius, metres, scale.length)?,
-            RestBy::Height(metres) => press.rest_by(Quantity::Height, metres, scale.length)?,
+            RestBy::Pressure(pascals) => press.rest_by(RestQuantity::Pressure, pascals, scale.pressure)?,
+            RestBy::EquatorRadius(metres) => {
+                press.rest_by(RestQuantity::EquatorRadius, metres, scale.length)?
+            }
+            RestBy::Height(metres) => press.rest_by(RestQuantity::Height, metres, scale.length)?,
         }
         // `1 + c dP/dV > 0`, or the fluid inflates the dome by itself.
         let held_below = press
@@ -124,7 +126,7 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
 
 impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// The rest state in which a quantity is `asked`, in its SI `unit`.
-    fn rest_by(&mut self, quantity: Quantity, asked: f64, unit: f64) -> Result<(), MembraneError> {
+    fn rest_by(&mut self, quantity: RestQuantity, asked: f64, unit: f64) -> Result<(), MembraneError> {
         let found = self.solver.rest_by(quantity, asked / unit);
         (self.rest, self.branch) = found.map_err(|failure| match failure {
             RestFailure::OutOfReach { least, greatest, .. } => MembraneError::NoRestState {

@@ -5,7 +5,7 @@
 
 mod coefficients;
 
-use super::Failure;
+use super::MethodFailure;
 use coefficients::{ERROR_3, ERROR_5, NODES, STAGE_WEIGHTS, WEIGHTS};
 
 const STAGES: usize = 12;
@@ -35,18 +35,18 @@ pub struct Tolerance {
 /// Integrates `rates` from `from` to `to > from`. A rate that is `None` is outside of what the equations cover.
 ///
 /// # Errors
-/// [`Failure::BlewUp`] where the step became negligible.
+/// [`MethodFailure::BlewUp`] where the step became negligible.
 pub fn integrate<const N: usize>(
     mut rates: impl FnMut(f64, &[f64; N]) -> Option<[f64; N]>,
     [from, to]: [f64; 2],
     mut y: [f64; N],
     first_step: f64,
     tolerance: &Tolerance,
-) -> Result<[f64; N], Failure> {
+) -> Result<[f64; N], MethodFailure> {
     let mut t = from;
     let mut step = first_step.min(to - from);
     let mut stages = [[0.0; N]; STAGES];
-    let blew_up = |t| Failure::BlewUp { position: t };
+    let blew_up = |t| MethodFailure::BlewUp { position: t };
     stages[0] = rates(t, &y).ok_or(blew_up(t))?;
     let mut rejected = false;
     for _ in 0..MOST_STEPS {
@@ -204,6 +204,6 @@ mod tests {
             0.1,
             &tolerance(1e-8),
         );
-        assert!(matches!(outcome, Err(Failure::BlewUp { position }) if (position - 1.0).abs() < 1e-6));
+        assert!(matches!(outcome, Err(MethodFailure::BlewUp { position }) if (position - 1.0).abs() < 1e-6));
     }
 }

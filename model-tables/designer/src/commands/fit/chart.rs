@@ -1,7 +1,7 @@
 //! The chart of a fit: measured, design and fit, over the depth.
 
 use crate::fit::data::Data;
-use crate::fit::{Fit, Quantity, Residual};
+use crate::fit::{DataQuantity, Fit, Residual};
 use model_tables::design_file::DesignFile;
 use output::drawing::{Anchor, BLACK, BLUE, Drawing, GREY, Marker, ORANGE, VERMILION};
 use output::linear::{LinearAxis, LinearPanel};
@@ -14,15 +14,15 @@ pub(super) fn draw(file: &DesignFile, data: &Data, fit: &Fit) -> String {
     let mut drawing = Drawing::new(WIDTH, HEIGHT);
     let title = format!("{}: {}", file.name, data.name);
     drawing.text([20.0, 26.0], Anchor::Start, 16.0, BLACK, &title);
-    let of = |quantity: Quantity| -> Vec<&Residual> {
+    let of = |quantity: DataQuantity| -> Vec<&Residual> {
         fit.residuals
             .iter()
             .filter(|residual| residual.quantity == quantity)
             .collect()
     };
     let panels: Vec<(Vec<&Residual>, &str, f64)> = [
-        (of(Quantity::Force), "force, N", 1.0),
-        (of(Quantity::Rise), "pressure rise, kPa", 1e-3),
+        (of(DataQuantity::Force), "force, N", 1.0),
+        (of(DataQuantity::Rise), "pressure rise, kPa", 1e-3),
     ]
     .into_iter()
     .filter(|panel| !panel.0.is_empty())

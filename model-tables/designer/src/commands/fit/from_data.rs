@@ -3,7 +3,7 @@
 use super::super::bench;
 use super::{Arguments, write};
 use crate::fit::data::Data;
-use crate::fit::spline::{Branch, FromData, from_data};
+use crate::fit::spline::{DataBranch, FromData, from_data};
 use model_tables::design_file::{Calibration, DataCurve, DesignFile};
 use model_tables::generate::{self, GenerateError};
 use model_tables::model::Fingertip;
@@ -11,7 +11,7 @@ use output::drawing::{Anchor, BLACK, BLUE, Drawing, GREY, Marker};
 use output::files;
 use output::linear::{LinearAxis, LinearPanel};
 use output::rows::{Cell, Rows, significant};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::fmt::Write as _;
 
 const COLUMNS: &[&str] = &[
@@ -42,7 +42,7 @@ fn digits(number: f64) -> String {
     significant(number, 4)
 }
 
-pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Result<CommandAnswer, Refusal> {
     let found = from_data(data).map_err(|error| Refusal::about(&arguments.data, &error))?;
     let branches = branches(&found);
     let mut rows = Rows::new(COLUMNS);
@@ -123,7 +123,7 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
             out.display()
         ));
     }
-    Ok(Answer { rows, notes })
+    Ok(CommandAnswer { rows, notes })
 }
 
 /// The design's text with an accuracy that tables meet, and what to say of them.
@@ -156,7 +156,7 @@ fn with_tables(
     Err(Refusal(refused))
 }
 
-fn branches(found: &FromData) -> Vec<(&'static str, &Branch, f64)> {
+fn branches(found: &FromData) -> Vec<(&'static str, &DataBranch, f64)> {
     let mut branches = vec![("force_n", &found.force, 1.0)];
     branches.extend(
         found

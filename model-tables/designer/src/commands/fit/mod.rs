@@ -6,12 +6,12 @@ mod report;
 mod write;
 
 use super::{bench, finite, read};
-use crate::fit::data::{Choice, Data, Direction};
+use crate::fit::data::{Data, DataChoice, Direction};
 use crate::fit::parameter::Parameter;
 use crate::fit::{self, Fit, Held};
 use output::files;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -84,9 +84,9 @@ fn pair(text: &str) -> Result<(String, String), String> {
         .ok_or_else(|| "must be COLUMN=VALUE".to_owned())
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = read(&arguments.design)?;
-    let choice = Choice {
+    let choice = DataChoice {
         pressure_column: arguments.pressure_column.clone(),
         only: arguments.only.clone(),
         direction: arguments.direction.map(|way| match way {
@@ -130,7 +130,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         ));
     }
     notes.push(format!("fitted and checked in {seconds:.2} s"));
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows: rows(&fit),
         notes,
     })

@@ -1,7 +1,7 @@
 //! The files of a fit: the calibrated design and what is left of the data.
 
 use crate::fit::data::Data;
-use crate::fit::{Fit, Quantity};
+use crate::fit::{DataQuantity, Fit};
 use model_tables::design_file::{Calibration, DataCurve, DesignFile};
 use std::fmt::Write as _;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
@@ -144,8 +144,8 @@ pub(super) fn residuals(data: &Data, fit: &Fit) -> String {
     for residual in &fit.residuals {
         let row = &data.rows[residual.row];
         let (quantity, factor) = match residual.quantity {
-            Quantity::Force => ("force_n", 1.0),
-            Quantity::Rise => ("pressure_rise_kpa", 1e-3),
+            DataQuantity::Force => ("force_n", 1.0),
+            DataQuantity::Rise => ("pressure_rise_kpa", 1e-3),
         };
         let depth = row
             .indentation

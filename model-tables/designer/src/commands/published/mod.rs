@@ -8,7 +8,7 @@ pub(super) mod solid;
 use model_tables::design_file::DesignFile;
 use output::files;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use paper::Paper;
 use solid::Solid;
 use std::path::PathBuf;
@@ -22,7 +22,7 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let paper = Paper::solve()?;
     let mut notes = Vec::new();
     if let Some(out) = &arguments.out {
@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             Cell::Number(row.here / row.published),
         ]);
     }
-    Ok(Answer { rows, notes })
+    Ok(CommandAnswer { rows, notes })
 }
 
 /// A shipped design; its text is part of the program.

@@ -3,7 +3,7 @@
 use super::cost::Cost;
 use super::findings::{Findings, Meridian, Said};
 use super::words::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit};
-use model_tables::model::state::{Pressed, Station};
+use model_tables::model::state::{MeridianStation, Pressed};
 use output::drawing::{
     self, Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION, power, spread,
 };
@@ -240,7 +240,7 @@ pub(super) fn errors(found: &Findings) -> Option<String> {
 }
 
 /// A quantity along the meridian, a line a state.
-fn along(found: &Findings, title: &str, upward: Named, of: fn(&Station) -> f64) -> String {
+fn along(found: &Findings, title: &str, upward: Named, of: fn(&MeridianStation) -> f64) -> String {
     let series: Vec<Series> = found
         .meridians
         .iter()

@@ -15,7 +15,7 @@ use model_tables::membrane::rest::Branch;
 use model_tables::membrane::state::Wrinkling;
 use model_tables::model::ModelError;
 use model_tables::model::choice::FINE;
-use model_tables::model::state::{Pressed, Rest, Station};
+use model_tables::model::state::{MeridianStation, Pressed, RestState};
 use model_tables::model::{Fingertip, Kind};
 use model_tables::units::PressureRise;
 use output::Refusal;
@@ -39,7 +39,7 @@ pub(super) struct Findings {
     pub(super) model: Kind,
     /// How `auto` came to it.
     pub(super) note: Option<String>,
-    pub(super) rest: Rest,
+    pub(super) rest: RestState,
     pub(super) limit: Limit,
     /// How deep it is pressed here, metres.
     pub(super) deepest: f64,
@@ -65,7 +65,7 @@ pub(super) struct Meridian {
     pub(super) force: f64,
     /// Thickness of the undeformed wall, metres.
     pub(super) wall: f64,
-    pub(super) points: Vec<Station>,
+    pub(super) points: Vec<MeridianStation>,
 }
 
 /// What the tables say of a state.

@@ -10,7 +10,7 @@ mod words;
 use output::files::write_all;
 use output::progress::Progress;
 use output::rows::{Cell, Rows};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &["file", "size_bytes"];
@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     out: PathBuf,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let progress = Progress::new("report");
     let found = findings::gather(&arguments.design, &progress);
     progress.finish();
@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
         Cell::Text(arguments.out.join(name).display().to_string()),
         Cell::Count(size),
     ]);
-    Ok(Answer {
+    Ok(CommandAnswer {
         rows,
         notes: found.note.into_iter().collect(),
     })

@@ -2,7 +2,7 @@
 
 use super::findings::{Findings, Meridian};
 use super::words::{MM, NEWTON};
-use model_tables::model::state::Station;
+use model_tables::model::state::MeridianStation;
 use output::drawing::{Anchor, BLACK, BLUE, Drawing, GREY};
 
 const WIDTH: f64 = 300.0;
@@ -40,7 +40,7 @@ pub(super) fn draw(found: &Findings) -> Vec<String> {
 }
 
 /// A point of the wall that was `outside` of its middle, metres.
-fn surface(point: &Station, outside: f64) -> [f64; 2] {
+fn surface(point: &MeridianStation, outside: f64) -> [f64; 2] {
     let shift = outside * point.thickness_stretch;
     [
         point.radius + shift * libm::sin(point.angle),
@@ -70,7 +70,7 @@ fn one(meridian: &Meridian, scale: f64, base: f64) -> String {
     let mut drawing = Drawing::inline([WIDTH, base + BELOW], &title, &description);
     // Both halves: from the left rim over the pole to the right, cut off at the base.
     let all = |part: f64| -> Vec<[f64; 2]> {
-        let at = |side: f64, point: &Station| {
+        let at = |side: f64, point: &MeridianStation| {
             let [r, z] = surface(point, part * meridian.wall);
             [centre + side * scale * r, base - scale * z.max(0.0)]
         };

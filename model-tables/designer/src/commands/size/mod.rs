@@ -9,7 +9,7 @@ use model_tables::design::RestBy;
 use output::files;
 use output::progress::Progress;
 use output::rows::{Cell, Rows, significant};
-use output::{Answer, Refusal};
+use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -62,7 +62,7 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let target = Target::read(&arguments.target).map_err(Refusal::of)?;
     let start = Instant::now();
     let progress = Progress::new("sizing");
@@ -124,7 +124,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
             out.display()
         ));
     }
-    Ok(Answer { rows, notes })
+    Ok(CommandAnswer { rows, notes })
 }
 
 fn stretch(sized: &Sized) -> f64 {
