@@ -5,8 +5,9 @@
 //! method its order), and a pole that has gone slack, or taut again, changes its kind.
 
 use crate::material::Hyperelastic;
+use crate::membrane::closure::{Closure, NewtonOutcome};
 use crate::membrane::equations::{CONTACT_PARAMETER, LocalEquations, POLE, PRESSURE, TensionField};
-use crate::membrane::equilibrium::{Closure, Equilibrium, NewtonOutcome};
+use crate::membrane::equilibrium::Equilibrium;
 use crate::membrane::mesh::{Breaks, Depth};
 use crate::membrane::solution::{MAX_ELEMENTS, Pole, Solution};
 use core::f64::consts::FRAC_PI_2;

@@ -8,8 +8,8 @@
 use crate::material::Hyperelastic;
 use crate::material::stability::{self, Margin};
 use crate::membrane::adapt::{Adaptive, Graded, Unsolved};
+use crate::membrane::closure::{Closure, RestControl};
 use crate::membrane::equations::{POLE, PRESSURE};
-use crate::membrane::equilibrium::{Closure, RestControl};
 
 /// Where inflation ends short of a pole stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]

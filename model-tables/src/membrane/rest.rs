@@ -2,8 +2,8 @@
 
 use crate::material::Hyperelastic;
 use crate::membrane::adapt::{Adaptive, Graded, REST_FINENESS, Unsolved};
+use crate::membrane::closure::{Closure, NewtonOutcome, RestControl};
 use crate::membrane::equations::{POLE, PRESSURE, TensionField};
-use crate::membrane::equilibrium::{Closure, NewtonOutcome, RestControl};
 use crate::membrane::inflation::End;
 use crate::membrane::mesh::{Breaks, Depth};
 use crate::membrane::solution::Pole;

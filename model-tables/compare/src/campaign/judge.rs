@@ -8,7 +8,7 @@ use super::draw::{Case, INDENTATIONS};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::{Resolution, Unsolved};
-use model_tables::membrane::equilibrium::NewtonOutcome;
+use model_tables::membrane::closure::NewtonOutcome;
 use model_tables::membrane::press::{FULL, MembraneError, Press};
 use model_tables::membrane::state::PressedState;
 

@@ -10,8 +10,9 @@
 //! pole. So a state is shown to twice the steps before it is believed: one Newton step from it says how far it is
 //! off, and one that is further off than half a per cent is refused.
 
+use super::matrix::invert;
 use super::plain::{Met, PlainMembrane};
-use super::shooting::invert;
+use super::runge_kutta::runge_kutta;
 use super::{MethodFailure, MethodState, Unknown};
 use core::f64::consts::{FRAC_PI_2, PI};
 use model_tables::design::Design;
@@ -426,83 +427,5 @@ fn rates(
     Some([forward, l1_rate, turn, descent, PI * rho * rho * descent])
 }
 
-/// The classical Runge-Kutta method of order four, with fixed steps.
-fn runge_kutta<const N: usize>(
-    mut rates: impl FnMut(f64, &[f64; N]) -> Option<[f64; N]>,
-    [from, to]: [f64; 2],
-    steps: usize,
-    mut y: [f64; N],
-) -> Result<[f64; N], MethodFailure> {
-    let step = (to - from) / steps as f64;
-    for k in 0..steps {
-        let t = from + step * k as f64;
-        let blew_up = MethodFailure::BlewUp { position: t };
-        let mut along = |by: f64, slope: Option<&[f64; N]>| {
-            let mut at = y;
-            for (value, rate) in at.iter_mut().zip(slope.into_iter().flatten()) {
-                *value += by * rate;
-            }
-            rates(t + by, &at).ok_or(blew_up)
-        };
-        let a = along(0.0, None)?;
-        let b = along(0.5 * step, Some(&a))?;
-        let c = along(0.5 * step, Some(&b))?;
-        let d = along(step, Some(&c))?;
-        for i in 0..N {
-            y[i] += step / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]);
-        }
-    }
-    Ok(y)
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn runge_kutta_has_order_four() {
-        let error = |steps: usize| {
-            let [y] = runge_kutta(|_, y: &[f64; 1]| Some(*y), [0.0, 1.0], steps, [1.0]).expect("defined");
-            (y - core::f64::consts::E).abs()
-        };
-        let order = libm::log2(error(10) / error(20));
-        assert!((3.8..4.2).contains(&order), "{order}");
-    }
-
-    #[test]
-    fn bisection_finds_roots_and_refuses_jumps() {
-        let limits = [0.01, 100.0];
-        let root = bisect(Unknown::Pressure, Undefined::Below, 1e-8, 1.0, limits, |x| {
-            Ok(x * x - 2.0)
-        })
-        .expect("a root");
-        assert!((root - core::f64::consts::SQRT_2).abs() < 1e-8);
-        let below = bisect(Unknown::Pressure, Undefined::Below, 1e-8, 3.0, limits, |x| {
-            Ok(x * x - 2.0)
-        })
-        .expect("a root");
-        assert!((below - core::f64::consts::SQRT_2).abs() < 1e-8);
-        // Undefined below 1.2: the root above is found all the same.
-        let edge = bisect(Unknown::Pressure, Undefined::Below, 1e-8, 1.1, limits, |x| {
-            if x < 1.2 {
-                Err(MethodFailure::Singular)
-            } else {
-                Ok(x - 1.3)
-            }
-        });
-        assert!((edge.expect("a root") - 1.3).abs() < 1e-7);
-        let jump = bisect(Unknown::Contact, Undefined::Below, 1e-8, 1.0, limits, |x| {
-            Ok(if x < 1.5 { -1.0 } else { 1.0 })
-        });
-        assert!(matches!(jump, Err(MethodFailure::Jump { .. })), "{jump:?}");
-        let none = bisect(Unknown::PoleStretch, Undefined::Below, 1e-8, 1.0, limits, |_| {
-            Ok(-1.0)
-        });
-        assert_eq!(
-            none,
-            Err(MethodFailure::NoBracket {
-                unknown: Unknown::PoleStretch
-            })
-        );
-    }
-}
+mod tests;

@@ -16,7 +16,7 @@
 
 use super::MethodFailure;
 use super::plain::{HEIGHT, PlainMembrane, RADIUS, STATE, VOLUME};
-use super::shooting::{ShootingRest, inflate};
+use super::unpressed::{ShootingRest, inflate};
 use core::f64::consts::{E, PI};
 use model_tables::curve::Contact;
 use model_tables::design::Design;

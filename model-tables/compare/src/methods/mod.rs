@@ -1,7 +1,7 @@
 //! Methods kept for comparison with the membrane model.
 //!
 //! What a designer could reach for instead of [`press`](model_tables::membrane::press), each in one file with its source and
-//! its weakness: the source paper's nested [`bisection`], [`shooting`] with Newton's method, the closed form for
+//! its weakness: the source paper's nested [`bisection`], [`shooting`] with Newton's method (from its [`unpressed`] state), the closed form for
 //! [`light_contact`], and curves through a [`few_states`]. [`approximations`] measures the cheap ones against the full
 //! membrane; [`contest`] times all of them in one run.
 //!
@@ -14,8 +14,11 @@ pub mod contest;
 pub mod dop853;
 pub mod few_states;
 pub mod light_contact;
+mod matrix;
 pub mod plain;
+mod runge_kutta;
 pub mod shooting;
+pub mod unpressed;
 
 use model_tables::membrane::press::MembraneError;
 use std::fmt;

@@ -5,20 +5,16 @@
 //! Its weakness: errors at the pole grow along the meridian. Near a pre-stretch of 1 the matrix's condition
 //! exceeds a million, and Newton's method fails from guesses a few parts in ten thousand off.
 
-use super::dop853::{Tolerance, integrate};
+use super::dop853::integrate;
+use super::matrix::invert;
 use super::plain::{
     Free, HEIGHT, LastStretches, Load, Met, PlainMembrane, RADIUS, STATE, THRUST, VARIED, VOLUME,
 };
+use super::unpressed::{FIRST_STEP, MOST_STEPS, ShootingRest, start_of, tolerance};
 use super::{MethodFailure, MethodState};
 use core::f64::consts::{FRAC_PI_2, PI};
 use model_tables::design::Design;
 
-/// Where integration starts, over the fourth root of the tolerance: the series there errs by its fourth power.
-const START: f64 = 0.3;
-/// First step over the distance to the pole. Longer ones excite the singular solution, unseen by the error estimate.
-const FIRST_STEP: f64 = 2.0;
-/// Newton steps at most.
-const MOST_STEPS: usize = 30;
 /// Halvings of a Newton step at most.
 const MOST_HALVINGS: usize = 8;
 /// Largest relative change of an unknown in one step.
@@ -37,23 +33,6 @@ const LARGEST_FACTOR: f64 = 4.0;
 /// The unknowns: pole stretch, pressure, contact parameter.
 pub type Unknowns = [f64; VARIED];
 
-/// The rest state, dimensionless.
-#[derive(Clone, Copy, Debug)]
-pub struct ShootingRest {
-    /// Pressure.
-    pub pressure: f64,
-    /// Radius of the equator.
-    pub edge: f64,
-    /// Height.
-    pub height: f64,
-    /// Volume.
-    pub volume: f64,
-    /// State at the equator, varied by pole stretch, pressure and a point force over `2 pi` at the pole.
-    pub varied: Free,
-    /// What was met on the meridian.
-    pub met: Met,
-}
-
 /// Shooting for one design.
 #[derive(Clone, Debug)]
 pub struct Shooting {
@@ -70,89 +49,6 @@ struct Shot {
     end: Free,
     contact_radius: f64,
     met: Met,
-}
-
-/// Where the series is as good as the tolerance.
-fn start_of(relative: f64) -> f64 {
-    START * libm::sqrt(libm::sqrt(relative))
-}
-
-fn tolerance(relative: f64, controlled: usize) -> Tolerance {
-    Tolerance {
-        relative,
-        absolute: 1e-3 * relative,
-        controlled,
-    }
-}
-
-/// The plate-free membrane from `start` to the equator, varied by pole stretch, pressure and a point force.
-pub(super) fn inflate(
-    problem: &PlainMembrane,
-    pole_stretch: f64,
-    pressure: f64,
-    [start, relative]: [f64; 2],
-    controlled: usize,
-) -> Result<(Free, Met), MethodFailure> {
-    let load = Load {
-        pressure,
-        load: 0.0,
-        pressure_by: [0.0, 1.0, 0.0],
-        load_by: [0.0, 0.0, 1.0],
-    };
-    let mut memory = LastStretches::new(pole_stretch);
-    let end = integrate(
-        |t, y| problem.free_rates(t, y, &load, &mut memory),
-        [start, FRAC_PI_2],
-        problem.free_start(start, pole_stretch, pressure),
-        FIRST_STEP * start,
-        &tolerance(relative, controlled),
-    )?;
-    Ok((end, memory.met))
-}
-
-impl ShootingRest {
-    /// The rest state of the problem's pole stretch: the pressure at which the equator is vertical, by Newton.
-    ///
-    /// # Errors
-    /// [`MethodFailure::BlewUp`], [`MethodFailure::Stalled`].
-    pub fn new(problem: &PlainMembrane, relative: f64) -> Result<Self, MethodFailure> {
-        let stretch = problem.pole_stretch;
-        let d = model_tables::material::Hyperelastic::derivatives(&problem.law, stretch, stretch);
-        let mut pressure = 2.0 * d.w1 / (stretch * stretch) * problem.aspect;
-        let mut moved = f64::INFINITY;
-        for _ in 0..MOST_STEPS {
-            let (end, met) = match inflate(problem, stretch, pressure, [start_of(relative), relative], STATE)
-            {
-                Ok(reached) => reached,
-                Err(MethodFailure::BlewUp { .. }) => {
-                    // Too much pressure for the stretch.
-                    pressure *= 0.7;
-                    continue;
-                }
-                Err(failure) => return Err(failure),
-            };
-            let step = -end[THRUST] / end[2 * STATE + THRUST];
-            moved = (step / pressure).abs();
-            if moved < 0.1 * relative {
-                if met.unstable {
-                    return Err(MethodFailure::LawUnstable);
-                }
-                return Ok(Self {
-                    pressure,
-                    edge: end[RADIUS],
-                    height: end[HEIGHT],
-                    volume: end[VOLUME],
-                    varied: end,
-                    met,
-                });
-            }
-            pressure += step.clamp(-0.5 * pressure, pressure);
-        }
-        Err(MethodFailure::Stalled {
-            residual: moved,
-            condition: 1.0,
-        })
-    }
 }
 
 impl Shooting {
@@ -448,29 +344,4 @@ impl Shooting {
         self.history.push((place, unknowns));
         Ok((unknowns, shot))
     }
-}
-
-/// Inverse by cofactors, and the condition in the largest row sum. `None` if it is singular.
-pub(super) fn invert(m: &[[f64; 3]; 3]) -> Option<([[f64; 3]; 3], f64)> {
-    let cofactor = |i: usize, j: usize| {
-        let (a, b) = ((i + 1) % 3, (i + 2) % 3);
-        let (c, d) = ((j + 1) % 3, (j + 2) % 3);
-        m[a][c] * m[b][d] - m[a][d] * m[b][c]
-    };
-    let determinant: f64 = (0..3).map(|j| m[0][j] * cofactor(0, j)).sum();
-    if determinant == 0.0 || !determinant.is_finite() {
-        return None;
-    }
-    let mut inverse = [[0.0; 3]; 3];
-    for (i, row) in inverse.iter_mut().enumerate() {
-        for (j, value) in row.iter_mut().enumerate() {
-            *value = cofactor(j, i) / determinant;
-        }
-    }
-    let norm = |m: &[[f64; 3]; 3]| {
-        m.iter()
-            .map(|row| row.iter().map(|x| x.abs()).sum::<f64>())
-            .fold(0.0, f64::max)
-    };
-    Some((inverse, norm(m) * norm(&inverse)))
 }

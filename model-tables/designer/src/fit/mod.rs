@@ -10,10 +10,12 @@
 
 pub mod check;
 pub mod data;
+mod data_error;
 mod error;
 mod identify;
 mod model;
 mod noise;
+mod non_negative;
 pub mod parameter;
 mod robust;
 mod search;

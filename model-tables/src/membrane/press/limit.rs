@@ -5,8 +5,8 @@ use super::{LARGEST_STEP, MembraneError, Press, SMALLEST_STEP};
 use crate::limit::{EndsBy, Limit};
 use crate::material::Hyperelastic;
 use crate::membrane::adapt::Unsolved;
+use crate::membrane::closure::PressControl;
 use crate::membrane::equations::{CONTACT_RADIUS, PRESSURE};
-use crate::membrane::equilibrium::PressControl;
 use core::f64::consts::PI;
 
 /// Indentation over the height up to which a press is followed before its fluid counts as drained.

@@ -3,8 +3,8 @@
 use super::{LARGEST_STEP, Press, SMALLEST_STEP};
 use crate::material::Hyperelastic;
 use crate::membrane::adapt::{Graded, Unsolved};
+use crate::membrane::closure::PressControl;
 use crate::membrane::equations::{CONTACT_PARAMETER, CONTACT_RADIUS};
-use crate::membrane::equilibrium::PressControl;
 use core::f64::consts::FRAC_PI_2;
 
 /// First indentation on the way from rest, over the height.

@@ -3,6 +3,7 @@
 mod drawing;
 mod fronts;
 mod page;
+mod placing;
 mod ways;
 
 use model_tables::design_file::{Accuracy, DesignFile};

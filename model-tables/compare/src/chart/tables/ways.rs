@@ -4,6 +4,7 @@
 //! curve bends until every interval errs alike; values are fitted to least largest error (Lawson's weights), polynomials by
 //! exchange. Errors are those of the arithmetic as it would run, at [`Press::places`].
 
+use super::placing::{least, spread, weighted_lines};
 use crate::lookups;
 use micromath::F32Ext;
 use model_tables::curve::{Contact, Curve};
@@ -11,7 +12,7 @@ use model_tables::generate::minimax::{self, MOST, Sample};
 use nalgebra::{SMatrix, SVector};
 
 /// Errors of reading are taken from this share of full scale up, and in its units below.
-const FROM: f64 = 0.01;
+pub(super) const FROM: f64 = 0.01;
 /// Samples of an interval that a fit sees.
 const SAMPLES: usize = 8;
 /// Rounds of weighting.
@@ -431,124 +432,5 @@ impl<'a> Press<'a> {
     }
 }
 
-/// The place of a function's least value between two, by thirds.
-fn least(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..32 {
-        let third = (high - low) / 3.0;
-        if f(low + third) < f(high - third) {
-            high -= third;
-        } else {
-            low += third;
-        }
-    }
-    0.5 * (low + high)
-}
-
-/// `count` places at equal steps of `sums`, which grows along `places`.
-fn spread(places: &[f64], sums: &[f64], count: usize) -> Vec<f64> {
-    let total = sums[sums.len() - 1];
-    (0..count)
-        .map(|i| {
-            let wanted = total * i as f64 / (count - 1) as f64;
-            let at = sums.partition_point(|&sum| sum < wanted).clamp(1, sums.len() - 1);
-            let t = (wanted - sums[at - 1]) / (sums[at] - sums[at - 1]);
-            places[at - 1] + t * (places[at] - places[at - 1])
-        })
-        .collect()
-}
-
-/// Values at knots of weighted least squares: tridiagonal normal equations.
-fn weighted_lines(
-    count: usize,
-    samples: &[(usize, f64, [f64; 2])],
-    output: usize,
-    weights: &[f64],
-) -> Vec<f64> {
-    let mut diagonal = vec![1e-12; count];
-    let mut beside = vec![0.0; count];
-    let mut right = vec![0.0; count];
-    for ((at, t, truth), weight) in samples.iter().zip(weights) {
-        let scale = 1.0 / truth[output].max(FROM);
-        let weight = weight * scale * scale;
-        diagonal[*at] += weight * (1.0 - t) * (1.0 - t);
-        beside[*at] += weight * t * (1.0 - t);
-        diagonal[at + 1] += weight * t * t;
-        right[*at] += weight * (1.0 - t) * truth[output];
-        right[at + 1] += weight * t * truth[output];
-    }
-    for i in 1..count {
-        let factor = beside[i - 1] / diagonal[i - 1];
-        diagonal[i] -= factor * beside[i - 1];
-        right[i] -= factor * right[i - 1];
-    }
-    for i in (0..count).rev() {
-        let above = if i + 1 < count {
-            beside[i] * right[i + 1]
-        } else {
-            0.0
-        };
-        right[i] = (right[i] - above) / diagonal[i];
-    }
-    right
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Force `x`, indentation `sqrt x`.
-    fn root() -> Curve {
-        let points = (1..=200)
-            .map(|i| {
-                let x = libm::exp2(-24.0 * (1.0 - f64::from(i) / 200.0));
-                Contact {
-                    pressure_rise: 1e4 * x,
-                    force: 3.0 * x,
-                    indentation: 1e-3 * libm::sqrt(x),
-                }
-            })
-            .collect();
-        Curve::new(points).expect("it grows")
-    }
-
-    #[test]
-    fn each_way_finds_the_function_that_it_has() {
-        let curve = root();
-        let press = Press::new(&curve, curve.end());
-        // Both are powers, and rational in the root but for the force's square of it.
-        let powers = press.powers();
-        assert!(
-            (powers[0][1] - 1.0).abs() < 1e-3 && (powers[1][1] - 0.5).abs() < 1e-3,
-            "{powers:?}"
-        );
-        assert!(press.power(&powers, libm::powf).of_reading < 0.01);
-        assert!(press.rational().of_reading < 0.01);
-        assert!(press.warped(64).of_full_scale < 0.05);
-    }
-
-    /// A line on the root over `[a, b]` errs by `(sqrt b - sqrt a)^2 / (8 (sqrt a + sqrt b))` at least, which is 0.0208 here; of
-    /// reading, that over values of 0.5 to 1.
-    #[test]
-    fn lines_are_fitted_to_least_largest_error() {
-        let curve = root();
-        let press = Press::new(&curve, curve.end());
-        let [_, values] = press.fitted(&[0.25, 1.0], |place| place);
-        let error = |x: f64| values[0] + (x - 0.25) / 0.75 * (values[1] - values[0]) - libm::sqrt(x);
-        let worst = (0..=100)
-            .map(|i| 0.25 + 0.75 * f64::from(i) / 100.0)
-            .map(|x| error(x).abs() / libm::sqrt(x));
-        let worst = worst.fold(0.0, f64::max);
-        assert!(worst > 0.0208 && worst < 0.0417, "{worst}");
-    }
-
-    /// Lines as the square of their width; cubics as more than that, but not as the fourth power: at 0 the root has no slope.
-    #[test]
-    fn more_knots_err_less_by_their_order() {
-        let curve = root();
-        let press = Press::new(&curve, curve.end());
-        let ratio = press.lines(32).of_reading / press.lines(64).of_reading;
-        assert!((3.0..9.0).contains(&ratio), "{ratio}");
-        let ratio = press.cubics(16).of_reading / press.cubics(32).of_reading;
-        assert!((5.0..40.0).contains(&ratio), "{ratio}");
-    }
-}
+mod tests;

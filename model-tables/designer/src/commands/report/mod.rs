@@ -3,6 +3,7 @@
 mod charts;
 mod cost;
 mod findings;
+mod inputs;
 mod page;
 mod shapes;
 mod words;
