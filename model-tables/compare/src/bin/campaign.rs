@@ -1,9 +1,9 @@
-//! Judges the states of random designs: `campaign [--designs N | --design N ...] [--seed S] [--csv FILE]`.
+//! `cargo campaign NAME`: long seeded campaigns, of which the tests run a small part.
 
-use clap::Parser;
+use clap::{Args, Parser, Subcommand};
 use compare::campaign::draw::Case;
 use compare::campaign::judge::{Judged, Verdict};
-use compare::campaign::{self, Tally};
+use compare::campaign::{self, Tally, walls};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use output::{Refusal, files};
@@ -12,9 +12,36 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Judges the states of random designs by virtual work and a second discretisation.
+/// Long seeded campaigns.
 #[derive(Debug, Parser)]
+#[command(name = "campaign")]
 struct Arguments {
+    #[command(subcommand)]
+    campaign: Campaign,
+}
+
+#[derive(Debug, Subcommand)]
+enum Campaign {
+    /// Judges the states of random membranes by virtual work and a second discretisation
+    #[command(after_help = "Example:\n  cargo campaign designs --designs 10000 --seed 2026")]
+    Designs(Designs),
+    /// Holds the model that `kind = "auto"` takes for random walls to the refined solid
+    #[command(after_help = "Example:\n  cargo campaign walls --designs 200 --seed 0")]
+    Walls(Walls),
+}
+
+#[derive(Debug, Args)]
+struct Walls {
+    /// Walls to draw
+    #[arg(long, default_value_t = 200)]
+    designs: u64,
+    /// The number of the first wall, which is all that a draw depends on
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+#[derive(Debug, Args)]
+struct Designs {
     /// Designs to draw; each is pressed to 8 indentations
     #[arg(long, default_value_t = 10_000)]
     designs: u64,
@@ -102,7 +129,11 @@ fn row(case: &Case, judged: &Judged) -> Vec<String> {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
+    let kept = match Arguments::parse().campaign {
+        Campaign::Designs(arguments) => designs(&arguments),
+        Campaign::Walls(arguments) => Ok(judge_walls(&arguments)),
+    };
+    match kept {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
@@ -112,8 +143,40 @@ fn main() -> ExitCode {
     }
 }
 
+/// Whether no error was let through that is larger than allowed.
+fn judge_walls(arguments: &Walls) -> bool {
+    let mut worst = [0.0_f64; walls::ASKED.len()];
+    let mut without = 0;
+    for done in 0..arguments.designs {
+        let wall = walls::draw(arguments.seed + done).measure();
+        if wall.has_truth() {
+            for (worst, asked) in worst.iter_mut().zip(walls::ASKED) {
+                *worst = worst.max(wall.take(asked).error);
+            }
+        } else {
+            without += 1;
+        }
+        eprint!("\r{} of {} walls", done + 1, arguments.designs);
+    }
+    eprintln!();
+    println!(
+        "walls      {}, {without} of them without a refined state",
+        arguments.designs
+    );
+    let mut kept = true;
+    for (worst, asked) in worst.iter().zip(walls::ASKED) {
+        println!(
+            "allowed    {:.3} %: {:.3} % let through",
+            100.0 * asked,
+            100.0 * worst
+        );
+        kept &= *worst <= asked;
+    }
+    kept
+}
+
 /// Whether no state was wrong.
-fn run(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
+fn designs(arguments: &Designs) -> Result<bool, Box<dyn Error>> {
     if let Some(file) = &arguments.csv {
         files::clear_away_on_interrupt();
         files::expect_room(file).map_err(|Refusal(reason)| reason)?;

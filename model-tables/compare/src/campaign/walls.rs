@@ -21,7 +21,7 @@ pub const FROM: f64 = 0.01;
 
 /// A wall whose semi-axes are the outer surface's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wall {
+pub struct RandomWall {
     /// Its number.
     pub index: u64,
     /// The design.
@@ -43,7 +43,7 @@ pub struct Evidence {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     /// The wall.
-    pub case: Wall,
+    pub case: RandomWall,
     /// The closed form of the membrane's light contact, where it has all states.
     pub closed_form: Option<f64>,
     /// The ladder, in its order; `None` where a rung does not apply.
@@ -61,7 +61,7 @@ pub struct Taken {
 
 /// The wall of a number: outer radius 5 to 12 mm, height 0.6 to 1.4 of it, wall 0.1 to 1.5 mm, one in three unstretched, the
 /// others stretched by 1 % to 100 % at the pole.
-pub fn draw(index: u64) -> Wall {
+pub fn draw(index: u64) -> RandomWall {
     let mut random = Random(index);
     let radial = random.uniform(5e-3, 12e-3);
     let axial = radial * random.uniform(0.6, 1.4);
@@ -81,7 +81,7 @@ pub fn draw(index: u64) -> Wall {
     } else {
         RestBy::PoleStretch(stretch)
     };
-    Wall {
+    RandomWall {
         index,
         design: Design {
             membrane: Membrane {
@@ -96,7 +96,7 @@ pub fn draw(index: u64) -> Wall {
     }
 }
 
-impl Wall {
+impl RandomWall {
     /// What is asked of it, to an accuracy.
     pub fn wanted(&self, error: f64) -> Wanted {
         Wanted {

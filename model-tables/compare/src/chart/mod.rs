@@ -4,7 +4,7 @@ mod ladder;
 mod speed;
 mod tables;
 
-use crate::methods::approximations::{APPROXIMATIONS, Measurement, SAMPLES, Yardstick};
+use crate::methods::approximations::{APPROXIMATIONS, MeasuredErrors, SAMPLES, Yardstick};
 use crate::methods::contest::{self, Contestant, DESIGNS, Sweep};
 use model_tables::membrane::TensionField;
 use output::files::write_all;
@@ -35,7 +35,7 @@ pub struct ChartArguments {
 struct Measured {
     sweep: Sweep,
     results: Vec<contest::Result>,
-    ladder: Vec<Measurement>,
+    ladder: Vec<MeasuredErrors>,
 }
 
 /// Measures, writes the files, and gives a row a file.

@@ -79,7 +79,7 @@ pub struct ErrorSample {
 
 /// What an approximation was measured to do.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measurement {
+pub struct MeasuredErrors {
     /// Which.
     pub approximation: Approximation,
     /// Its errors, from the shallowest indentation to the deepest.
@@ -88,7 +88,7 @@ pub struct Measurement {
     pub seconds: f64,
 }
 
-impl Measurement {
+impl MeasuredErrors {
     /// The largest relative error of the force; infinite where a state is missing.
     pub fn worst(&self) -> f64 {
         self.samples
@@ -157,7 +157,7 @@ impl Yardstick {
     }
 
     /// Measures an approximation.
-    pub fn measure(&self, approximation: Approximation) -> Measurement {
+    pub fn measure(&self, approximation: Approximation) -> MeasuredErrors {
         let mut seconds = f64::INFINITY;
         let mut answers = Vec::new();
         for _ in 0..REPETITIONS {
@@ -177,7 +177,7 @@ impl Yardstick {
                 }),
             })
             .collect();
-        Measurement {
+        MeasuredErrors {
             approximation,
             samples,
             seconds,

@@ -1,7 +1,7 @@
 //! `designer calibration`: what a calibration gains, on stand-ins for a device, and the page about it.
 
 use super::fit as command;
-use super::published::paper::{FORCES, INDENTATIONS};
+use super::published::quoted::{FORCES, INDENTATIONS};
 use super::published::solid::SOLID;
 use crate::fit::data::{Data, DataChoice};
 use crate::fit::parameter::Parameter;

@@ -1,6 +1,7 @@
 //! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
 
 use super::finite;
+use fingertip::report::{Status, Warnings};
 use model_tables::generate::{GenerateError, from_design_file};
 use model_tables::units::PressureRise;
 use output::rows::{Cell, Rows};
@@ -37,19 +38,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     for &pascals in &arguments.pressure_rise_pa {
         let rise = PressureRise::from_pascals(pascals, bits);
         let reading = tables.lookup(rise);
-        // The words of the firmware's reports.
         let status = if reading.saturated {
-            "warning: saturated"
+            Status::Warning(Warnings::SATURATED)
         } else if rise < lowest_rest {
-            "warning: below zero"
+            Status::Warning(Warnings::BELOW_ZERO)
         } else {
-            "ok"
+            Status::Ok
         };
         rows.push(vec![
             Cell::Number(pascals),
             Cell::Number(reading.force.newtons()),
             Cell::Number(reading.indentation.metres() * 1e3),
-            Cell::Text(status.to_owned()),
+            Cell::Text(status.to_string()),
         ]);
     }
     Ok(CommandAnswer {

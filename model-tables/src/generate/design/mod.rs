@@ -1,6 +1,6 @@
 //! From a design to its tables: the full model, and every refusal on the way.
 
-use super::{Certified, NoTables, emit, tables};
+use super::{Certified, NoTables, tables};
 use crate::constants::{Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{
@@ -410,27 +410,6 @@ impl Generated {
             noise: integer(section.noise_pa * 1e3),
             kind: kind(section.kind),
         }
-    }
-
-    /// Rust source of `TABLES` and `DESIGN`, for `include!`.
-    pub fn rust_source(&self) -> String {
-        emit::rust_source(self)
-    }
-
-    /// The tables as bytes; little-endian: `FTIP`, `u32` table version, `u64` design hash, the fields of
-    /// [`crate::table::Layout`] (four bytes each), `u32` numbers of segments and of words in each, then the words.
-    pub fn binary(&self) -> Vec<u8> {
-        emit::binary(self)
-    }
-
-    /// The tables as CSV: one row a word.
-    pub fn csv(&self) -> String {
-        emit::csv(self)
-    }
-
-    /// The certificate as TOML.
-    pub fn certificate(&self) -> String {
-        emit::certificate(self)
     }
 }
 

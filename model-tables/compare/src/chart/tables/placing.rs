@@ -1,6 +1,7 @@
 //! Where knots go, and the least squares of lines through them.
 
-use super::ways::FROM;
+/// Errors of reading are taken from this share of full scale up, and in its units below.
+pub(super) const FROM: f64 = 0.01;
 
 /// The place of a function's least value between two, by thirds.
 pub(super) fn least(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {

@@ -4,15 +4,13 @@
 //! curve bends until every interval errs alike; values are fitted to least largest error (Lawson's weights), polynomials by
 //! exchange. Errors are those of the arithmetic as it would run, at [`Press::places`].
 
-use super::placing::{least, spread, weighted_lines};
+use super::placing::{FROM, least, spread, weighted_lines};
 use crate::lookups;
 use micromath::F32Ext;
 use model_tables::curve::{Contact, Curve};
 use model_tables::generate::minimax::{self, MOST, Sample};
 use nalgebra::{SMatrix, SVector};
 
-/// Errors of reading are taken from this share of full scale up, and in its units below.
-pub(super) const FROM: f64 = 0.01;
 /// Samples of an interval that a fit sees.
 const SAMPLES: usize = 8;
 /// Rounds of weighting.

@@ -2,6 +2,7 @@
 
 mod page;
 pub(super) mod paper;
+pub(super) mod quoted;
 mod readings;
 pub(super) mod solid;
 

@@ -2,7 +2,8 @@
 //!
 //! Few digits of each number, so that the page says what a reader can use and is the same on every host.
 
-use super::paper::{self, Paper};
+use super::paper::Paper;
+use super::quoted;
 use super::solid::{Beside, COMPLIANCE, SOLID, SOLID_COMPLIANT_FORCE, SOLID_CONTACT_RADIUS, Solid};
 use core::f64::consts::PI;
 use output::rows::{plain, significant};
@@ -84,7 +85,7 @@ fn numbers(paper: &Paper) -> String {
         ),
         number(paper.height_difference * 1e3),
         number(paper.limit * 1e3),
-        published(paper::MEASURED_BLOCKED_FORCE),
+        published(quoted::MEASURED_BLOCKED_FORCE),
         number(paper.blocked_diameter * 1e3),
         number(paper.contact_diameter * 1e3),
     )
@@ -94,13 +95,13 @@ fn forces(paper: &Paper) -> String {
     let forces = &paper.forces;
     let row = |title: &str, values: [f64; 3]| {
         let mut row = vec![title.to_owned()];
-        for (value, published) in values.into_iter().zip(paper::FORCES) {
+        for (value, published) in values.into_iter().zip(quoted::FORCES) {
             row.push(format!("{} ({})", number(value), ratio(value / published)));
         }
         row
     };
     let mut quoted = vec!["published model, Agilus30".to_owned()];
-    quoted.extend(paper::FORCES.map(published));
+    quoted.extend(quoted::FORCES.map(published));
     let text = |cells: [&str; 4]| cells.map(str::to_owned).to_vec();
     format!(
         "### What \"pressure times contact area\" could mean\n\
@@ -141,9 +142,9 @@ fn readings(paper: &Paper) -> String {
         );
         row
     });
-    let mut quoted = vec!["published".to_owned(), published(paper::REST_PRESSURE * 1e-3)];
-    quoted.extend([paper::EQUATOR_RADIUS * 1e3, paper::ASPECT, paper::VOLUME * 1e9].map(published));
-    quoted.extend(paper::FORCES.map(published));
+    let mut quoted = vec!["published".to_owned(), published(quoted::REST_PRESSURE * 1e-3)];
+    quoted.extend([quoted::EQUATOR_RADIUS * 1e3, quoted::ASPECT, quoted::VOLUME * 1e9].map(published));
+    quoted.extend(quoted::FORCES.map(published));
     format!(
         "### Other readings of the inputs\n\
          \n\

@@ -1,6 +1,6 @@
 //! Other readings of the paper's inputs, so that nobody need try them again.
 
-use super::paper::{EQUATOR_RADIUS, INDENTATIONS, REST_PRESSURE};
+use super::quoted::{EQUATOR_RADIUS, INDENTATIONS, REST_PRESSURE};
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
