@@ -181,7 +181,7 @@ mod tests {
     use std::path::Path;
 
     /// Where the page is kept.
-    const FOLDER: &str = "tables";
+    const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tables");
 
     /// Most bytes and instructions at 0.1 %, but for one design: the longest way to touch down takes an instruction more, as the
     /// page explains.
