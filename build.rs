@@ -18,6 +18,7 @@ const BOARDS: [(&str, Option<&str>); 2] = [
 
 fn main() {
     println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
+    println!("cargo::rerun-if-changed=build.rs");
     println!(
         "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
     );
@@ -31,6 +32,15 @@ fn build() -> Result<(), String> {
     if for_the_chip {
         link_for_the_chip()?;
     }
+    // Without a design the library is the signal path alone, and nothing is solved.
+    if env::var_os("CARGO_FEATURE_DESIGN").is_some() {
+        fold_in_the_design(for_the_chip)?;
+    }
+    Ok(())
+}
+
+/// Writes the tables of the design, or says why there are none.
+fn fold_in_the_design(for_the_chip: bool) -> Result<(), String> {
     let asked = env::var_os("FINGERTIP_DESIGN");
     let design = design_path(asked.as_deref())?;
     println!("cargo::rerun-if-changed={design}");

@@ -1,4 +1,4 @@
-//! A fourth image for the same board: looks force and indentation up in the ways of [`model_tables::lookups`] and with the
+//! A fourth image for the same board: looks force and indentation up in the ways of `compare::lookups` and with the
 //! tables of the shipped designs, over and over. The host counts the instructions of each.
 //!
 //! What a way costs hardly depends on the numbers in its table, and those here are of a plain square root.
@@ -12,12 +12,12 @@ mod board;
 #[cfg(target_os = "none")]
 mod probe {
     use crate::board::Board;
+    use compare::lookups;
     use core::hint::black_box;
     use defmt_rtt as _;
     use embassy_executor::Spawner;
     use embassy_time::Timer;
     use fingertip::lookup_ways::{INPUTS, SIZES};
-    use model_tables::lookups;
     use panic_probe as _;
 
     /// Cycles, some milliseconds: the emulator counts calls from its first stop on, one millisecond after power-on.

@@ -4,7 +4,7 @@
 //! [`filter`] -> [`touch`] -> [`drift`] -> [`fluid`] -> [`contact`] -> [`uncertainty`] -> [`report`], called in that
 //! order by [`pipeline`]; [`telemetry`] and [`command`] put into
 //! words what goes over the [`wire`], where it waits in the [`outbox`]; [`calibration`] says what is known of this one
-//! fingertip, [`design`] of all of its kind, and [`image`] of the kind this build is for. Integers only,
+//! fingertip, [`design`] of all of its kind, and `image` (feature `design`) of the kind this build is for. Integers only,
 //! but for the full model's [`solver_states`], which the firmware does not solve; nothing here knows a clock or a bus:
 //! time and samples are arguments.
 #![cfg_attr(not(test), no_std)]
@@ -18,6 +18,7 @@ pub mod design;
 pub mod drift;
 pub mod filter;
 pub mod fluid;
+#[cfg(feature = "design")]
 pub mod image;
 pub mod lookup_sweep;
 pub mod lookup_ways;

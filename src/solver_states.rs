@@ -4,8 +4,8 @@
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::press::workspace::Workspace;
-use model_tables::press::{ModelError, Press, SWEEP};
+use model_tables::membrane::press::workspace::Workspace;
+use model_tables::membrane::press::{MembraneError, Press, SWEEP};
 
 /// Gauss points an element, those of the sweep mesh.
 pub const STAGES: usize = 5;
@@ -78,7 +78,7 @@ impl State {
 /// # Errors
 /// As [`Workspace::inflate`].
 #[inline(never)] // its stack is free again for the next
-pub fn rest(room: &mut Room) -> Result<(State, &mut Press<Law, STAGES>), ModelError> {
+pub fn rest(room: &mut Room) -> Result<(State, &mut Press<Law, STAGES>), MembraneError> {
     let Design {
         membrane,
         rest,
@@ -99,7 +99,7 @@ pub fn rest(room: &mut Room) -> Result<(State, &mut Press<Law, STAGES>), ModelEr
 /// # Errors
 /// As [`Press::contact_at`].
 #[inline(never)]
-pub fn pressed(press: &mut Press<Law, STAGES>, indentation: f64) -> Result<State, ModelError> {
+pub fn pressed(press: &mut Press<Law, STAGES>, indentation: f64) -> Result<State, MembraneError> {
     let before = press.iterations();
     let contact = press.contact_at(indentation)?;
     Ok(State {

@@ -3,11 +3,12 @@
 use crate::plant::Plant;
 use crate::scenario::{Scenario, WireFault};
 use crate::transducer::{Part, Transducer, Wiring};
+use model_tables::curve::CurveFailure;
 use model_tables::curve::{Contact, Curve};
 use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
 use model_tables::generate::{self, GenerateError};
-use model_tables::press::{CurveFailure, ModelError};
-use model_tables::rung::Rung;
+use model_tables::model::Fingertip;
+use model_tables::model::ModelError;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -33,7 +34,7 @@ pub enum FingertipDesignError {
     /// The model has no rest state.
     Rest(ModelError),
     /// The model does not reach the deepest indentation.
-    Press(CurveFailure),
+    Press(CurveFailure<ModelError>),
     /// The data of a design from data do not.
     Data(PathBuf, Box<GenerateError>),
 }
@@ -186,7 +187,7 @@ impl FingertipDesign {
                 .map_err(|error| FingertipDesignError::Data(self.path.clone(), Box::new(error)))?;
             return Ok((measured.rest_pressure, measured.curve));
         }
-        let mut press = Rung::new(&self.file).map_err(FingertipDesignError::Rest)?;
+        let mut press = Fingertip::new(&self.file).map_err(FingertipDesignError::Rest)?;
         let curve = press
             .curve(self.max_indentation)
             .map_err(FingertipDesignError::Press)?;

@@ -4,13 +4,12 @@ use super::calibration::Calibration;
 use super::error::Problem;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::{
-    Accuracy, DesignFile, MembraneSection, ModelSection, RestSection, Supply, TransducerKindSection,
-    TransducerSection, Transfer, air_kpa, in_any_air,
+    Accuracy, DEFAULT_ELEMENTS, DesignFile, MembraneSection, ModelSection, RestSection, Supply,
+    TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air,
 };
 use crate::constants::Quantity;
 use crate::material::Law;
 use crate::material::preset::{PRESETS, Preset};
-use crate::rung::choice::FINE;
 use toml::de::DeTable;
 
 /// Lengths of a fingertip, from a hair to a hand.
@@ -253,8 +252,8 @@ fn model(mut section: Section<'_>) -> Result<ModelSection, Fault> {
     let model = match section.text("kind", KINDS)? {
         None | Some("membrane") => ModelSection::Membrane,
         Some("solid") => ModelSection::Solid {
-            through: elements(&mut section, "through", 1.0, 8.0)?.unwrap_or(FINE.through as u32),
-            along: elements(&mut section, "along", 4.0, 400.0)?.unwrap_or(FINE.along as u32),
+            through: elements(&mut section, "through", 1.0, 8.0)?.unwrap_or(DEFAULT_ELEMENTS[0]),
+            along: elements(&mut section, "along", 4.0, 400.0)?.unwrap_or(DEFAULT_ELEMENTS[1]),
         },
         Some("auto") => ModelSection::Auto,
         Some(_) => return Err(section.refuse("kind", KINDS)),

@@ -2,7 +2,7 @@ use super::*;
 use crate::constants::Quantity;
 use crate::generate::{OwnedTables, tables as make_tables};
 use crate::membrane::TensionField;
-use crate::press::Press;
+use crate::membrane::press::Press;
 use crate::table::{Reading, Tables};
 use crate::units::PressureRise;
 
@@ -33,7 +33,7 @@ fn tables_of_the_shipped_designs_agree_with_fresh_states_of_the_model() {
             generated.certified.tables.layout.maximum as u64 + 1
         );
         let bits = generated.certified.tables.layout.pressure_fraction_bits;
-        let mut press = Rung::new(&generated.design).expect("the rest state");
+        let mut press = Fingertip::new(&generated.design).expect("the rest state");
         let end = press.contact_at(2.5e-3).expect("the end");
         for indentation in [2.0e-5, 7.7e-5, 3.1e-4, 9.3e-4, 1.61e-3, 2.4e-3] {
             let state = press.contact_at(indentation).expect("a state");
@@ -239,7 +239,7 @@ fn a_coarse_accuracy_is_met_with_less() {
     accuracy.force_percent_of_reading = 1.0;
     accuracy.indentation_percent_of_reading = 1.0;
     let coarse = from_design(design).expect("tables");
-    let mut press = Rung::new(&coarse.design).expect("rest");
+    let mut press = Fingertip::new(&coarse.design).expect("rest");
     let curve = press.curve(2.5e-3).expect("curve");
     let fine = shipped("index-fingertip").accuracy.expect("there");
     let fine = make_tables(&curve, curve.end(), &fine, 10.0).expect("tables");
@@ -273,7 +273,7 @@ fn the_curve_is_far_finer_than_the_tables() {
 /// within few elements, all of it.
 #[test]
 fn the_curve_of_a_solid_is_finer_than_the_tables() {
-    let mut press = Rung::new(&shipped("index-fingertip")).expect("the rest state");
+    let mut press = Fingertip::new(&shipped("index-fingertip")).expect("the rest state");
     let curve = press.curve(2.5e-3).expect("a curve");
     let end = curve.end();
     for pair in curve
