@@ -122,8 +122,9 @@ impl core::error::Error for NoTruth {}
 #[derive(Clone, Debug)]
 pub struct Yardstick {
     design: Design,
-    rest: Press,
-    sweep: Press<Law, SWEEP_STAGES>,
+    // On the heap: each is hundreds of kilobytes.
+    rest: Box<Press>,
+    sweep: Box<Press<Law, SWEEP_STAGES>>,
     truth: Vec<Contact>,
 }
 
@@ -137,7 +138,8 @@ impl Yardstick {
             return Err(NoTruth::NoRange);
         }
         let lost = |error| NoTruth::Membrane(MethodFailure::Membrane(error));
-        let mut press = Press::<Law, TRUTH_STAGES>::with_resolution(design, field, TRUTH).map_err(lost)?;
+        let mut press =
+            Box::new(Press::<Law, TRUTH_STAGES>::with_resolution(design, field, TRUTH).map_err(lost)?);
         let mut truth = Vec::with_capacity(SAMPLES);
         for k in 0..SAMPLES {
             let part = k as f64 / (SAMPLES - 1) as f64;
@@ -150,8 +152,8 @@ impl Yardstick {
         }
         Ok(Self {
             design: *design,
-            rest: Press::new(design, field).map_err(lost)?,
-            sweep: Press::with_resolution(design, field, SWEEP).map_err(lost)?,
+            rest: Box::new(Press::new(design, field).map_err(lost)?),
+            sweep: Box::new(Press::with_resolution(design, field, SWEEP).map_err(lost)?),
             truth,
         })
     }
@@ -196,7 +198,7 @@ impl Yardstick {
             }
             Approximation::FewStates(states) => {
                 let deepest = self.truth[SAMPLES - 1].indentation;
-                let curve = FewStates::new(&self.design, &mut self.sweep.clone(), deepest, states);
+                let curve = FewStates::new(&self.design, &mut *self.sweep.clone(), deepest, states);
                 indentations
                     .map(|h| match &curve {
                         Ok(curve) => curve.at_indentation(h),
