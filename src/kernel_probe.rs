@@ -37,7 +37,7 @@ mod probe {
         searched();
         others();
         tables();
-        let Board { mut watchdog, .. } = Board::take();
+        let Board { mut watchdog, .. } = Board::take(false);
         loop {
             watchdog.pet();
             Timer::after_millis(10).await;

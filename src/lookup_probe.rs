@@ -9,7 +9,7 @@ mod board;
 
 #[cfg(target_os = "none")]
 mod probe {
-    use crate::board::Board;
+    use crate::board::{self, Board};
     use defmt_rtt as _;
     use embassy_executor::Spawner;
     use embassy_time::Timer;
@@ -25,13 +25,13 @@ mod probe {
     async fn main(spawner: Spawner) {
         // One task is all there is.
         let _ = spawner;
+        let reset_cause = board::begin();
         let Board {
             clock,
             mut line,
             mut watchdog,
-            reset_cause,
             ..
-        } = Board::take();
+        } = Board::take(false);
         let mut sequence = 0_u16;
         for rise in lookup_sweep::inputs::<ImageDesign>() {
             let report = Report {

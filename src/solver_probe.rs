@@ -34,7 +34,7 @@ mod probe {
             mut line,
             mut watchdog,
             ..
-        } = Board::take();
+        } = Board::take(false);
         for state in states {
             // The line has no receiver that could refuse.
             let _ = line.write(&state.to_bytes()).await;
