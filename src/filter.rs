@@ -159,10 +159,11 @@ impl Filter {
         if wild || bends.abs() <= noise {
             return Ok(smooth(oldest, self.history[1], newest, even));
         }
-        // A press that began between the samples slows down or goes on; what turns, or gets faster still, is neither on
-        // the line before nor on a new one.
-        let goes_on =
-            leaving.abs() <= noise || leaving.abs() <= rising.abs() && (rising > 0) == (leaving > 0);
+        // A press that began between the samples slows down or goes on, or gets faster once where a block averages over its
+        // begin from a level; what turns, or is faster than any press, is neither on the line before nor on a new one.
+        let begins = run_up.abs() <= noise && leaving.abs() <= press;
+        let goes_on = leaving.abs() <= noise
+            || (rising > 0) == (leaving > 0) && (leaving.abs() <= rising.abs() || begins);
         if 2 * bent.abs() > noise && !goes_on {
             return Err(Fault::Jump);
         }

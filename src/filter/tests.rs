@@ -70,6 +70,27 @@ fn a_press_that_starts_at_once_is_not_wild() {
     );
 }
 
+/// A block averages: of a ramp of 400 a block from a hold, begun at a share `f` of it, the first step is 400 (1 - f)^2 / 2.
+#[test]
+fn a_ramp_that_begins_anywhere_within_a_block_is_read_throughout() {
+    for eighth in 0..8 {
+        let left = 8 - eighth;
+        let average = |block: i32| match block {
+            ..0 => 0,
+            0 => 400 * left * left / 128,
+            _ => 400 * (2 * left + 16 * block - 8) / 16,
+        };
+        for sign in [-1, 1] {
+            let rises: Vec<i32> = (-4..8).map(|block| sign * average(block)).collect();
+            let outcomes = filtered(&rises);
+            assert!(
+                outcomes[2..].iter().all(Result::is_ok),
+                "{eighth}: {rises:?} {outcomes:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn the_turn_of_a_fast_tap_is_not_wild() {
     assert_eq!(
