@@ -113,10 +113,10 @@ fn no_fault_of_the_bus_becomes_a_number() {
 
 /// The reasons that a part must give for a fault, and those that it may give.
 fn reasons(kind: &str, fault: Wiring) -> (Vec<Fault>, Vec<Fault>) {
-    let every: Vec<Fault> = Fault::CODES.iter().map(|(fault, _)| *fault).collect();
     let only = |fault| (vec![fault], vec![fault]);
     match (fault, kind) {
-        (Wiring::Off, _) => only(Fault::SensorAbsent),
+        // Nobody acknowledges the address, ever or now and then.
+        (Wiring::Off | Wiring::Intermittent, _) => only(Fault::SensorAbsent),
         // Nobody answers with the right identity, ...
         (Wiring::Wrong, "dps310") => only(Fault::WrongSensor),
         // ... a status that the part has, ...
@@ -125,9 +125,21 @@ fn reasons(kind: &str, fault: Wiring) -> (Vec<Fault>, Vec<Fault>) {
         (Wiring::Wrong, _) => only(Fault::SensorCalibration),
         // The MS5837 alone is read blindly after its longest conversion.
         (Wiring::Slow, _) | (Wiring::Delayed, "ms5837-02ba") => only(Fault::SensorBusy),
-        (Wiring::Delayed | Wiring::Stuck, _) => (vec![], vec![]),
-        // Whatever is read first.
-        (Wiring::Garbage | Wiring::Intermittent | Wiring::Reset, _) => (vec![], every),
+        // A reset is over before a report is made of samples after it alone.
+        (Wiring::Delayed | Wiring::Stuck | Wiring::Reset, _) => (vec![], vec![]),
+        // Whatever is read first is no identity, no settings, no calibration, no status and no word: but somebody answers.
+        (Wiring::Garbage, _) => (
+            vec![],
+            vec![
+                Fault::WrongSensor,
+                Fault::SensorCalibration,
+                Fault::SensorReset,
+                Fault::SensorBusy,
+                Fault::SensorMemory,
+                Fault::SensorSaturated,
+                Fault::SensorImplausible,
+            ],
+        ),
         (Wiring::Sound | Wiring::Open | Wiring::Short | Wiring::Sag | Wiring::Unsupplied, _) => {
             unreachable!("not of a bus")
         }

@@ -299,6 +299,35 @@ fn every_transducer_is_ok_and_right_after_its_zero_in_thick_and_thin_air() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+    for (kind, airs) in &all {
+        for (air, told) in airs {
+            assert_documented(kind, *air, told);
+        }
+    }
+}
+
+/// The row of `FAULTS.md` has these figures, but for a fault or two: their number depends on the instant.
+fn assert_documented(kind: &str, air: f64, told: &[Told]) {
+    let path = host_tests::workspace().join("host-tests/FAULTS.md");
+    let document = std::fs::read_to_string(path).expect("the document is there");
+    let begins = format!("| {kind} | {air:.1} |");
+    let row = document.lines().find_map(|line| line.strip_prefix(&begins));
+    let row = row.unwrap_or_else(|| panic!("FAULTS.md has no row {begins}"));
+    let figures: Vec<f64> = row
+        .split('|')
+        .filter_map(|cell| cell.trim().parse().ok())
+        .collect();
+    let (wrong, percents) = figures.split_last().expect("figures follow");
+    assert!(wrong.abs() < 0.5 && percents.len() == told.len(), "{begins}{row}");
+    for (documented, one) in percents.iter().zip(told) {
+        let allowed = 100.0 * 2.0 / one.reports as f64 + 0.05;
+        assert!(
+            (documented - one.ok_percent()).abs() <= allowed,
+            "{begins}{row}: {} is {:.1}",
+            one.story,
+            one.ok_percent()
+        );
+    }
 }
 
 /// Runs the image of a design with another part in the place of its own, in air of a pressure, kilopascals.
