@@ -3,7 +3,7 @@
 use crate::{Run, design, press_hold_release, run};
 use emulator::accuracy::{Accuracy, is_wrong};
 use emulator::record::Row;
-use fingertip::report::{Fault, Status};
+use fingertip::report::Status;
 
 /// Largest median error, share of reading, from 5 % of full scale up.
 const MEDIAN_ERROR: f64 = 0.005;
@@ -13,8 +13,6 @@ const WITHIN: f64 = 0.95;
 const START: f64 = 0.4;
 /// The firmware reports once a millisecond.
 const PERIOD: f64 = 1e-3;
-/// A report is made of samples this long before and after its instant, seconds.
-const CORNER: f64 = 1.6e-3;
 /// Time that the first samples after power-on take to become a report with a time of its own, seconds.
 const FIRST: f64 = 5e-3;
 
@@ -77,17 +75,8 @@ fn there_is_a_report_every_millisecond_and_a_reading_from_the_start_of_the_press
             pair[0].time
         );
     }
-    // Where the plate changes its speed at once between two samples, the filter may not know a press from wild samples: that
-    // one report has no number.
-    let mut corners: Vec<f64> = run.plant.scenario().phase_ends().collect();
     for row in rows.iter().filter(|row| row.time > START) {
-        if row.status == Status::Fault(Fault::Jump) {
-            let near = |corner: &f64| (corner - row.time).abs() < CORNER;
-            let corner = corners.iter().position(near);
-            corners.remove(corner.unwrap_or_else(|| panic!("a jump at {} s", row.time)));
-        } else {
-            assert_eq!(row.status, Status::Ok, "at {} s", row.time);
-        }
+        assert_eq!(row.status, Status::Ok, "at {} s", row.time);
     }
 }
 
