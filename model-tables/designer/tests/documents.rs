@@ -142,7 +142,8 @@ fn follow(document: &Document) -> (PathBuf, String) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("document-{name}"));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("the test folder");
-    std::os::unix::fs::symlink(workspace().join("model-tables"), folder.join("model-tables")).expect("a link");
+    std::os::unix::fs::symlink(workspace().join("model-tables"), folder.join("model-tables"))
+        .expect("a link");
     if document.path == "README.md" {
         for (name, of_guide) in README_FILES {
             fs::write(folder.join(name), file_of(CALIBRATE, of_guide)).expect("the test folder");

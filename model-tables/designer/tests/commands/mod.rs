@@ -22,23 +22,8 @@ pub(crate) struct Document {
 
 /// Every document but those of what has been.
 pub(crate) fn documents() -> Vec<Document> {
-    fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
-        for entry in fs::read_dir(folder).expect("a folder").flatten() {
-            let (path, name) = (entry.path(), entry.file_name());
-            let name = name.to_string_lossy();
-            let past = ["target", "findings", "CHANGELOG.md"].contains(&&*name);
-            if past || name.starts_with('.') || path.is_symlink() {
-                continue;
-            }
-            if path.is_dir() {
-                walk(&path, found);
-            } else if name.ends_with(".md") {
-                found.push(path);
-            }
-        }
-    }
     let mut paths = vec![];
-    walk(workspace(), &mut paths);
+    walk(workspace(), ".md", &mut paths);
     paths.sort();
     paths
         .into_iter()
@@ -194,7 +179,26 @@ struct Package {
     name: String,
     /// Kind, name and source of every target.
     targets: Vec<(String, String, PathBuf)>,
+    /// Every source of its library.
+    modules: Vec<PathBuf>,
     features: BTreeSet<String>,
+}
+
+/// Every file below a folder whose name ends so.
+fn walk(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder").flatten() {
+        let (path, name) = (entry.path(), entry.file_name());
+        let name = name.to_string_lossy();
+        let past = ["target", "findings", "CHANGELOG.md"].contains(&&*name);
+        if past || name.starts_with('.') || path.is_symlink() {
+            continue;
+        }
+        if path.is_dir() {
+            walk(&path, ending, found);
+        } else if name.ends_with(ending) {
+            found.push(path);
+        }
+    }
 }
 
 fn packages() -> Vec<Package> {
@@ -220,6 +224,12 @@ fn packages() -> Vec<Package> {
                     )
                 })
                 .collect(),
+            modules: {
+                let manifest = PathBuf::from(text(&package["manifest_path"]));
+                let mut modules = vec![];
+                walk(&manifest.with_file_name("src"), ".rs", &mut modules);
+                modules
+            },
             features: package["features"]
                 .as_object()
                 .expect("features")
@@ -280,13 +290,16 @@ pub(crate) fn assert_names_exist(line: &str, arguments: &[String]) {
                 let manifest = fs::read_to_string(workspace().join("Cargo.toml")).expect("it is there");
                 assert!(manifest.contains(&section), "{line}: no {section}");
             }
+            "--lib" => sources.extend(packages.iter().flat_map(|package| &package.modules)),
             "--release" | "--quiet" | "--workspace" | "--ignore-rust-version" | "--no-default-features" => {}
             name => {
                 assert!(
                     subcommand == "test" && !name.starts_with('-'),
                     "{line}: what is `{name}`?"
                 );
-                let has = |source: &&PathBuf| fs::read_to_string(source).expect("a source").contains(name);
+                // A test, or a module of them with its path.
+                let last = name.rsplit("::").next().unwrap_or(name);
+                let has = |source: &&PathBuf| fs::read_to_string(source).expect("a source").contains(last);
                 assert!(sources.iter().any(has), "{line}: no test `{name}`");
             }
         }
