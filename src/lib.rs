@@ -10,34 +10,26 @@
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
-pub mod calibration;
-pub mod command;
-pub mod contact;
-pub mod counts;
-pub mod design;
-pub mod drift;
-pub mod filter;
-pub mod fluid;
+pub mod device;
 pub mod image;
+pub mod link;
 pub mod lookup_sweep;
 pub mod lookup_ways;
-pub mod outbox;
-pub mod pipeline;
-pub mod pressure;
-pub mod record;
-pub mod report;
+pub mod signal;
 pub mod solver_states;
-pub mod station;
-pub mod store;
-pub mod stuck;
-pub mod supervisor;
-pub mod tare;
-pub mod telemetry;
-pub mod temperature;
-pub mod touch;
+pub mod status;
+pub mod storage;
 pub mod transducer;
-pub mod uncertainty;
-pub mod wire;
 
+pub use device::{station, supervisor};
+pub use link::{command, outbox, telemetry, wire};
 #[cfg(test)]
-mod test_design;
+pub(crate) use signal::test_design;
+pub use signal::{
+    calibration, contact, design, drift, filter, fluid, pipeline, scale as pressure, stuck, tare,
+    temperature, touch, uncertainty,
+};
+pub use status as report;
+pub use storage::{record, store};
+#[path = "transducer/counts.rs"]
+pub mod counts;

@@ -5,11 +5,10 @@
 #[cfg(target_os = "none")]
 mod board;
 #[cfg(target_os = "none")]
-mod chosen;
+mod firmware;
+
 #[cfg(target_os = "none")]
-mod retained;
-#[cfg(target_os = "none")]
-mod tasks;
+use firmware::{retained, transducer as chosen};
 
 #[cfg(not(target_os = "none"))]
 fn main() {

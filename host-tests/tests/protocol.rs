@@ -12,7 +12,7 @@ use std::process::{Command as Process, Stdio};
 
 /// The bytes of the page's example.
 fn example(what: &str) -> Vec<u8> {
-    let page = fs::read_to_string(workspace().join("src/PROTOCOL.md")).expect("the page is there");
+    let page = fs::read_to_string(workspace().join("src/link/PROTOCOL.md")).expect("the page is there");
     let row = page
         .lines()
         .find(|line| line.starts_with(&format!("| {what}")))
@@ -76,7 +76,7 @@ fn the_pages_examples_are_what_the_firmware_sends_and_takes() {
 
 #[test]
 fn the_page_names_every_code() {
-    let page = fs::read_to_string(workspace().join("src/PROTOCOL.md")).expect("the page is there");
+    let page = fs::read_to_string(workspace().join("src/link/PROTOCOL.md")).expect("the page is there");
     for (fault, code) in Fault::CODES {
         assert!(page.contains(&format!("| {code} | {fault}")), "{code} {fault}");
     }

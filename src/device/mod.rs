@@ -1,0 +1,4 @@
+//! What a board does beside measuring.
+
+pub mod station;
+pub mod supervisor;

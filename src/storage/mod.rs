@@ -1,0 +1,4 @@
+//! What the flash keeps.
+
+pub mod record;
+pub mod store;
