@@ -13,12 +13,12 @@ mod probe {
     use defmt_rtt as _;
     use embassy_executor::Spawner;
     use embassy_time::Timer;
-    use fingertip::counts::PERIOD;
-    use fingertip::design::Design;
     use fingertip::image::ImageDesign;
+    use fingertip::link::telemetry::{Frame, Hello, Message, encode};
     use fingertip::lookup_sweep;
-    use fingertip::report::Report;
-    use fingertip::telemetry::{Frame, Hello, Message, encode};
+    use fingertip::signal::design::Design;
+    use fingertip::signal::report::Report;
+    use fingertip::transducer::counts::PERIOD;
     use panic_probe as _;
 
     #[embassy_executor::main]

@@ -1,10 +1,11 @@
 //! The inputs with which the chip's lookup is compared with the host's: 12 292 of them, everywhere in and around the
 //! tables of a design.
 
-use crate::contact::{Contact, contact};
-use crate::design::Design;
-use crate::pressure::{Pressure, saturate};
-use crate::report::{Measurement, Warnings};
+use crate::signal::contact::{Contact, contact};
+use crate::signal::design::Design;
+use crate::signal::report::Measurement;
+use crate::status::Warnings;
+use crate::units::{Pressure, saturate};
 use model_tables::units::PressureRise;
 
 /// Every count from 0: the segments are narrowest there.
@@ -52,7 +53,7 @@ pub fn answer<D: Design>(rise: PressureRise) -> Measurement {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_design::{Linear, RISE_END};
+    use crate::signal::test_design::{Linear, RISE_END};
 
     #[test]
     fn the_sweep_covers_the_tables_and_both_sides() {

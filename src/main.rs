@@ -1,14 +1,9 @@
-//! The firmware: samples in, one report each millisecond out.
+//! The firmware: samples in, one report each millisecond out. The tasks are in `firmware/`, pins and clocks in `board/`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![deny(unsafe_code)]
 
 #[cfg(target_os = "none")]
-mod board;
-#[cfg(target_os = "none")]
 mod firmware;
-
-#[cfg(target_os = "none")]
-use firmware::{retained, transducer as chosen};
 
 #[cfg(not(target_os = "none"))]
 fn main() {

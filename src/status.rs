@@ -1,12 +1,7 @@
-//! What the fingertip says: values with a status, or the reason why there are none.
+//! What everything else imports: why there is no reading, what qualifies one, whether something touches, and how a board
+//! came to run.
 
-use crate::touch::Touch;
 use core::fmt;
-use model_tables::units::{Micronewtons, Nanometres, PressureRise};
-
-/// Time since reset, microseconds. 64 bits do not wrap in 584 000 years.
-#[derive(Clone, Copy, Debug, Default, Eq, Ord, PartialEq, PartialOrd)]
-pub struct Microseconds(pub u64);
 
 /// Why there is no reading. A fault never becomes a number.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -202,67 +197,6 @@ impl fmt::Display for Warnings {
     }
 }
 
-/// Force and indentation at a pressure rise, with what qualifies them.
-///
-/// | status | what the fields mean |
-/// |---|---|
-/// | ok | all hold, within their 1-sigma |
-/// | warning: saturated | force and indentation are lower bounds, and so is the rise beyond the transducer's range |
-/// | warning: below zero | force and indentation are 0; a touch may be hidden |
-/// | warning: zero unverified | all may be offset by an unknown rise, which the 1-sigma allows for; never "untouched" |
-/// | warning: leak suspected, bubble suspected | rise and touch hold; force and indentation are for more liquid than there is |
-/// | warning: calibration refused, zero aged, temperature | all hold within their 1-sigma, which is wider than it need be |
-/// | warning: clock | all hold; times are a percent off |
-/// | fault | there is no measurement: no field, touch included, says anything |
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub struct Measurement {
-    /// Pressure over the zero, filtered.
-    pub pressure_rise: PressureRise,
-    /// Force on the fingertip.
-    pub force: Micronewtons,
-    /// Indentation of its pole.
-    pub indentation: Nanometres,
-    /// One standard deviation of the three: the transducer's noise and resolution, and what drift may have done
-    /// since the zero was last known. What the model leaves out is not in it.
-    pub sigma: Sigma,
-    /// Whether something presses.
-    pub touch: Touch,
-    /// What qualifies the others.
-    pub warnings: Warnings,
-}
-
-/// One standard deviation of each value, >= 0, and above 0 for force and indentation; the end of the word also stands for
-/// more.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub struct Sigma {
-    /// Of the pressure rise.
-    pub pressure_rise: PressureRise,
-    /// Of the force.
-    pub force: Micronewtons,
-    /// Of the indentation.
-    pub indentation: Nanometres,
-}
-
-/// One report of the signal path.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct Report {
-    /// The instant the values belong to: the middle of the samples they are made of.
-    pub time: Microseconds,
-    /// The values, or the reason why there are none.
-    pub outcome: Result<Measurement, Fault>,
-}
-
-impl Report {
-    /// How far to believe the report.
-    pub fn status(&self) -> Status {
-        match self.outcome {
-            Ok(Measurement { warnings, .. }) if warnings == Warnings::NONE => Status::Ok,
-            Ok(Measurement { warnings, .. }) => Status::Warning(warnings),
-            Err(fault) => Status::Fault(fault),
-        }
-    }
-}
-
 /// How far to believe a report. Displays as `ok`, `warning: <reasons>` or `fault: <reason>`.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Status {
@@ -284,42 +218,147 @@ impl fmt::Display for Status {
     }
 }
 
+/// Whether the fingertip is touched.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Touch {
+    /// It cannot be told: there is no reading, or the zero is not verified and the rise is below the threshold.
+    #[default]
+    Unknown,
+    /// Nothing presses.
+    Untouched,
+    /// Something presses.
+    Touched,
+}
+
+impl Touch {
+    /// Every state with its code in telemetry.
+    pub const CODES: [(Self, u8); 3] = [(Self::Unknown, 0), (Self::Untouched, 1), (Self::Touched, 2)];
+}
+
+/// Why the chip was reset last.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum ResetCause {
+    /// The chip does not say.
+    #[default]
+    Unknown,
+    /// Power was switched on.
+    PowerOn,
+    /// The reset pin was pulled.
+    Pin,
+    /// The firmware asked for it.
+    Software,
+    /// A watchdog was not fed.
+    Watchdog,
+    /// The supply sagged.
+    BrownOut,
+    /// A forbidden entry into a low-power mode.
+    LowPower,
+}
+
+impl ResetCause {
+    /// Every cause with its code in telemetry.
+    pub const CODES: [(Self, u8); 7] = [
+        (Self::Unknown, 0),
+        (Self::PowerOn, 1),
+        (Self::Pin, 2),
+        (Self::Software, 3),
+        (Self::Watchdog, 4),
+        (Self::BrownOut, 5),
+        (Self::LowPower, 6),
+    ];
+}
+
+impl fmt::Display for ResetCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Unknown => "unknown",
+            Self::PowerOn => "power-on",
+            Self::Pin => "pin",
+            Self::Software => "software",
+            Self::Watchdog => "watchdog",
+            Self::BrownOut => "brown-out",
+            Self::LowPower => "low power",
+        })
+    }
+}
+
+/// What became of the stored calibration.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Stored {
+    /// None was ever stored.
+    #[default]
+    None,
+    /// It serves.
+    Serves,
+    /// It is another design's.
+    OtherDesign,
+    /// There is something, and none of it is whole.
+    Damaged,
+    /// A place that cannot be read may hold a later one than the record that serves, if any does.
+    Unreadable,
+}
+
+impl Stored {
+    /// Every state with its code in telemetry.
+    pub const CODES: [(Self, u8); 5] = [
+        (Self::None, 0),
+        (Self::Serves, 1),
+        (Self::OtherDesign, 2),
+        (Self::Damaged, 3),
+        (Self::Unreadable, 4),
+    ];
+}
+
+/// What ended the run before this one.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum LastFault {
+    /// Nothing that left a trace.
+    #[default]
+    None,
+    /// A task did not report in time: its number.
+    Late,
+    /// The code panicked: the line.
+    Panic,
+    /// The core met what it cannot execute: the address.
+    HardFault,
+    /// The watchdog was not fed, and no task was seen to be late: what feeds it hung, or the start did, as the code of a
+    /// [`Stage`](crate::device::supervisor::Stage) tells.
+    Hang,
+    /// The chip raised its non-maskable interrupt: the address in flash that its error correction gave up, or 0.
+    NonMaskable,
+}
+
+impl LastFault {
+    /// Every kind with its code in telemetry.
+    pub const CODES: [(Self, u8); 6] = [
+        (Self::None, 0),
+        (Self::Late, 1),
+        (Self::Panic, 2),
+        (Self::HardFault, 3),
+        (Self::Hang, 4),
+        (Self::NonMaskable, 5),
+    ];
+}
+
+/// The code of one of a list.
+pub(crate) fn code_of<T: Copy + PartialEq>(codes: &[(T, u8)], wanted: T) -> u8 {
+    codes
+        .iter()
+        .find(|(one, _)| *one == wanted)
+        .map_or(0, |(_, code)| *code)
+}
+
+/// The one of a list that has this code.
+pub(crate) fn named_by<T: Copy>(codes: &[(T, u8)], wanted: u8) -> Option<T> {
+    codes
+        .iter()
+        .find(|(_, code)| *code == wanted)
+        .map(|(one, _)| *one)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn report(outcome: Result<Measurement, Fault>) -> Report {
-        Report {
-            time: Microseconds(0),
-            outcome,
-        }
-    }
-
-    fn qualified(warnings: Warnings) -> Report {
-        report(Ok(Measurement {
-            warnings,
-            ..Measurement::default()
-        }))
-    }
-
-    #[test]
-    fn a_status_reads_as_scripts_expect_it() {
-        assert_eq!(qualified(Warnings::NONE).status().to_string(), "ok");
-        assert_eq!(
-            qualified(Warnings::SATURATED).status().to_string(),
-            "warning: saturated"
-        );
-        assert_eq!(
-            qualified(Warnings::ZERO_UNVERIFIED.and(Warnings::SATURATED))
-                .status()
-                .to_string(),
-            "warning: saturated; zero unverified"
-        );
-        assert_eq!(
-            report(Err(Fault::SensorOpen)).status().to_string(),
-            "fault: sensor open"
-        );
-    }
 
     #[test]
     fn every_fault_has_words_of_its_own() {

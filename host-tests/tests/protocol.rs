@@ -1,9 +1,10 @@
 //! The protocol's page, the reader in Python and the firmware agree, byte for byte.
 
-use fingertip::command::{self, Command, Request};
-use fingertip::report::{Fault, Measurement, Microseconds, Report, Warnings};
-use fingertip::telemetry::{self, Frame, Hello, LastFault, Message, ResetCause, Stored};
-use fingertip::touch::Touch;
+use fingertip::link::command::{self, Command, Request};
+use fingertip::link::telemetry::{self, Frame, Hello, Message};
+use fingertip::signal::report::{Measurement, Report};
+use fingertip::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings};
+use fingertip::units::Microseconds;
 use host_tests::workspace;
 use std::fs;
 use std::io::Write;

@@ -1,17 +1,19 @@
 //! Everything between a sample and the line that is no wire and no clock: reports at the rate asked for, hellos,
 //! commands and what comes of them.
 
-use crate::calibration::Calibration;
-use crate::command::{Command, CommandKind, Outcome, Request};
-use crate::counts::PERIOD;
-use crate::design::Design;
-use crate::pipeline::Pipeline;
-use crate::report::{Fault, Microseconds, Report, Status, Warnings};
-use crate::store::StoreError;
-use crate::supervisor::Start;
-use crate::tare::{StartUp, Zero};
-use crate::telemetry::{Answer, Hello, LastFault, Message, ResetCause, Stored};
-use crate::transducer::Sample;
+use crate::device::supervisor::Start;
+use crate::link::command::{Command, CommandKind, Outcome, Request};
+use crate::link::telemetry::{Answer, Hello, Message};
+use crate::signal::calibration::Calibration;
+use crate::signal::design::Design;
+use crate::signal::pipeline::Pipeline;
+use crate::signal::report::Report;
+use crate::signal::zero::{StartUp, Zero};
+use crate::status::{Fault, LastFault, ResetCause, Status, Stored, Warnings};
+use crate::storage::store::StoreError;
+use crate::transducer::counts::PERIOD;
+use crate::transducer::driver::Sample;
+use crate::units::Microseconds;
 use model_tables::units::Nanometres;
 
 /// From one hello to the next, microseconds.

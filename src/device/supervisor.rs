@@ -6,11 +6,9 @@
 //!
 //! A transducer that does not answer is the matter of its [`keeper`](crate::transducer::keeper).
 
-use crate::pressure::Pressure;
-use crate::report::Microseconds;
-use crate::tare::Zero;
-use crate::telemetry::{LastFault, ResetCause};
-use crate::wire::{code_of, named_by};
+use crate::signal::zero::Zero;
+use crate::status::{LastFault, ResetCause, code_of, named_by};
+use crate::units::{Microseconds, Pressure};
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 /// A run that lasted this long was a good one, microseconds: later resets are counted from 1.

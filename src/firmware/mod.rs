@@ -1,5 +1,6 @@
-//! The image: tasks on the board's peripherals.
+//! What the image adds to the library: the tasks, the transducer of the design on the board's port, and memory that a reset
+//! keeps.
 
-pub(crate) mod retained;
+mod retained;
 mod tasks;
-pub(crate) mod transducer;
+mod transducer;

@@ -2,13 +2,13 @@
 //! code. Unsafe are the section, which no start-up clears, so that any bits may lie there, and the handler's signature.
 #![allow(unsafe_code)]
 
-use crate::board::ecc;
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 use cortex_m_rt::{ExceptionFrame, exception};
-use fingertip::supervisor::{Breadcrumb, Stage, WORDS};
-use fingertip::telemetry::LastFault;
+use fingertip::board::ecc;
+use fingertip::device::supervisor::{Breadcrumb, Stage, WORDS};
+use fingertip::status::LastFault;
 
 struct Words(UnsafeCell<MaybeUninit<[u32; WORDS]>>);
 

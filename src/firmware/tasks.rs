@@ -1,9 +1,8 @@
 //! The tasks of the firmware: [`signal`] makes reports, [`send`] puts them on the line, [`listen`] takes commands from
 //! it, [`remember`] stores the calibration. The first one feeds the watchdog, while all four report.
 
-use crate::board::{self, Board, Clock, Ears, Line, Memory, SLOT, Watchdog};
-use crate::chosen::{self, Pace};
-use crate::retained;
+use crate::firmware::retained;
+use crate::firmware::transducer::{self as chosen, Pace};
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering};
 use defmt_rtt as _;
@@ -13,19 +12,22 @@ use embassy_sync::blocking_mutex::raw::{NoopRawMutex, ThreadModeRawMutex};
 use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
 use embassy_time::{Delay, Duration, with_timeout};
-use fingertip::command::{self, Request};
-use fingertip::design::Design;
+use fingertip::board::{self, Board, Clock, Ears, Line, Memory, SLOT, Watchdog};
+use fingertip::device::station::{Beginning, Station, ToStore};
+use fingertip::device::supervisor::{Breadcrumb, GOOD_RUN, Roster, Stage};
 use fingertip::image::ImageDesign;
-use fingertip::outbox::Outbox;
-use fingertip::pipeline::Pipeline;
-use fingertip::report::{Fault, Microseconds, Report, Status};
-use fingertip::station::{Beginning, Station, ToStore};
-use fingertip::store::{Identity, Store, StoreError};
-use fingertip::supervisor::{Breadcrumb, GOOD_RUN, Roster, Stage};
-use fingertip::telemetry::{Encoded, LastFault, Message, Stored};
-use fingertip::transducer::Transducer;
+use fingertip::link::command::{self, Request};
+use fingertip::link::outbox::Outbox;
+use fingertip::link::telemetry::Message;
+use fingertip::link::wire::{Deframer, Encoded};
+use fingertip::signal::design::Design;
+use fingertip::signal::pipeline::Pipeline;
+use fingertip::signal::report::Report;
+use fingertip::status::{Fault, LastFault, Status, Stored};
+use fingertip::storage::store::{Identity, Store, StoreError};
+use fingertip::transducer::driver::Driver;
 use fingertip::transducer::keeper::Keeper;
-use fingertip::wire::Deframer;
+use fingertip::units::Microseconds;
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// Every how many reports one goes to the log.
@@ -149,7 +151,7 @@ async fn main(spawner: Spawner) {
 /// transducer it measures nothing and says so at the same pace.
 async fn signal(
     clock: Clock,
-    transducer: Option<impl Transducer>,
+    transducer: Option<impl Driver>,
     waiting: &'static Waiting,
     mut watchdog: Watchdog,
     beginning: &Beginning,

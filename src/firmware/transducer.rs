@@ -1,30 +1,30 @@
 //! The transducer of the design, on the board's port. Only its driver is in the image.
 
-use crate::board::Port;
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_time::Delay;
 use embassy_time::{Duration, Instant, Timer};
-use fingertip::design::Design;
+use fingertip::board::Port;
 use fingertip::image::ImageDesign;
-use fingertip::pipeline::Pipeline;
-use fingertip::transducer::Transducer;
+use fingertip::signal::design::Design;
+use fingertip::signal::pipeline::Pipeline;
+use fingertip::transducer::driver::Driver;
 use model_tables::constants;
 
 const DESIGNED: constants::Transducer = ImageDesign::CONSTANTS.transducer;
 
 /// The converter's ticks pace it.
 #[cfg(transducer = "ratiometric")]
-pub(crate) fn transducer(port: Port) -> impl Transducer {
+pub(crate) fn transducer(port: Port) -> impl Driver {
     fingertip::transducer::ratiometric::Ratiometric::new(&DESIGNED, port)
 }
 
 #[cfg(transducer = "abp2")]
-pub(crate) fn transducer(port: Port) -> impl Transducer {
+pub(crate) fn transducer(port: Port) -> impl Driver {
     fingertip::transducer::abp2::Abp2::new(&DESIGNED, port, Delay)
 }
 
 #[cfg(transducer = "ms5837")]
-pub(crate) fn transducer(port: Port) -> impl Transducer {
+pub(crate) fn transducer(port: Port) -> impl Driver {
     let constants::TransducerKind::Ms5837 { address } = DESIGNED.kind else {
         unreachable!("the build script says so")
     };
@@ -32,7 +32,7 @@ pub(crate) fn transducer(port: Port) -> impl Transducer {
 }
 
 #[cfg(transducer = "dps310")]
-pub(crate) fn transducer(port: Port) -> impl Transducer {
+pub(crate) fn transducer(port: Port) -> impl Driver {
     let constants::TransducerKind::Dps310 { address } = DESIGNED.kind else {
         unreachable!("the build script says so")
     };

@@ -3,8 +3,10 @@
 //! Each command is answered once: at once, or when what it asks for has succeeded or failed. A frame that is no
 //! command is counted, and not answered: its sender cannot be known.
 
-use crate::tare::TareRefusal;
-use crate::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, named_by, unstuff};
+use crate::link::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, unstuff};
+use crate::signal::calibration::LARGEST_GAIN;
+use crate::signal::tare::TareRefusal;
+use crate::status::{code_of, named_by};
 
 const HEADER: usize = 4;
 
@@ -69,7 +71,7 @@ impl CommandKind {
 
     /// Its code.
     pub fn code(self) -> u8 {
-        crate::wire::code_of(&Self::CODES, self)
+        code_of(&Self::CODES, self)
     }
 
     /// The kind that has a code.
@@ -199,7 +201,7 @@ pub fn read_body(body: &[u8]) -> Result<Request, DecodeError> {
         CommandKind::Forget => Command::Forget,
         CommandKind::Save => {
             let gain = i32::from_le_bytes(fields.take()?);
-            let largest = crate::calibration::LARGEST_GAIN.unsigned_abs();
+            let largest = LARGEST_GAIN.unsigned_abs();
             match gain {
                 i32::MIN => Command::Save { gain: None },
                 gain if gain.unsigned_abs() <= largest => Command::Save { gain: Some(gain) },

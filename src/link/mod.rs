@@ -1,4 +1,5 @@
-//! The serial line, both ways.
+//! The serial line, both ways: frames on the [`wire`], what the board sends ([`telemetry`], from an [`outbox`]) and what the
+//! host may ask ([`command`]). `PROTOCOL.md` beside this file is the page to write a client from.
 
 pub mod command;
 pub mod outbox;

@@ -1,8 +1,8 @@
 //! Frames waiting for the line. They are numbered and built where they wait, and handed over without being copied; when
 //! there is no room the oldest goes, and is counted.
 
-use crate::telemetry::{self, Message};
-use crate::wire::Encoded;
+use crate::link::telemetry::{self, Message};
+use crate::link::wire::Encoded;
 
 /// Room for `FRAMES` waiting frames, at least one.
 #[derive(Debug)]
@@ -71,8 +71,10 @@ impl<'a, const FRAMES: usize> Outbox<'a, FRAMES> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Fault, Microseconds, Report};
-    use crate::telemetry::{Frame, decode};
+    use crate::link::telemetry::{Frame, decode};
+    use crate::signal::report::Report;
+    use crate::status::Fault;
+    use crate::units::Microseconds;
     use proptest::prelude::*;
     use std::collections::VecDeque;
 

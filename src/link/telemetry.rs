@@ -3,12 +3,11 @@
 //!
 //! A frame of another version, an unknown kind, code or length is refused as a whole: none of it is a number.
 
-use crate::command::{CommandKind, Outcome};
-use crate::report::{Fault, Measurement, Microseconds, Report, Sigma, Warnings};
-use crate::touch::Touch;
-pub use crate::wire::{DecodeError, Encoded, MAXIMUM_FRAME, PROTOCOL_VERSION};
-use crate::wire::{Deframer, Reader, code_of, named_by, unstuff};
-use core::fmt;
+use crate::link::command::{CommandKind, Outcome};
+use crate::link::wire::{DecodeError, Deframer, Encoded, PROTOCOL_VERSION, Reader, unstuff};
+use crate::signal::report::{Measurement, Report, Sigma};
+use crate::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings, code_of, named_by};
+use crate::units::Microseconds;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 const HEADER: usize = 14;
@@ -16,111 +15,6 @@ const READING: usize = HEADER + 28;
 const FAULT: usize = HEADER + 1;
 const HELLO: usize = HEADER + 47;
 const ANSWER: usize = HEADER + 6;
-
-/// Why the chip was reset last.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub enum ResetCause {
-    /// The chip does not say.
-    #[default]
-    Unknown,
-    /// Power was switched on.
-    PowerOn,
-    /// The reset pin was pulled.
-    Pin,
-    /// The firmware asked for it.
-    Software,
-    /// A watchdog was not fed.
-    Watchdog,
-    /// The supply sagged.
-    BrownOut,
-    /// A forbidden entry into a low-power mode.
-    LowPower,
-}
-
-impl ResetCause {
-    /// Every cause with its code in telemetry.
-    pub const CODES: [(Self, u8); 7] = [
-        (Self::Unknown, 0),
-        (Self::PowerOn, 1),
-        (Self::Pin, 2),
-        (Self::Software, 3),
-        (Self::Watchdog, 4),
-        (Self::BrownOut, 5),
-        (Self::LowPower, 6),
-    ];
-}
-
-impl fmt::Display for ResetCause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Unknown => "unknown",
-            Self::PowerOn => "power-on",
-            Self::Pin => "pin",
-            Self::Software => "software",
-            Self::Watchdog => "watchdog",
-            Self::BrownOut => "brown-out",
-            Self::LowPower => "low power",
-        })
-    }
-}
-
-/// What became of the stored calibration.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub enum Stored {
-    /// None was ever stored.
-    #[default]
-    None,
-    /// It serves.
-    Serves,
-    /// It is another design's.
-    OtherDesign,
-    /// There is something, and none of it is whole.
-    Damaged,
-    /// A place that cannot be read may hold a later one than the record that serves, if any does.
-    Unreadable,
-}
-
-impl Stored {
-    /// Every state with its code in telemetry.
-    pub const CODES: [(Self, u8); 5] = [
-        (Self::None, 0),
-        (Self::Serves, 1),
-        (Self::OtherDesign, 2),
-        (Self::Damaged, 3),
-        (Self::Unreadable, 4),
-    ];
-}
-
-/// What ended the run before this one.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub enum LastFault {
-    /// Nothing that left a trace.
-    #[default]
-    None,
-    /// A task did not report in time: its number.
-    Late,
-    /// The code panicked: the line.
-    Panic,
-    /// The core met what it cannot execute: the address.
-    HardFault,
-    /// The watchdog was not fed, and no task was seen to be late: what feeds it hung, or the start did, as the code of a
-    /// [`Stage`](crate::supervisor::Stage) tells.
-    Hang,
-    /// The chip raised its non-maskable interrupt: the address in flash that its error correction gave up, or 0.
-    NonMaskable,
-}
-
-impl LastFault {
-    /// Every kind with its code in telemetry.
-    pub const CODES: [(Self, u8); 6] = [
-        (Self::None, 0),
-        (Self::Late, 1),
-        (Self::Panic, 2),
-        (Self::HardFault, 3),
-        (Self::Hang, 4),
-        (Self::NonMaskable, 5),
-    ];
-}
 
 /// Who is speaking, once a second and when asked.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]

@@ -1,7 +1,7 @@
 //! Bytes on the line, both ways: a body and its CRC, stuffed with COBS so that no byte of them is zero, and one zero
 //! byte at the end. A reader that joins in the middle, or meets noise, is in step again after the next zero.
 //!
-//! What bodies say is the matter of [`telemetry`](crate::telemetry) and [`command`](crate::command); `PROTOCOL.md`
+//! What bodies say is the matter of [`telemetry`](super::telemetry) and [`command`](super::command); `PROTOCOL.md`
 //! beside this file is the page to write a client from.
 
 use core::fmt;
@@ -216,22 +216,6 @@ impl Deframer {
         self.bytes.clear();
         said
     }
-}
-
-/// The code of one of a list.
-pub(crate) fn code_of<T: Copy + PartialEq>(codes: &[(T, u8)], wanted: T) -> u8 {
-    codes
-        .iter()
-        .find(|(one, _)| *one == wanted)
-        .map_or(0, |(_, code)| *code)
-}
-
-/// The one of a list that has this code.
-pub(crate) fn named_by<T: Copy>(codes: &[(T, u8)], wanted: u8) -> Option<T> {
-    codes
-        .iter()
-        .find(|(_, code)| *code == wanted)
-        .map(|(one, _)| *one)
 }
 
 #[cfg(test)]

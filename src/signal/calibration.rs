@@ -1,8 +1,8 @@
 //! What is known of this one fingertip beside its design: values that the calibration record stores.
 
-use crate::pressure::{Pressure, Scale, saturate};
-use crate::temperature;
-use crate::transducer::{Centidegrees, Millipascals};
+use crate::signal::scale::Scale;
+use crate::signal::temperature;
+use crate::units::{Centidegrees, Millipascals, Pressure, saturate};
 use model_tables::constants::Quantity;
 use model_tables::units::PressureRise;
 

@@ -1,7 +1,7 @@
 //! Pressure rise -> force and indentation, through the tables of the design.
 
-use crate::design::Design;
-use crate::report::Warnings;
+use crate::signal::design::Design;
+use crate::status::Warnings;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// What the tables say of a rise.
@@ -33,7 +33,7 @@ pub fn contact<D: Design>(rise: PressureRise, warnings: Warnings) -> Contact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_design::{FORCE_END, INDENTATION_END, Linear, RISE_END};
+    use crate::signal::test_design::{FORCE_END, INDENTATION_END, Linear, RISE_END};
     use proptest::prelude::*;
 
     fn at(rise: i32) -> Contact {

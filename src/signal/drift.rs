@@ -8,8 +8,9 @@
 //! While it may not follow, what it misses grows with time: that is part of every reading's 1-sigma, and once it
 //! could pass for a touch the reading says "zero aged".
 
-use crate::report::Microseconds;
-use crate::touch::{Thresholds, Touch};
+use crate::signal::touch::Thresholds;
+use crate::status::Touch;
+use crate::units::Microseconds;
 use model_tables::constants::{DesignConstants, Quantity};
 use model_tables::units::PressureRise;
 
@@ -166,8 +167,8 @@ impl Drift {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::Design;
-    use crate::test_design::Linear;
+    use crate::signal::design::Design;
+    use crate::signal::test_design::Linear;
     use proptest::prelude::*;
 
     /// 1/256 Pa a count; follows between -80 and 30 Pa at 0.5 Pa/s, to 2500 Pa.

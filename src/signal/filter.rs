@@ -9,8 +9,8 @@
 //! is replaced by what its neighbours say, and counted. Where a leap may be a press or not, or is faster than any
 //! press, there is [`Fault::Jump`] and no number.
 
-use crate::pressure::Pressure;
-use crate::report::{Fault, Warnings};
+use crate::status::{Fault, Warnings};
+use crate::units::Pressure;
 use model_tables::constants::DesignConstants;
 use model_tables::units::PressureRise;
 

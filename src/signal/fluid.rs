@@ -9,9 +9,8 @@
 //!   Pressure alone cannot tell that from a lighter touch, so it is judged only when someone says how deep the
 //!   fingertip is pressed (a self-test against a stop).
 
-use crate::pressure::Pressure;
-use crate::report::{Microseconds, Warnings};
-use crate::touch::Touch;
+use crate::status::{Touch, Warnings};
+use crate::units::{Microseconds, Pressure};
 use model_tables::constants::{DesignConstants, Quantity};
 use model_tables::units::{Nanometres, PressureRise};
 
@@ -108,8 +107,8 @@ impl Fluid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::Design;
-    use crate::test_design::Linear;
+    use crate::signal::design::Design;
+    use crate::signal::test_design::Linear;
 
     fn fluid() -> Fluid {
         Fluid::new(Fall::of(&Linear::CONSTANTS, 8, 2_500 << 8))

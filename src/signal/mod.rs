@@ -1,4 +1,6 @@
-//! From a sample to a report: the stages, in the order of the data.
+//! From a sample to a report, in the order of the data: [`stuck`] -> [`scale`] -> [`temperature`] -> [`tare`] -> [`filter`] ->
+//! [`touch`] -> [`drift`] -> [`fluid`] -> [`contact`] -> [`uncertainty`] -> [`report`]. The [`pipeline`] calls them. Integers
+//! only; time and samples are arguments.
 
 pub mod calibration;
 pub mod contact;
@@ -7,6 +9,7 @@ pub mod drift;
 pub mod filter;
 pub mod fluid;
 pub mod pipeline;
+pub mod report;
 pub mod scale;
 pub mod stuck;
 pub mod tare;
@@ -15,3 +18,4 @@ pub mod temperature;
 pub(crate) mod test_design;
 pub mod touch;
 pub mod uncertainty;
+pub mod zero;

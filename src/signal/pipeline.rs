@@ -1,20 +1,24 @@
 //! The stages, called in order.
 
-use crate::calibration::{Calibration, Gain};
-use crate::contact::contact;
-use crate::design::Design;
-use crate::drift::{Drift, Pace};
-use crate::filter::{Filter, GROUP_DELAY, Leaps};
-use crate::fluid::{Fall, Fluid};
-use crate::pressure::{Pressure, Scale};
-use crate::report::{Fault, Measurement, Microseconds, Report, Warnings};
-use crate::stuck::StuckDetector;
-use crate::tare::gates::Gates;
-use crate::tare::{StartUp, Tare, TareRefusal, Zero};
-use crate::temperature::Temperature;
-use crate::touch::{Thresholds, Touch, TouchDetector};
-use crate::transducer::{self, Centidegrees, Millipascals, Sample};
-use crate::uncertainty::{Uncertainty, through_tables};
+use crate::signal::calibration::{Calibration, Gain};
+use crate::signal::contact::contact;
+use crate::signal::design::Design;
+use crate::signal::drift::{Drift, Pace};
+use crate::signal::filter::{Filter, GROUP_DELAY, Leaps};
+use crate::signal::fluid::{Fall, Fluid};
+use crate::signal::report::{Measurement, Report};
+use crate::signal::scale::Scale;
+use crate::signal::stuck::StuckDetector;
+use crate::signal::tare::gates::Gates;
+use crate::signal::tare::{Tare, TareRefusal};
+use crate::signal::temperature::Temperature;
+use crate::signal::touch::{Thresholds, TouchDetector};
+use crate::signal::uncertainty::{Uncertainty, through_tables};
+use crate::signal::zero::{StartUp, Zero};
+use crate::status::{Fault, Touch, Warnings};
+use crate::transducer;
+use crate::transducer::driver::Sample;
+use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
 use core::marker::PhantomData;
 use model_tables::units::Nanometres;
 

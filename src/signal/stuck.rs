@@ -2,7 +2,8 @@
 //!
 //! Only for words so fine that noise must move them (24 bits); an averaged converter of 12 bits may well repeat.
 
-use crate::report::{Fault, Microseconds};
+use crate::status::Fault;
+use crate::units::Microseconds;
 
 /// Unchanged for this long it is stuck, microseconds: 35 samples of the slowest part. With noise of two counts, which
 /// every 24-bit part exceeds, a word is the one before by chance once in seven times, and 35 times in a row less than

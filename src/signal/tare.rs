@@ -29,11 +29,10 @@
 
 pub mod gates;
 
-use self::gates::Gates;
-use crate::pressure::{Pressure, saturate};
-use crate::report::{Fault, Microseconds, Warnings};
-use crate::telemetry::ResetCause;
-use model_tables::constants::Quantity;
+use crate::signal::tare::gates::Gates;
+use crate::signal::zero::{StartUp, Zero};
+use crate::status::{Fault, Warnings};
+use crate::units::{Microseconds, Pressure, saturate};
 use model_tables::units::PressureRise;
 
 /// How long a window is, microseconds: longer than any hum, shorter than patience.
@@ -41,40 +40,6 @@ pub const WINDOW: u64 = 256_000;
 
 /// How long a good window is waited for, microseconds.
 pub const PATIENCE: u64 = 2_000_000;
-
-/// Where the zero comes from at start-up.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum StartUp {
-    /// Measured, if the gates let it.
-    Measured,
-    /// The reference, if there is one.
-    Stored,
-    /// The zero that served before the reset, and whether it was verified.
-    Kept(Zero),
-}
-
-impl StartUp {
-    /// Someone switched the power on or pressed the button, and can be asked to leave the fingertip alone;
-    /// a watchdog asks nobody. `kept` is the zero from before the reset, if it survived. An absolute transducer could not
-    /// verify another one, so a verified one serves on whatever the cause.
-    pub const fn after(cause: ResetCause, kept: Option<Zero>, quantity: Quantity) -> Self {
-        match (cause, kept) {
-            (_, Some(zero)) if zero.verified && matches!(quantity, Quantity::Absolute) => Self::Kept(zero),
-            (ResetCause::PowerOn | ResetCause::Pin | ResetCause::BrownOut, _) => Self::Measured,
-            (_, Some(zero)) => Self::Kept(zero),
-            (_, None) => Self::Stored,
-        }
-    }
-}
-
-/// A zero.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct Zero {
-    /// The pressure that reads as no rise.
-    pub pressure: Pressure,
-    /// Whether it was measured on a fingertip that nothing pressed.
-    pub verified: bool,
-}
 
 /// Why a zero was not taken, or not undone.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

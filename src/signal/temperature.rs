@@ -4,9 +4,8 @@
 //! In contact the correction is held: then nothing but pressure moves the force. What that misses is part of the
 //! 1-sigma, and said when it could pass for a touch.
 
-use crate::pressure::saturate;
-use crate::touch::Touch;
-use crate::transducer::{Centidegrees, Millipascals};
+use crate::status::Touch;
+use crate::units::{Centidegrees, Millipascals, saturate};
 
 /// Largest coefficient that is believed, millipascals a kelvin: 0.1 % of 100 kPa.
 pub const LARGEST_COEFFICIENT: i32 = 100_000;

@@ -1,6 +1,6 @@
 //! Fingertips with straight lines for tables, so that tests can expect by hand.
 
-use crate::design::Design;
+use crate::signal::design::Design;
 use model_tables::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
 use model_tables::table::Reading;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};

@@ -1,6 +1,7 @@
 //! Pressure rise -> is the fingertip touched? Two thresholds, so that noise between them changes nothing.
 
-use crate::pressure::Pressure;
+use crate::status::Touch;
+use crate::units::Pressure;
 use model_tables::constants::DesignConstants;
 use model_tables::units::PressureRise;
 
@@ -10,23 +11,6 @@ const TOUCH_GRAINS: i64 = 6;
 
 /// And ends below this one.
 const RELEASE_GRAINS: i64 = 3;
-
-/// Whether the fingertip is touched.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub enum Touch {
-    /// It cannot be told: there is no reading, or the zero is not verified and the rise is below the threshold.
-    #[default]
-    Unknown,
-    /// Nothing presses.
-    Untouched,
-    /// Something presses.
-    Touched,
-}
-
-impl Touch {
-    /// Every state with its code in telemetry.
-    pub const CODES: [(Self, u8); 3] = [(Self::Unknown, 0), (Self::Untouched, 1), (Self::Touched, 2)];
-}
 
 /// Where a touch begins and ends, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -91,8 +75,8 @@ impl TouchDetector {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::Design;
-    use crate::test_design::Linear;
+    use crate::signal::design::Design;
+    use crate::signal::test_design::Linear;
     use proptest::prelude::*;
 
     const THRESHOLDS: Thresholds = Thresholds {

@@ -1,10 +1,10 @@
 //! One standard deviation of the pressure rise, and through the tables of force and indentation.
 
-use crate::contact::Contact;
-use crate::counts::BLOCK_LENGTH;
-use crate::design::Design;
-use crate::pressure::Pressure;
-use crate::report::Sigma;
+use crate::signal::contact::Contact;
+use crate::signal::design::Design;
+use crate::signal::report::Sigma;
+use crate::transducer::counts::BLOCK_LENGTH;
+use crate::units::Pressure;
 use model_tables::constants::{DesignConstants, TransducerKind};
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
@@ -95,9 +95,9 @@ pub fn through_tables<D: Design>(rise: PressureRise, at: &Contact, sigma: Pressu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::contact;
-    use crate::report::Warnings;
-    use crate::test_design::{Linear, RISE_END, With};
+    use crate::signal::contact::contact;
+    use crate::signal::test_design::{Linear, RISE_END, With};
+    use crate::status::Warnings;
     use model_tables::table::Reading;
     use proptest::prelude::*;
 

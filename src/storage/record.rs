@@ -18,9 +18,9 @@
 //!
 //! Numbers are little-endian. The check comes last: what was cut off while it was written has none.
 
-use crate::calibration::Calibration;
-use crate::transducer::{Centidegrees, Millipascals};
-use crate::wire::Reader;
+use crate::link::wire::Reader;
+use crate::signal::calibration::Calibration;
+use crate::units::{Centidegrees, Millipascals};
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 /// Bytes of a record: a multiple of every write unit there is (1 to 16 bytes).

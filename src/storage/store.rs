@@ -13,9 +13,9 @@
 //! Own code and no key-value crate: one value and no keys, so that there is nothing to collect; what is proven is the
 //! whole of it, by a sweep over every cut (`host-tests/tests/calibration_store.rs`).
 
-use crate::calibration::Calibration;
-use crate::record::{self, Found, LENGTH, Record};
-use crate::telemetry::Stored;
+use crate::signal::calibration::Calibration;
+use crate::status::Stored;
+use crate::storage::record::{self, Found, LENGTH, Record};
 use embedded_storage_async::nor_flash::NorFlash;
 
 /// Erasures of a slot: what flash is specified for at the least (DS9405 table 49: 10 000 cycles).

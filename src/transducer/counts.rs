@@ -6,7 +6,7 @@
 //!
 //! A block is read where the converter's DMA wrote it, two codes a word: copying it would cost more than adding it up.
 
-use crate::report::Fault;
+use crate::status::Fault;
 use core::sync::atomic::{AtomicU32, Ordering};
 use model_tables::constants::TransducerKind;
 

@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 
 use clap::{Parser, ValueEnum};
-use fingertip::command::Command;
+use fingertip::link::command::Command;
 use monitor::link::{Address, Event, Link};
 use monitor::readings::{Monitor, Reading};
 use monitor::rows::{Form, Writer};

@@ -1,8 +1,8 @@
 use super::*;
-use crate::supervisor::Breadcrumb;
-use crate::test_design::Linear;
-use crate::touch::Touch;
-use crate::transducer::Millipascals;
+use crate::device::supervisor::Breadcrumb;
+use crate::signal::test_design::Linear;
+use crate::status::Touch;
+use crate::units::Millipascals;
 use proptest::prelude::*;
 
 const BEGINNING: Beginning = Beginning {

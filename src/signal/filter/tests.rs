@@ -22,8 +22,8 @@ const JUMP: Result<i32, Fault> = Err(Fault::Jump);
 
 #[test]
 fn leaps_of_a_design_are_its_noise_and_its_fastest_press() {
-    use crate::design::Design;
-    use crate::test_design::Linear;
+    use crate::signal::design::Design;
+    use crate::signal::test_design::Linear;
     // 8 grains of 10 Pa; 40 kPa in 4 ms; at 1/256 Pa.
     let leaps = Leaps::of(&Linear::CONSTANTS, 8, 1000);
     assert_eq!(leaps.noise, 80 << 8);

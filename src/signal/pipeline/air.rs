@@ -1,8 +1,8 @@
 //! Every transducer in any air: samples as the part gives them, so the air is in those of an absolute one.
 
 use super::*;
-use crate::report::{Status, Warnings};
-use crate::test_design::{TRANSDUCERS, With};
+use crate::signal::test_design::{TRANSDUCERS, With};
+use crate::status::{Status, Warnings};
 use model_tables::constants::{AIR, Quantity};
 use proptest::prelude::*;
 

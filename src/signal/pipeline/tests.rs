@@ -1,7 +1,7 @@
 use super::*;
-use crate::report::{Status, Warnings};
-use crate::test_design::{Linear, RISE_END};
-use crate::transducer::Millipascals;
+use crate::signal::test_design::{Linear, RISE_END};
+use crate::status::{Status, Warnings};
+use crate::units::Millipascals;
 use model_tables::units::PressureRise;
 use proptest::prelude::*;
 

@@ -1,8 +1,8 @@
 //! What a zero is compared with: where it is expected, and how far off it may be.
 
-use super::Zero;
-use crate::pressure::Pressure;
-use crate::touch::Thresholds;
+use crate::signal::touch::Thresholds;
+use crate::signal::zero::Zero;
+use crate::units::Pressure;
 use model_tables::constants::{AIR, DesignConstants, Quantity};
 use model_tables::units::PressureRise;
 

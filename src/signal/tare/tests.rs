@@ -1,5 +1,7 @@
 use super::*;
-use crate::design::Design;
+use crate::signal::design::Design;
+use crate::status::ResetCause;
+use model_tables::constants::Quantity;
 use proptest::prelude::*;
 
 const GATES: Gates = Gates {
@@ -291,7 +293,7 @@ fn a_stored_zero_of_an_absolute_part_is_of_other_air() {
 
 #[test]
 fn the_gates_of_an_absolute_part_hold_the_air() {
-    use crate::test_design::With;
+    use crate::signal::test_design::With;
     // Rests at 1 kPa; 2.5 % of 90 kPa; 1/256 Pa a count.
     let gates = Gates::of(&With::<4>::CONSTANTS, 8);
     assert_eq!(gates.expected, [Pressure(61_000 << 8), Pressure(109_000 << 8)]);

@@ -6,7 +6,7 @@ use emulator::image::Image;
 use emulator::record::{Record, Recorder, Row};
 use emulator::scenario::{Scenario, WireFault};
 use emulator::transducer::Wiring;
-use fingertip::report::{Fault, Status};
+use fingertip::status::{Fault, Status};
 use fingertip::transducer::{abp2, dps310, ms5837};
 use std::path::Path;
 use std::sync::OnceLock;

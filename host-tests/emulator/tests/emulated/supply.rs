@@ -8,7 +8,7 @@ use emulator::image::Image;
 use emulator::record::{Recorder, Row};
 use emulator::scenario::Scenario;
 use emulator::transducer::Wiring;
-use fingertip::report::{Fault, Status};
+use fingertip::status::{Fault, Status};
 use std::path::Path;
 
 /// A report is made of samples this long before and after its instant, seconds.

@@ -4,7 +4,7 @@ use crate::say::say;
 use emulator::accuracy::{Accuracy, is_wrong};
 use emulator::plant::Plant;
 use emulator::record::{Record, Row};
-use fingertip::report::Status;
+use fingertip::status::Status;
 
 /// Prints accuracy phase by phase and over all, then what else came over the wire.
 pub(crate) fn print(record: &Record, plant: &Plant, accuracy: &Accuracy) {

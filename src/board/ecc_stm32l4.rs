@@ -6,7 +6,7 @@
 //! interrupt is no fault of the read: it comes some cycles later, and the code goes on behind the read. So the reader
 //! asks afterwards ([`failed`]), when the handler ([`take_failure`]) has run or is due.
 
-use super::nucleo_l432kc::{CALIBRATION, SLOT};
+use super::chosen::{CALIBRATION, SLOT};
 use core::sync::atomic::{AtomicBool, Ordering};
 use embassy_stm32::flash::FLASH_BASE;
 use embassy_stm32::pac::FLASH;
@@ -16,13 +16,13 @@ static MET: AtomicBool = AtomicBool::new(false);
 
 /// To be called before a read of the calibration. Forgets errors that were corrected: while one is noted, the address
 /// of the next is not.
-pub(crate) fn begin() {
+pub fn begin() {
     FLASH.eccr().write(|w| w.set_eccc(true));
     MET.store(false, Ordering::Relaxed);
 }
 
 /// Whether what was read since [`begin`] is arbitrary.
-pub(crate) fn failed() -> bool {
+pub fn failed() -> bool {
     // The reads have ended, and the interrupt is taken if it is pending.
     cortex_m::asm::dsb();
     cortex_m::asm::isb();
@@ -35,7 +35,7 @@ pub(crate) fn failed() -> bool {
 ///
 /// # Errors
 /// Another cause: the address in flash that was given up, a word of the image; or 0, none of the flash.
-pub(crate) fn take_failure() -> Result<(), u32> {
+pub fn take_failure() -> Result<(), u32> {
     let register = FLASH.eccr().read();
     if !register.eccd() {
         return Err(0);
