@@ -14,8 +14,7 @@
 //! | [`device`] | commands, resets, tasks that must report | all of these |
 //! | `board` | pins, clocks and interrupts, on the chip only | `units`, `status`, `transducer`, `image` |
 //!
-//! Integers only, but for the full model's [`solver_states`], which the firmware does not solve. No module knows a clock or a
-//! bus: time and samples are arguments.
+//! Integers only. No module but `board` knows a clock or a bus: time and samples are arguments.
 #![cfg_attr(not(test), no_std)]
 #![cfg_attr(not(target_os = "none"), forbid(unsafe_code))]
 // On a chip only denied: the macros of the board's crates bind interrupts.
@@ -39,7 +38,3 @@ pub mod device;
 
 #[cfg(target_os = "none")]
 pub mod board;
-
-pub mod lookup_sweep;
-pub mod lookup_ways;
-pub mod solver_states;

@@ -34,7 +34,7 @@ impl Pressure {
 }
 
 /// The `i32` nearest to a number.
-pub(crate) const fn saturate(number: i64) -> i32 {
+pub const fn saturate(number: i64) -> i32 {
     if number > i32::MAX as i64 {
         i32::MAX
     } else if number < i32::MIN as i64 {

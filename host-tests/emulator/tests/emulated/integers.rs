@@ -8,7 +8,7 @@ use emulator::scenario::Scenario;
 use fingertip::image::ImageDesign;
 use fingertip::link::telemetry::{Decoder, Message};
 use fingertip::signal::report::Measurement;
-use fingertip::lookup_sweep;
+use probes::lookup_sweep;
 use std::ops::ControlFlow;
 
 /// More than the sweep takes, virtual seconds.

@@ -7,7 +7,7 @@ use emulator::image::Image;
 use emulator::plant::Plant;
 use emulator::scenario::Scenario;
 use host_tests::workspace;
-use fingertip::lookup_ways::{INPUTS, SIZES, WAYS};
+use probes::lookup_ways::{INPUTS, SIZES, WAYS};
 use std::env;
 use std::fmt::Write as _;
 use std::fs;

@@ -7,7 +7,7 @@ use emulator::plant::Plant;
 use emulator::scenario::Scenario;
 use host_tests::assert_readme_figure;
 use model_tables::design_file::DesignFile;
-use fingertip::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, State};
+use probes::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, State};
 use std::ops::ControlFlow;
 use std::path::Path;
 
