@@ -3,10 +3,6 @@
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
-#[cfg(test)]
-use fingertip::image;
-use fingertip::{signal, status, units};
-
 pub mod lookup_sweep;
 pub mod lookup_ways;
 pub mod solver_states;

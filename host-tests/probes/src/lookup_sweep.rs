@@ -1,11 +1,11 @@
 //! The inputs with which the chip's lookup is compared with the host's: 12 292 of them, everywhere in and around the
 //! tables of a design.
 
-use crate::signal::contact::{Contact, contact};
-use crate::signal::design::Design;
-use crate::signal::report::Measurement;
-use crate::status::Warnings;
-use crate::units::{Pressure, saturate};
+use fingertip::signal::contact::{Contact, contact};
+use fingertip::signal::design::Design;
+use fingertip::signal::report::Measurement;
+use fingertip::status::Warnings;
+use fingertip::units::{Pressure, saturate};
 use model_tables::units::PressureRise;
 
 /// Every count from 0: the segments are narrowest there.
@@ -53,7 +53,7 @@ pub fn answer<D: Design>(rise: PressureRise) -> Measurement {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::ImageDesign;
+    use fingertip::image::ImageDesign;
 
     #[test]
     fn the_sweep_covers_the_tables_and_both_sides() {

@@ -6,19 +6,15 @@
 #![deny(unsafe_code)]
 
 #[cfg(target_os = "none")]
-#[allow(dead_code, unused_imports)] // the probe takes no samples
-mod board;
-
-#[cfg(target_os = "none")]
 mod probe {
-    use crate::board::Board;
     use core::hint::black_box;
     use defmt_rtt as _;
     use embassy_executor::Spawner;
     use embassy_time::Timer;
-    use fingertip::lookup_ways::{INPUTS, SIZES};
+    use fingertip::board::Board;
     use model_tables::lookups;
     use panic_probe as _;
+    use probes::lookup_ways::{INPUTS, SIZES};
 
     /// Cycles, some milliseconds: the emulator counts calls from its first stop on, one millisecond after power-on.
     const HEAD_START: u32 = 1_000_000;
@@ -37,7 +33,7 @@ mod probe {
         searched();
         others();
         tables();
-        let Board { mut watchdog, .. } = Board::take();
+        let Board { mut watchdog, .. } = Board::take(false);
         loop {
             watchdog.pet();
             Timer::after_millis(10).await;
@@ -159,7 +155,7 @@ mod probe {
             $(
                 #[allow(clippy::unreadable_literal, dead_code, unreachable_pub)] // written by a program
                 mod $module {
-                    include!(concat!("../model-tables/golden/", $path, "/tables.rs"));
+                    include!(concat!("../../../../model-tables/golden/", $path, "/tables.rs"));
                     use core::hint::black_box;
                     use model_tables::table::Reading;
                     use model_tables::units::PressureRise;

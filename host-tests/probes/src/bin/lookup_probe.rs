@@ -1,37 +1,33 @@
-//! A second image for the same board: answers every input of [`fingertip::lookup_sweep`] with a reading frame, in order,
+//! A second image for the same board: answers every input of [`probes::lookup_sweep`] with a reading frame, in order,
 //! then says hello for ever. What arrives is compared bit for bit with the host's answers.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![deny(unsafe_code)]
 
 #[cfg(target_os = "none")]
-#[allow(dead_code, unused_imports)] // the probe takes no samples
-mod board;
-
-#[cfg(target_os = "none")]
 mod probe {
-    use crate::board::Board;
     use defmt_rtt as _;
     use embassy_executor::Spawner;
     use embassy_time::Timer;
+    use fingertip::board::{self, Board};
     use fingertip::image::ImageDesign;
     use fingertip::link::telemetry::{Frame, Hello, Message, encode};
-    use fingertip::lookup_sweep;
     use fingertip::signal::design::Design;
     use fingertip::signal::report::Report;
     use fingertip::transducer::counts::PERIOD;
     use panic_probe as _;
+    use probes::lookup_sweep;
 
     #[embassy_executor::main]
     async fn main(spawner: Spawner) {
         // One task is all there is.
         let _ = spawner;
+        let reset_cause = board::begin();
         let Board {
             clock,
             mut line,
             mut watchdog,
-            reset_cause,
             ..
-        } = Board::take();
+        } = Board::take(false);
         let mut sequence = 0_u16;
         for rise in lookup_sweep::inputs::<ImageDesign>() {
             let report = Report {

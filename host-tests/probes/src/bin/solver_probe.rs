@@ -1,20 +1,16 @@
-//! A third image for the same board: solves [`fingertip::solver_states`] with the full model, in `f64` without an
+//! A third image for the same board: solves [`probes::solver_states`] with the full model, in `f64` without an
 //! allocation, and sends what came out. The host compares the bits and counts the instructions.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![deny(unsafe_code)]
 
 #[cfg(target_os = "none")]
-#[allow(dead_code, unused_imports)] // the probe takes no samples
-mod board;
-
-#[cfg(target_os = "none")]
 mod probe {
-    use crate::board::Board;
     use defmt_rtt as _;
     use embassy_executor::Spawner;
     use embassy_time::Timer;
-    use fingertip::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, State};
+    use fingertip::board::Board;
     use panic_probe as _;
+    use probes::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, State};
     use static_cell::ConstStaticCell;
 
     /// All that a press needs, where it stays: the stack holds no second one.
@@ -34,7 +30,7 @@ mod probe {
             mut line,
             mut watchdog,
             ..
-        } = Board::take();
+        } = Board::take(false);
         for state in states {
             // The line has no receiver that could refuse.
             let _ = line.write(&state.to_bytes()).await;
