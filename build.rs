@@ -10,21 +10,30 @@ use std::{env, fs};
 const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip.toml";
 
 fn main() {
-    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
-    println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
     println!(
         "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
     );
+    println!("cargo::rerun-if-changed=build.rs");
+    // Without a design the library is a sample's way alone, and nothing is solved.
+    if env::var_os("CARGO_FEATURE_DESIGN").is_some() {
+        fold_in_the_design();
+    }
+    if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
+        let root = env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it");
+        link_for_the_chip(Path::new(&root));
+    }
+}
+
+/// Writes the tables, or says why there are none.
+fn fold_in_the_design() {
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
+    println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
     let design = env::var("FINGERTIP_DESIGN").unwrap_or_else(|_| DEFAULT_DESIGN.into());
     // The build script runs in the folder of its package, which is the workspace root.
     println!("cargo::rerun-if-changed={design}");
     match tables(Path::new(&design)) {
         Ok(source) => fs::write(out.join("design.rs"), source).expect("cargo's folder can be written"),
         Err(reason) => println!("cargo::error={}", reason.replace('\n', " ")),
-    }
-    if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
-        let root = env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it");
-        link_for_the_chip(Path::new(&root));
     }
 }
 

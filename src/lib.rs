@@ -8,7 +8,7 @@
 //! | [`status`] | why there is no reading, and what qualifies one | |
 //! | [`transducer`] | a part's words -> pressure | `units`, `status` |
 //! | [`signal`] | pressure -> force and indentation with their 1-sigma | and `transducer` |
-//! | [`image`] | the design that this build is for | and `signal` |
+//! | `image` | the design that this build is for (feature `design`) | and `signal` |
 //! | [`link`] | reports and commands as bytes | and `signal` |
 //! | [`storage`] | the calibration in flash | and `link` |
 //! | [`device`] | commands, resets, tasks that must report | all of these |
@@ -28,6 +28,7 @@ pub mod transducer;
 
 pub mod signal;
 
+#[cfg(feature = "design")]
 pub mod image;
 
 pub mod link;
