@@ -44,6 +44,7 @@ pub struct Clock {
 
 impl Clock {
     /// The time.
+    #[inline]
     pub fn now(self) -> Microseconds {
         Microseconds(Instant::now().as_micros().saturating_sub(self.start.as_micros()))
     }
