@@ -80,13 +80,6 @@ fn design_path(asked: Option<&OsStr>) -> Result<&str, String> {
     Ok(path)
 }
 
-/// Bytes of stack of the image that runs the model, for the six or seven copies of a solution (9.3 kB each) that it
-/// makes at its deepest. What is left of the RAM just holds a press.
-const SOLVER_STACK: u32 = 64 * 1024;
-
-/// The same of the image that compares lookups, for the largest tables that it searches.
-const KERNELS_STACK: u32 = 24 * 1024;
-
 /// The Rust source of the tables, or the reason why there are none.
 fn tables(design: &Path) -> Result<String, String> {
     let named = |reason: String| format!("{}: {reason}", design.display());
@@ -131,7 +124,5 @@ fn link_for_the_chip() -> Result<(), String> {
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");
     }
-    println!("cargo::rustc-link-arg-bin=kernel_probe=--defsym=_stack_length={KERNELS_STACK}");
-    println!("cargo::rustc-link-arg-bin=solver_probe=--defsym=_stack_length={SOLVER_STACK}");
     Ok(())
 }

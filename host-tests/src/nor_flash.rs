@@ -8,8 +8,8 @@ use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use fingertip::calibration::Calibration;
-use fingertip::store::{Identity, Store};
+use fingertip::signal::calibration::Calibration;
+use fingertip::storage::store::{Identity, Store};
 
 /// Steps that one erasure is divided into: power may fail between and within them.
 pub const ERASE_STEPS: u64 = 16;

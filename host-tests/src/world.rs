@@ -1,14 +1,16 @@
 //! A fingertip of the image's design in virtual time: true pressures in, what the firmware says out.
 
-use fingertip::calibration::Calibration;
-use fingertip::command::{Command, Request};
-use fingertip::design::Design;
+use fingertip::device::station::{Beginning, Station, ToStore};
+use fingertip::device::supervisor::Breadcrumb;
 use fingertip::image::ImageDesign;
-use fingertip::report::{Fault, Microseconds, Report};
-use fingertip::station::{Beginning, Station, ToStore};
-use fingertip::supervisor::Breadcrumb;
-use fingertip::telemetry::{Message, ResetCause, Stored};
-use fingertip::transducer::{Millipascals, Sample};
+use fingertip::link::command::{Command, Request};
+use fingertip::link::telemetry::Message;
+use fingertip::signal::calibration::Calibration;
+use fingertip::signal::design::Design;
+use fingertip::signal::report::Report;
+use fingertip::status::{Fault, ResetCause, Stored};
+use fingertip::transducer::driver::Sample;
+use fingertip::units::{Microseconds, Millipascals};
 use model_tables::constants::{DesignConstants, Quantity, TransducerKind};
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;

@@ -1,11 +1,11 @@
 //! The stored calibration survives a power cut at every step, every failing operation, and whatever lies in the flash.
 
 use embassy_futures::block_on;
-use fingertip::calibration::Calibration;
-use fingertip::record::LENGTH;
-use fingertip::store::{Identity, Store, StoreError};
-use fingertip::telemetry::Stored;
-use fingertip::transducer::Millipascals;
+use fingertip::signal::calibration::Calibration;
+use fingertip::status::Stored;
+use fingertip::storage::record::LENGTH;
+use fingertip::storage::store::{Identity, Store, StoreError};
+use fingertip::units::Millipascals;
 use host_tests::nor_flash::{Defect, SimulatedFlash};
 use host_tests::{assert_faults_says, workspace};
 

@@ -33,21 +33,21 @@ fn flush_caches() {
 }
 
 /// A flash from an offset on.
-pub(crate) struct Patient<F> {
+pub struct Patient<F> {
     flash: F,
     base: u32,
 }
 
 impl<F> Patient<F> {
     /// The flash from `base` on.
-    pub(crate) const fn new(flash: F, base: u32) -> Self {
+    pub const fn new(flash: F, base: u32) -> Self {
         Self { flash, base }
     }
 }
 
 /// It refused, was not ready in time, or gave up correcting what was read.
 #[derive(Debug)]
-pub(crate) struct MemoryFailure;
+pub struct MemoryFailure;
 
 impl NorFlashError for MemoryFailure {
     fn kind(&self) -> NorFlashErrorKind {

@@ -9,10 +9,10 @@
 //! One pressure and one temperature are commanded for each sample, so that the time of each is known, and the settings
 //! are read back with the words: a part that was reset by itself would go on with another scale.
 
-use super::bus::{self, Bus};
-use super::{Centidegrees, Millipascals, Sample, Transducer, recognise};
-use crate::pressure::saturate;
-use crate::report::Fault;
+use crate::status::Fault;
+use crate::transducer::bus::{self, Bus};
+use crate::transducer::driver::{Driver, Sample, recognise};
+use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
 
 /// From one sample to the next, microseconds.
@@ -155,7 +155,7 @@ impl<B: Bus, D: DelayNs> Dps310<B, D> {
     }
 }
 
-impl<B: Bus, D: DelayNs> Transducer for Dps310<B, D> {
+impl<B: Bus, D: DelayNs> Driver for Dps310<B, D> {
     async fn start(&mut self) -> Result<(), Fault> {
         self.calibration = None;
         self.recognised = false;

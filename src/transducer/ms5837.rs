@@ -7,10 +7,10 @@
 //! The part gives two raw words and, once, six calibration words guarded by a CRC; the pressure is computed here,
 //! with the second-order compensation below 20 degC.
 
-use super::bus::{self, Bus};
-use super::{Centidegrees, Millipascals, Sample, Transducer, recognise};
-use crate::pressure::saturate;
-use crate::report::Fault;
+use crate::status::Fault;
+use crate::transducer::bus::{self, Bus};
+use crate::transducer::driver::{Driver, Sample, recognise};
+use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
 
 /// From one sample to the next, microseconds.
@@ -90,7 +90,7 @@ impl<B: Bus, D: DelayNs> Ms5837<B, D> {
     }
 }
 
-impl<B: Bus, D: DelayNs> Transducer for Ms5837<B, D> {
+impl<B: Bus, D: DelayNs> Driver for Ms5837<B, D> {
     async fn start(&mut self) -> Result<(), Fault> {
         self.calibration = None;
         self.recognised = false;

@@ -2,7 +2,7 @@
 
 use crate::plant::Plant;
 use crate::record::Row;
-use fingertip::report::Status;
+use fingertip::status::Status;
 use model_tables::curve::Contact;
 
 /// Errors are taken in percent of reading from this share of full scale up.
@@ -146,8 +146,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 mod tests {
     use super::*;
     use crate::plant::tests::{closed_form, press, ramp};
-    use fingertip::report::Fault;
-    use fingertip::touch::Touch;
+    use fingertip::status::{Fault, Touch};
 
     /// A row whose force is off by `share`, with a pressure that is off by `pascals`.
     fn row(rise: f64, share: f64, pascals: f64) -> Row {

@@ -100,22 +100,31 @@ impl Image {
     /// # Errors
     /// [`ImageError`] when the target is missing or cargo does not build it.
     pub fn firmware(design: Option<&Path>) -> Result<Self, ImageError> {
-        Self::build("firmware", design)
+        Self::build_for("firmware", design, None)
     }
 
-    /// The binary called `binary` of the firmware package. cargo's own progress goes to standard error.
+    /// The binary called `binary` of the package of probes. cargo's own progress goes to standard error.
     ///
     /// # Errors
     /// [`ImageError`] when the target is missing or cargo does not build it.
     pub fn build(binary: &str, design: Option<&Path>) -> Result<Self, ImageError> {
-        Self::build_for(binary, design, None)
+        Self::build_in("probes", binary, design, None)
     }
 
-    /// The same for the board of a feature of the firmware package; without one, the default board.
+    /// The binary called `binary` of the firmware package, for the board of a feature; without one, the default board.
     ///
     /// # Errors
     /// [`ImageError`] when the target is missing or cargo does not build it.
     pub fn build_for(binary: &str, design: Option<&Path>, board: Option<&str>) -> Result<Self, ImageError> {
+        Self::build_in("fingertip", binary, design, board)
+    }
+
+    fn build_in(
+        package: &str,
+        binary: &str,
+        design: Option<&Path>,
+        board: Option<&str>,
+    ) -> Result<Self, ImageError> {
         /// From the build to the reading: images for different designs are the same file.
         static BUILDING: Mutex<()> = Mutex::new(());
         let _building = BUILDING.lock();
@@ -124,7 +133,7 @@ impl Image {
         cargo
             .current_dir(workspace())
             .args(["build", "--profile", "firmware", "--target", TARGET])
-            .args(["--package", "fingertip", "--bin", binary])
+            .args(["--package", package, "--bin", binary])
             .arg("--message-format=json-render-diagnostics")
             .stdout(Stdio::piped());
         if let Some(design) = design {

@@ -1,7 +1,7 @@
 //! What happens to the fingertip: the plate's travel over time, and faults of the transducer's wire.
 
 use crate::transducer::Wiring;
-use fingertip::command::Command;
+use fingertip::link::command::Command;
 use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -111,7 +111,7 @@ impl Transducer {
     /// From one sample to the next, seconds.
     pub fn period(&self) -> f64 {
         let microseconds = match self.part {
-            Part::Analogue => fingertip::counts::PERIOD,
+            Part::Analogue => fingertip::transducer::counts::PERIOD,
             Part::Dps310(_) | Part::Spl06(_) => transducer::dps310::PERIOD,
             Part::Abp2(..) => transducer::abp2::PERIOD,
             Part::Ms5837(_) | Part::Ms5837ThirtyBar(_) => transducer::ms5837::PERIOD,

@@ -4,7 +4,7 @@ use crate::readings::{LiveReading, Monitor};
 use crate::rows::{Form, Writer};
 use crate::view::{self, Surroundings};
 use clap::{Parser, ValueEnum};
-use fingertip::command::Command;
+use fingertip::link::command::Command;
 use ratatui::crossterm::event::{self, Event as Input, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::ffi::OsString;
 use std::fs::File;

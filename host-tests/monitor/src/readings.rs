@@ -1,9 +1,10 @@
 //! What came over the wire: the latest report, a history of the force, the greeting, the answers, and what was lost.
 
-use fingertip::command::{self, Command, CommandKind, Outcome, Request};
-use fingertip::report::{Microseconds, Report, Status};
-use fingertip::telemetry::{Answer, Decoder, Hello, Message};
-use fingertip::touch::Touch;
+use fingertip::link::command::{self, Command, CommandKind, Outcome, Request};
+use fingertip::link::telemetry::{Answer, Decoder, Hello, Message};
+use fingertip::signal::report::Report;
+use fingertip::status::{Status, Touch};
+use fingertip::units::Microseconds;
 use std::collections::VecDeque;
 use std::time::Duration;
 

@@ -1,7 +1,7 @@
 //! Reports as rows: a CSV file while the view runs, CSV or JSON in a pipe.
 
 use crate::readings::LiveReading;
-use fingertip::touch::Touch;
+use fingertip::status::Touch;
 use std::io::{self, Write};
 
 /// The columns.
@@ -100,7 +100,8 @@ fn line(to: &mut impl Write, cells: &[String]) -> io::Result<()> {
 mod tests {
     use super::*;
     use crate::readings::LiveValues;
-    use fingertip::report::{Fault, Microseconds, Status, Warnings};
+    use fingertip::status::{Fault, Status, Warnings};
+    use fingertip::units::Microseconds;
 
     fn reading(status: Status) -> LiveReading {
         LiveReading {

@@ -1,9 +1,10 @@
 //! The view on a terminal of memory: frames of the firmware's own encoder in, the screen out.
 
-use fingertip::command::{Command, CommandKind, Outcome};
-use fingertip::report::{Fault, Measurement, Microseconds, Report, Sigma, Warnings};
-use fingertip::telemetry::{Answer, Frame, Hello, Message, encode};
-use fingertip::touch::Touch;
+use fingertip::link::command::{Command, CommandKind, Outcome};
+use fingertip::link::telemetry::{Answer, Frame, Hello, Message, encode};
+use fingertip::signal::report::{Measurement, Report, Sigma};
+use fingertip::status::{Fault, Touch, Warnings};
+use fingertip::units::Microseconds;
 use monitor::readings::{Monitor, STALE};
 use monitor::view::{self, Surroundings};
 use ratatui::Terminal;
@@ -216,7 +217,7 @@ fn what_is_lost_or_broken_is_counted_and_answers_are_told() {
     assert_eq!((counts.reports, counts.missing, counts.broken), (3, 2, 1));
     let sent = monitor.command(Command::Tare);
     assert_eq!(
-        fingertip::command::decode(&sent[..sent.len() - 1])
+        fingertip::link::command::decode(&sent[..sent.len() - 1])
             .map(|request| (request.sequence, request.command)),
         Ok((1, Command::Tare))
     );

@@ -7,7 +7,7 @@ use emulator::plant::Plant;
 use emulator::record::{Record, Recorder, Row};
 use emulator::scenario::{Scenario, WireFault};
 use emulator::transducer::Wiring;
-use fingertip::report::{Fault, Status};
+use fingertip::status::{Fault, Status};
 use fingertip::transducer::{abp2, dps310, ms5837};
 use std::sync::OnceLock;
 

@@ -6,10 +6,10 @@ use emulator::bench;
 use emulator::inlined;
 use emulator::record::{Record, Recorder, Row};
 use emulator::scenario::{Event, Happening, Scenario};
-use fingertip::command::{CommandKind, Outcome};
-use fingertip::report::{Fault, Status};
-use fingertip::supervisor::{RESET_LIMIT, Stage};
-use fingertip::telemetry::{Hello, LastFault, ResetCause};
+use fingertip::device::supervisor::{RESET_LIMIT, Stage};
+use fingertip::link::command::{CommandKind, Outcome};
+use fingertip::link::telemetry::Hello;
+use fingertip::status::{Fault, LastFault, ResetCause, Status};
 
 /// `UDF #0` twice (ARMv7-M ARM A7.7.194, encoding T1).
 const UNDEFINED: [u16; 2] = [0xDE00; 2];

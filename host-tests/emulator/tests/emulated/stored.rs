@@ -6,13 +6,12 @@ use emulator::bench;
 use emulator::image::Image;
 use emulator::record::{Record, Recorder, Row};
 use emulator::scenario::Scenario;
-use fingertip::calibration::Calibration;
-use fingertip::design::Design;
 use fingertip::image::ImageDesign;
-use fingertip::report::{Status, Warnings};
-use fingertip::store::Identity;
-use fingertip::telemetry::Stored;
-use fingertip::transducer::Millipascals;
+use fingertip::signal::calibration::Calibration;
+use fingertip::signal::design::Design;
+use fingertip::status::{Status, Stored, Warnings};
+use fingertip::storage::store::Identity;
+use fingertip::units::Millipascals;
 use host_tests::nor_flash;
 
 /// The default board's slots, and where they lie.

@@ -7,7 +7,7 @@ use emulator::bench;
 use emulator::record::{Recorder, Row};
 use emulator::scenario::Scenario;
 use emulator::transducer::Wiring;
-use fingertip::report::{Fault, Status};
+use fingertip::status::{Fault, Status};
 
 /// A report is made of samples this long before and after its instant, seconds.
 const REACH: f64 = 1.6e-3;

@@ -1,7 +1,7 @@
 //! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
 
 use super::finite;
-use fingertip::report::{Status, Warnings};
+use fingertip::status::{Status, Warnings};
 use model_tables::generate::{GenerateError, from_design_file};
 use model_tables::units::PressureRise;
 use output::rows::{Cell, Rows};

@@ -4,7 +4,7 @@ use crate::say::say;
 use crate::summary::ZEROING;
 use emulator::record::Row;
 use emulator::scenario::Scenario;
-use fingertip::report::Status;
+use fingertip::status::Status;
 
 /// Virtual time between two lines, seconds.
 const EVERY: f64 = 0.05;

@@ -4,7 +4,7 @@ use crate::say::say;
 use emulator::accuracy::{Accuracy, is_wrong};
 use emulator::plant::Plant;
 use emulator::record::{Record, Row};
-use fingertip::report::{Fault, Status, Warnings};
+use fingertip::status::{Fault, Status, Warnings};
 
 /// No fault of anything: the zero is being measured.
 pub(crate) const ZEROING: Status = Status::Fault(Fault::Zeroing);
