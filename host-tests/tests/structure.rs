@@ -6,22 +6,23 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates, by the folder of their sources, with the files that may lie directly in it.
-const CRATES: [(&str, usize); 9] = [
-    ("src", 38),
+const CRATES: [(&str, usize); 10] = [
+    ("src", 6),
     ("model-tables/src", 10),
     ("model-tables/designer/src", 10),
     ("model-tables/compare/src", 10),
     ("model-tables/output/src", 10),
     ("host-tests/src", 10),
     ("host-tests/monitor/src", 10),
-    ("host-tests/emulator/src", 25),
+    ("host-tests/emulator/src", 20),
+    ("host-tests/probes/src", 10),
     ("host-tests/emulator/src/bin/demo", 10),
 ];
 /// Lines of a file, its tests aside, and of those that are still longer.
 const LONGEST: usize = 450;
 const STILL_LONGER: [&str; 1] = ["model-tables/src/solid/equilibrium.rs"];
 /// Circles that are left, by folder.
-const CIRCLES_LEFT: [(&str, usize); 1] = [("src", 2)];
+const CIRCLES_LEFT: [(&str, usize); 0] = [];
 /// Names that more than one public type has.
 const SHARED_NAMES: usize = 30;
 
