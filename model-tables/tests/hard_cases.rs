@@ -112,7 +112,7 @@ fn an_equator_smaller_than_inflation_makes_it_is_refused() {
     let plain = |part: f64| Press::new(&by_radius(part), TensionField::Plain).map(|press| *press.rest());
     match plain(0.97) {
         Err(MembraneError::NoRestState { least, .. }) => {
-            assert!((least / 9e-3 - 0.977).abs() < 1e-3, "{least}")
+            assert!((least / 9e-3 - 0.977).abs() < 1e-3, "{least}");
         }
         other => panic!("{other:?}"),
     }

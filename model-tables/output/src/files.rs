@@ -41,6 +41,9 @@ pub fn write_one(path: &Path, content: Vec<u8>) -> Result<(), Refusal> {
 }
 
 /// Refuses a file that could not be written, before the work for it starts.
+///
+/// # Errors
+/// [`Refusal`] with the file or folder and the reason.
 pub fn expect_room(path: &Path) -> Result<(), Refusal> {
     let (folder, name) = place(path)?;
     let probe = format!(".{name}.{}", std::process::id());
@@ -66,6 +69,9 @@ fn place(path: &Path) -> Result<(&Path, &str), Refusal> {
 }
 
 /// Writes every file beside its place first, then moves them all in; on failure removes what it wrote.
+///
+/// # Errors
+/// [`Refusal`] with the file and the reason; nothing half-written is left.
 pub fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refusal> {
     let cannot = |path: &Path, error: std::io::Error| {
         Refusal(format!(

@@ -55,6 +55,9 @@ impl Rows {
     }
 
     /// The whole text.
+    ///
+    /// # Errors
+    /// The reason in words, where the form cannot hold a value.
     pub fn print(&self, format: Format) -> Result<String, String> {
         match format {
             Format::Table => Ok(self.table()),

@@ -79,6 +79,9 @@ impl<'a> Section<'a> {
     }
 
     /// The sub-table of that name, if it is there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn sub(&mut self, name: &'static str) -> Result<Option<Section<'a>>, Fault> {
         let Some(value) = self.get(name) else {
             return Ok(None);
@@ -96,6 +99,9 @@ impl<'a> Section<'a> {
     }
 
     /// The sub-table of that name, which must be there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn needed_sub(&mut self, name: &'static str, holds: &str) -> Result<Section<'a>, Fault> {
         match self.sub(name)? {
             Some(section) => Ok(section),
@@ -115,6 +121,9 @@ impl<'a> Section<'a> {
     }
 
     /// A number, if the key is there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn number(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<f64>, Fault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
@@ -126,6 +135,9 @@ impl<'a> Section<'a> {
     }
 
     /// A number that must be there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn needed_number(&mut self, key: &'static str, bounds: Bounds) -> Result<f64, Fault> {
         match self.number(key, bounds)? {
             Some(number) => Ok(number),
@@ -134,6 +146,9 @@ impl<'a> Section<'a> {
     }
 
     /// Two increasing numbers, if the key is there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn pair(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<[f64; 2]>, Fault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
@@ -152,6 +167,9 @@ impl<'a> Section<'a> {
     }
 
     /// Two increasing numbers that must be there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn needed_pair(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
         match self.pair(key, bounds)? {
             Some(pair) => Ok(pair),
@@ -160,6 +178,9 @@ impl<'a> Section<'a> {
     }
 
     /// Two increasing numbers, or one for both, that must be there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn span(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
         let array = self.get(key).is_some_and(|value| value.get_ref().is_array());
         if array {
@@ -169,6 +190,9 @@ impl<'a> Section<'a> {
     }
 
     /// Texts in brackets that must be there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn texts(&mut self, key: &'static str, allowed: &str) -> Result<Vec<&'a str>, Fault> {
         let Some(value) = self.get(key) else {
             return Err(self.missing(key, allowed));
@@ -183,6 +207,9 @@ impl<'a> Section<'a> {
     }
 
     /// Strictly increasing numbers, `count[0]` to `count[1]` of them, that must be there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn increasing(
         &mut self,
         key: &'static str,
@@ -212,6 +239,9 @@ impl<'a> Section<'a> {
     }
 
     /// A text, if the key is there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn text(&mut self, key: &'static str, allowed: &str) -> Result<Option<&'a str>, Fault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
@@ -223,6 +253,9 @@ impl<'a> Section<'a> {
     }
 
     /// A text that must be there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn needed_text(&mut self, key: &'static str, allowed: &str) -> Result<&'a str, Fault> {
         match self.text(key, allowed)? {
             Some(text) => Ok(text),
@@ -256,6 +289,9 @@ impl<'a> Section<'a> {
     }
 
     /// The end of reading: a key that was never asked for is an error. The first in the file is named.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
     pub fn finish(self) -> Result<(), Fault> {
         let unknown = self
             .table

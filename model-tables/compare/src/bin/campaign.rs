@@ -24,14 +24,14 @@ struct Arguments {
 enum Campaign {
     /// Judges the states of random membranes by virtual work and a second discretisation
     #[command(after_help = "Example:\n  cargo campaign designs --designs 10000 --seed 2026")]
-    Designs(Designs),
+    Designs(MembraneArguments),
     /// Holds the model that `kind = "auto"` takes for random walls to the refined solid
     #[command(after_help = "Example:\n  cargo campaign walls --designs 200 --seed 0")]
-    Walls(Walls),
+    Walls(WallArguments),
 }
 
 #[derive(Debug, Args)]
-struct Walls {
+struct WallArguments {
     /// Walls to draw
     #[arg(long, default_value_t = 200)]
     designs: u64,
@@ -41,7 +41,7 @@ struct Walls {
 }
 
 #[derive(Debug, Args)]
-struct Designs {
+struct MembraneArguments {
     /// Designs to draw; each is pressed to 8 indentations
     #[arg(long, default_value_t = 10_000)]
     designs: u64,
@@ -144,7 +144,7 @@ fn main() -> ExitCode {
 }
 
 /// Whether no error was let through that is larger than allowed.
-fn judge_walls(arguments: &Walls) -> bool {
+fn judge_walls(arguments: &WallArguments) -> bool {
     let mut worst = [0.0_f64; walls::ASKED.len()];
     let mut without = 0;
     for done in 0..arguments.designs {
@@ -176,7 +176,7 @@ fn judge_walls(arguments: &Walls) -> bool {
 }
 
 /// Whether no state was wrong.
-fn designs(arguments: &Designs) -> Result<bool, Box<dyn Error>> {
+fn designs(arguments: &MembraneArguments) -> Result<bool, Box<dyn Error>> {
     if let Some(file) = &arguments.csv {
         files::clear_away_on_interrupt();
         files::expect_room(file).map_err(|Refusal(reason)| reason)?;

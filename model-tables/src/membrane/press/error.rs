@@ -138,6 +138,7 @@ impl core::error::Error for MembraneError {}
 
 impl MembraneError {
     /// The same with every indentation as `read` has it.
+    #[must_use]
     pub fn read_by(self, read: impl Fn(f64) -> f64) -> Self {
         match self {
             Self::BeyondLimit { asked, limit } => Self::BeyondLimit {

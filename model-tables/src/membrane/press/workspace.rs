@@ -94,7 +94,7 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
             }
             RestBy::Pressure(pascals) => press.rest_by(RestQuantity::Pressure, pascals, scale.pressure)?,
             RestBy::EquatorRadius(metres) => {
-                press.rest_by(RestQuantity::EquatorRadius, metres, scale.length)?
+                press.rest_by(RestQuantity::EquatorRadius, metres, scale.length)?;
             }
             RestBy::Height(metres) => press.rest_by(RestQuantity::Height, metres, scale.length)?,
         }
