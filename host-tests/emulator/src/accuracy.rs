@@ -11,10 +11,9 @@ pub const FROM_SHARE_OF_FULL_SCALE: f64 = 0.05;
 /// Standard deviations of the transducer's noise that a report may be off.
 const DEVIATIONS: f64 = 2.0;
 
-/// From where on a pressure rise is wrong, in the transducer's noise or resolution, whichever is more. A report of an analogue
-/// part averages 125 samples and more, one of a part on a bus three, and its zero twenty: these are four and more standard
-/// deviations of it.
-const WRONG: f64 = 3.0;
+/// From where on a pressure rise is wrong, in the transducer's noise or resolution, whichever is more. A report is one sample
+/// of a part on a bus where its neighbours came late, else an average: white noise of one gets there once in two million.
+const WRONG: f64 = 5.0;
 
 /// What a run comes to.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -142,9 +142,6 @@ impl Image {
                 .ok_or_else(|| ImageError::DesignPath(design.to_owned()))?;
             cargo.env("FINGERTIP_DESIGN", design);
         }
-        if binary == "kernel_probe" {
-            cargo.args(["--features", "kernel-probe"]);
-        }
         if let Some(board) = board {
             cargo.args(["--no-default-features", "--features", board]);
         }

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 /// A report older than this is no longer the fingertip's state. Of a board that sends few reports: one older than
-/// [`MISSED`] of the periods in its hello, where that is longer.
+/// `MISSED` of the periods in its hello, where that is longer.
 pub const STALE: Duration = Duration::from_millis(500);
 /// Reports missed in a row.
 const MISSED: u32 = 3;
