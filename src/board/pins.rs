@@ -11,6 +11,15 @@ pub(super) struct Input {
     pub(super) pin: usize,
 }
 
+#[cfg(transducer = "ratiometric")]
+impl Input {
+    /// Connects the pin to the converter.
+    pub(super) fn connect(&self) {
+        use embassy_stm32::pac::gpio::vals::Moder;
+        self.port.moder().modify(|w| w.set_moder(self.pin, Moder::ANALOG));
+    }
+}
+
 /// The peripherals that a board uses, by what they are used for: `Pins`, and `BusPins` for a transducer on a bus.
 macro_rules! pins {
     (board { $($(#[$when:meta])? $name:ident: $peripheral:ident,)* } bus { $($bus_name:ident: $bus_peripheral:ident,)* }) => {

@@ -2,8 +2,6 @@
 
 #[cfg(transducer = "ratiometric")]
 use super::chosen::{OUTPUT, SUPPLY};
-#[cfg(transducer = "ratiometric")]
-use super::pins::Input;
 use crate::status::ResetCause;
 #[cfg(transducer = "ratiometric")]
 use embassy_stm32::adc::SampleTime;
@@ -33,27 +31,18 @@ pub(super) fn reset_cause() -> ResetCause {
     }
 }
 
-/// Connects a pin to the converter.
-#[cfg(transducer = "ratiometric")]
-fn analogue(input: &Input) {
-    input
-        .port
-        .moder()
-        .modify(|w| w.set_moder(input.pin, pac::gpio::vals::Moder::ANALOG));
-}
-
 /// Sets up ADC1 to run free at 4 MHz, served by stream 0 of DMA2, channel 0. 28 cycles of sampling (7 us, enough for 10
 /// kilo-ohm) and 12 of conversion are 10 us; 100 of them 1 ms to the cycle.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn set_up_converter(supply_measured: bool) {
-    analogue(&OUTPUT);
+    OUTPUT.connect();
     let adc = pac::ADC1;
     adc.smpr2()
         .modify(|w| w.set_smp(usize::from(OUTPUT.channel), SampleTime::CYCLES28));
     adc.sqr1().modify(|w| w.set_l(u8::from(supply_measured)));
     adc.sqr3().modify(|w| w.set_sq(0, OUTPUT.channel));
     if supply_measured {
-        analogue(&SUPPLY);
+        SUPPLY.connect();
         // The upper channels have a register of their own, from 10 on.
         adc.smpr1()
             .modify(|w| w.set_smp(usize::from(SUPPLY.channel) - 10, SampleTime::CYCLES28));

@@ -2,8 +2,6 @@
 
 #[cfg(transducer = "ratiometric")]
 use super::chosen::{OUTPUT, SUPPLY};
-#[cfg(transducer = "ratiometric")]
-use super::pins::Input;
 use crate::status::ResetCause;
 #[cfg(transducer = "ratiometric")]
 use embassy_stm32::adc::SampleTime;
@@ -29,20 +27,11 @@ pub(super) fn reset_cause() -> ResetCause {
     }
 }
 
-/// Connects a pin to the converter.
-#[cfg(transducer = "ratiometric")]
-fn analogue(input: &Input) {
-    input
-        .port
-        .moder()
-        .modify(|w| w.set_moder(input.pin, pac::gpio::vals::Moder::ANALOG));
-}
-
 /// Sets up ADC1 to run free at 6 MHz, served by channel 1 of DMA1, request 0. 47.5 cycles of sampling (7.9 us, enough for 10
 /// kilo-ohm) and 12.5 of conversion are 10 us; 100 of them 1 ms to the cycle.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn set_up_converter(supply_measured: bool) {
-    analogue(&OUTPUT);
+    OUTPUT.connect();
     // The core's 24 MHz by four, in step with it.
     pac::ADC1_COMMON.ccr().modify(|w| w.set_ckmode(0b11));
     let adc = pac::ADC1;
@@ -53,7 +42,7 @@ pub(super) fn set_up_converter(supply_measured: bool) {
         w.set_sq(0, OUTPUT.channel);
     });
     if supply_measured {
-        analogue(&SUPPLY);
+        SUPPLY.connect();
         adc.smpr(0)
             .modify(|w| w.set_smp(usize::from(SUPPLY.channel), SampleTime::CYCLES47_5));
         adc.sqr1().modify(|w| w.set_sq(1, SUPPLY.channel));
