@@ -9,10 +9,10 @@ rm -rf "$before"
 mkdir -p "$before"
 git archive "$commit" | tar -x -C "$before"
 # The same harness for both.
-cp model-tables/benches/solid.rs "$before/model-tables/benches/"
-grep -q 'name = "solid"' "$before/model-tables/Cargo.toml" ||
-    printf '\n[[bench]]\nname = "solid"\nharness = false\n' >> "$before/model-tables/Cargo.toml"
-run() { (cd "$1" && CARGO_TARGET_DIR="$2" cargo bench --quiet --package model-tables --bench solid); }
+cp model-tables/compare/benches/solid.rs "$before/model-tables/compare/benches/"
+grep -q 'name = "solid"' "$before/model-tables/compare/Cargo.toml" ||
+    printf '\n[[bench]]\nname = "solid"\nharness = false\n' >> "$before/model-tables/compare/Cargo.toml"
+run() { (cd "$1" && CARGO_TARGET_DIR="$2" cargo bench --quiet --package compare --bench solid); }
 here=$PWD/target
 run . "$here" > "$before/now.csv"
 run "$before" "$here/solid-against/target" > "$before/then.csv"

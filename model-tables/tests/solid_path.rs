@@ -4,9 +4,11 @@ mod domes;
 
 use domes::dome;
 use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::material::preset::{AGILUS30, PRESETS};
-use model_tables::press::{EndsBy, ModelError};
+use model_tables::model::ModelError;
+use model_tables::solid::SolidError;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::{COARSE, FULL, Press};
 
@@ -107,7 +109,7 @@ fn every_material_and_shape_has_an_end() {
             assert!((end.force / limit.force - 1.0).abs() < 1e-12);
             assert!(matches!(
                 press.contact_at(1.001 * limit.indentation),
-                Err(ModelError::BeyondLimit { .. })
+                Err(SolidError::BeyondLimit { .. })
             ));
             if matches!(preset.law, Law::MooneyRivlin { .. }) {
                 assert_eq!(limit.ends_by, EndsBy::BulgeTouchesBase, "{}", preset.name);
@@ -140,6 +142,9 @@ fn a_law_without_stiffness_is_refused_before_solving() {
     let law = Law::MooneyRivlin { c1: 1e5, c2: -1e5 };
     for law in [law, Law::MooneyRivlin { c1: 1e5, c2: -2e5 }] {
         let refused = Press::new(&dome(9.0, 7.0, 1.0, law), COARSE);
-        assert!(matches!(refused, Err(ModelError::NoStiffness { .. })));
+        assert!(matches!(
+            refused,
+            Err(ModelError::Solid(SolidError::NoStiffness { .. }))
+        ));
     }
 }

@@ -3,15 +3,16 @@
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     name: "skin-light-touch",
-    hash: 0xc0c7d2128bdf05d5,
+    hash: 0x43755a609c58964e,
     table_version: 4,
-    certificate: 0x230e83543c30726b,
+    certificate: 0x509f9ad5043e9ddd,
     rest_pressure: 1811,
     maximum_pressure: 4133,
     transducer: model_tables::constants::Transducer {
-        range: [0, 15000],
+        range: [30000, 120000],
         resolution: 1000,
         noise: 1000,
+        quantity: model_tables::constants::Quantity::Absolute,
         kind: model_tables::constants::TransducerKind::Dps310 { address: 119 },
     },
 };

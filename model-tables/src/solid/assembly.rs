@@ -144,7 +144,7 @@ impl<const N: usize, const T: usize> Elements<N, T> {
 
 /// The elements of a wall.
 #[derive(Clone, Debug)]
-pub struct Assembly(Kind);
+pub(super) struct Assembly(Kind);
 
 #[derive(Clone, Debug)]
 enum Kind {
@@ -165,7 +165,7 @@ macro_rules! of_either {
 
 impl Assembly {
     /// Of a mesh.
-    pub fn new(mesh: &Mesh, material: &Material) -> Self {
+    pub(super) fn new(mesh: &Mesh, material: &Material) -> Self {
         Self(if mesh.is_cubic() {
             Kind::Cubic(Elements::new(mesh, material))
         } else {
@@ -174,27 +174,27 @@ impl Assembly {
     }
 
     /// Adds the forces on the nodes in a state; the largest excess of volume.
-    pub fn forces(&mut self, material: &Material, state: &State, forces: &mut [[f64; 2]]) -> f64 {
+    pub(super) fn forces(&mut self, material: &Material, state: &State, forces: &mut [[f64; 2]]) -> f64 {
         of_either!(&mut self.0, elements => elements.forces(material, state, forces))
     }
 
     /// Adds the stiffness in a state, pressures eliminated.
-    pub fn stiffness(&mut self, material: &Material, state: &State, fronts: &mut Fronts) {
+    pub(super) fn stiffness(&mut self, material: &Material, state: &State, fronts: &mut Fronts) {
         of_either!(&mut self.0, elements => elements.stiffness(material, state, fronts));
     }
 
     /// Takes what the pressures answer to the latest excess of volume out of a right-hand side.
-    pub fn answer(&self, right_side: &mut [[f64; 2]]) {
+    pub(super) fn answer(&self, right_side: &mut [[f64; 2]]) {
         of_either!(&self.0, elements => elements.answer(right_side));
     }
 
     /// The pressures of a step of the nodes, with what they answer to the latest excess of volume or without.
-    pub fn pressures(&self, step: &mut State, excess: bool) {
+    pub(super) fn pressures(&self, step: &mut State, excess: bool) {
         of_either!(&self.0, elements => elements.pressures(step, excess));
     }
 
     /// Strain energy.
-    pub fn energy(&self, material: &Material, state: &State) -> f64 {
+    pub(super) fn energy(&self, material: &Material, state: &State) -> f64 {
         of_either!(&self.0, elements => elements.energy(material, state))
     }
 }

@@ -18,7 +18,7 @@ use super::equilibrium::{Tangent, Wall};
 use super::section::{self, ContactEdge};
 use super::state::{Balance, Fluid, State};
 use super::station::{Kept, Station, between, force, hermite, pressure, work};
-use crate::press::EndsBy;
+use crate::limit::EndsBy;
 
 /// The first step, over the height.
 const FIRST_STEP: f64 = 4e-3;

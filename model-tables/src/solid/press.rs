@@ -7,11 +7,11 @@ use super::path::{Other, Path, Stop};
 use super::section::{self, Station};
 use super::state::Fluid;
 use super::station::Kept;
-use crate::adapt::Failure as AnyFailure;
-use crate::curve::{Contact, Curve};
+use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};
+use crate::limit::Limit;
 use crate::material::{Hyperelastic as _, Law};
-use crate::press::{CurveFailure, Limit, ModelError};
+use crate::solid::SolidError;
 use core::f64::consts::PI;
 
 /// One element through the wall: pressure and force to about 2 % of a refined mesh.
@@ -104,18 +104,25 @@ impl PressedState {
 }
 
 impl Press {
-    /// Inflates a design to its rest state. The semi-axes of `design.membrane` are those of the outer surface here.
+    /// Inflates a design to its rest state. The semi-axes of `design.membrane` are those of the outer surface here. `free`
+    /// gives what it inflates to with its rim free, by the pole stretch: where a rest state given by that is looked for.
+    /// [`Press::new`] asks the membrane.
     ///
     /// # Errors
-    /// [`ModelError::NoStiffness`], [`ModelError::PressureOutOfReach`], [`ModelError::RestUnsolved`], and [`ModelError::RestNotForSolid`] for a rest state given by
-    /// anything but pressure.
-    pub fn new(design: &Design, elements: Elements) -> Result<Self, ModelError> {
+    /// [`SolidError::NoStiffness`], [`SolidError::PressureOutOfReach`], [`SolidError::RestUnsolved`],
+    /// [`SolidError::RestNotForSolid`] for a rest state given by the equator or the height, and those of `free`.
+    pub fn inflate<E: From<SolidError>>(
+        design: &Design,
+        elements: Elements,
+        free: impl FnMut(f64) -> Result<inflation::FreeRest, E>,
+    ) -> Result<Self, E> {
         let length = design.membrane.radial_semi_axis;
         let modulus = design.law.shear_modulus();
         if modulus.is_nan() || modulus <= 0.0 {
-            return Err(ModelError::NoStiffness {
+            return Err(SolidError::NoStiffness {
                 shear_modulus: modulus,
-            });
+            }
+            .into());
         }
         let law = scaled(&design.law, 1.0 / modulus);
         let mut wall = Wall::new(
@@ -128,8 +135,8 @@ impl Press {
         match design.rest {
             RestBy::Unstretched => {}
             RestBy::Pressure(pascals) => inflation::held(&mut wall, &mut state, pascals, modulus)?,
-            RestBy::PoleStretch(stretch) => inflation::bonded(&mut wall, &mut state, design, stretch)?,
-            RestBy::EquatorRadius(_) | RestBy::Height(_) => return Err(ModelError::RestNotForSolid),
+            RestBy::PoleStretch(stretch) => inflation::bonded(&mut wall, &mut state, length, stretch, free)?,
+            RestBy::EquatorRadius(_) | RestBy::Height(_) => return Err(SolidError::RestNotForSolid.into()),
         }
         let volume = wall.volume(&state);
         let unit = length * length * length;
@@ -187,8 +194,8 @@ impl Press {
     /// The pressed state at an indentation in metres, 0 ..= limit.
     ///
     /// # Errors
-    /// [`ModelError::NotAnIndentation`], [`ModelError::BeyondLimit`], [`ModelError::PressUnsolved`].
-    pub fn at_indentation(&mut self, indentation: f64) -> Result<PressedState, ModelError> {
+    /// [`SolidError::NotAnIndentation`], [`SolidError::BeyondLimit`], [`SolidError::PressUnsolved`].
+    pub fn at_indentation(&mut self, indentation: f64) -> Result<PressedState, SolidError> {
         let contact = self.contact_at(indentation)?;
         let (length, modulus) = (self.length, self.modulus);
         let unit = length * length * length;
@@ -211,9 +218,9 @@ impl Press {
     ///
     /// # Errors
     /// As [`Press::at_indentation`].
-    pub fn contact_at(&mut self, indentation: f64) -> Result<Contact, ModelError> {
+    pub fn contact_at(&mut self, indentation: f64) -> Result<Contact, SolidError> {
         if !(indentation >= 0.0 && indentation.is_finite()) {
-            return Err(ModelError::NotAnIndentation { asked: indentation });
+            return Err(SolidError::NotAnIndentation { asked: indentation });
         }
         self.solve(indentation)?;
         Ok(Contact {
@@ -224,7 +231,7 @@ impl Press {
     }
 
     /// Solves the state at an indentation.
-    fn solve(&mut self, indentation: f64) -> Result<(), ModelError> {
+    fn solve(&mut self, indentation: f64) -> Result<(), SolidError> {
         let asked = indentation / self.length;
         let touch = TOUCH * self.height;
         // At rest there is nothing to solve.
@@ -240,14 +247,14 @@ impl Press {
                 self.asked = kept;
                 Ok(())
             }
-            Err(Stop::Ends(_)) => Err(ModelError::BeyondLimit {
+            Err(Stop::Ends(_)) => Err(SolidError::BeyondLimit {
                 asked: indentation,
                 limit: self.limit()?,
             }),
-            Err(Stop::Failed { reached, failure }) => Err(ModelError::PressUnsolved {
+            Err(Stop::Failed { reached, failure }) => Err(SolidError::PressUnsolved {
                 asked: indentation,
                 reached: reached * self.length,
-                failure: AnyFailure::Solid(failure),
+                failure,
             }),
         }
     }
@@ -270,7 +277,7 @@ impl Press {
     ///
     /// # Errors
     /// As [`Press::at_indentation`].
-    pub fn largest_invariant(&mut self, indentation: f64) -> Result<f64, ModelError> {
+    pub fn largest_invariant(&mut self, indentation: f64) -> Result<f64, SolidError> {
         self.contact_at(indentation)?;
         Ok(self.wall.largest_invariant(&self.asked.state))
     }
@@ -278,8 +285,8 @@ impl Press {
     /// The end of the press: the last state of the path from rest, and why there is none after it.
     ///
     /// # Errors
-    /// None, as the last state is an end; the membrane's may fail.
-    pub fn limit(&mut self) -> Result<Limit, ModelError> {
+    /// None: the last state found is an end.
+    pub fn limit(&mut self) -> Result<Limit, SolidError> {
         if let Some(limit) = self.limit {
             return Ok(limit);
         }
@@ -299,7 +306,7 @@ impl Press {
     ///
     /// # Errors
     /// As [`Press::at_indentation`].
-    pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<Station>, ModelError> {
+    pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<Station>, SolidError> {
         let state = self.at_indentation(indentation)?;
         let kept = &self.asked;
         let intervals = points.max(3) - 1;
@@ -316,7 +323,7 @@ impl Press {
     ///
     /// # Errors
     /// As [`Press::at_indentation`], and [`CurveFailure::Shape`] if pressure or force do not grow throughout.
-    pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure> {
+    pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure<SolidError>> {
         let mut points = Vec::with_capacity(CURVE_STATES + 1);
         for k in 0..=CURVE_STATES {
             let ratio = k as f64 / CURVE_STATES as f64;

@@ -4,7 +4,7 @@ use super::element;
 use super::equilibrium::{Wall, edge, positions};
 use super::mesh::{CREASE, FUNCTIONS, PLACES, WEIGHTS, function, shape, slope};
 use super::state::State;
-use crate::press::EndsBy;
+use crate::limit::EndsBy;
 use core::f64::consts::FRAC_PI_2;
 
 /// Samples of an edge where a crossing is looked for.
