@@ -16,6 +16,8 @@ mod assembly;
 #[cfg(feature = "std")]
 pub mod batch;
 #[cfg(feature = "std")]
+mod branch;
+#[cfg(feature = "std")]
 pub mod element;
 #[cfg(feature = "std")]
 pub mod equilibrium;
