@@ -8,7 +8,7 @@
 //! [`mesh`] (the undeformed wall) -> [`element`] (the mechanics of a point) -> [`batch`] (forces and stiffness of four elements side by side,
 //! in [`lanes`]), [`fluid`] (the volume inside) and [`plate`] (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
 //! (Newton's method) -> [`inflation`] -> [`path`] (the
-//! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units)
+//! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units, and by `branch` those beside the path)
 //! -> [`section`] (what is read off along the meridian).
 
 #[cfg(feature = "std")]

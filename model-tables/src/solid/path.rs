@@ -17,7 +17,7 @@ use super::Failure;
 use super::equilibrium::{Tangent, Wall};
 use super::section::{self, ContactEdge};
 use super::state::{Balance, Fluid, State};
-use super::station::{Kept, Station, between, force, hermite, pressure, work};
+use super::station::{Kept, Station, between, force, hermite, work};
 use crate::limit::EndsBy;
 
 /// The first step, over the height.
