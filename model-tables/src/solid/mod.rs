@@ -10,6 +10,13 @@
 //! (Newton's method) -> [`inflation`] -> [`path`] (the
 //! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units, and by `branch` those beside the path)
 //! -> [`section`] (what is read off along the meridian).
+#![cfg_attr(
+    feature = "std",
+    expect(
+        clippy::inline_always,
+        reason = "four elements side by side are vector instructions only where every step of a point is one function"
+    )
+)]
 
 #[cfg(feature = "std")]
 mod assembly;
