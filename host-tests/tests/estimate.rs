@@ -11,7 +11,7 @@ use fingertip::status::{Fault, Warnings};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::Millipascals;
 use host_tests::design;
-use host_tests::world::{Random, World, full_scale, rest, sample};
+use host_tests::world::{World, Xorshift, full_scale, rest, sample};
 use model_tables::generate::{self, Generated};
 use model_tables::units::PressureRise;
 
@@ -46,7 +46,7 @@ fn a_loaded_design_is_that_of_the_image() {
 
 /// The reports, and what else goes on the line, of presses, pauses, faults, wild samples, commands and drift, drawn from a seed.
 fn life<D: Design + Clone>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
-    let mut random = Random::new(seed);
+    let mut random = Xorshift::new(seed);
     let (rest, full) = (rest(&design), full_scale(&design));
     let mut world = World::zeroed(design.clone(), rest);
     let (mut from, mut to) = (0.0, 0.0);

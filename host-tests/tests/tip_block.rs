@@ -6,7 +6,7 @@
 use fingertip::signal::contact::contact;
 use fingertip::signal::design::{Design, LoadedDesign};
 use fingertip::status::Warnings;
-use host_tests::world::Random;
+use host_tests::world::Xorshift;
 use model_tables::block::write::{TipData, sign};
 use model_tables::block::{BlockError, ENTRY, HEAD, StoredCalibration};
 use model_tables::units::PressureRise;
@@ -60,7 +60,7 @@ fn shipped() -> Vec<Vec<u8>> {
 }
 
 /// A block that nobody wrote.
-fn drawn(shipped: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
+fn drawn(shipped: &[Vec<u8>], random: &mut Xorshift) -> Vec<u8> {
     let mut block = shipped[random.below(shipped.len() as u64) as usize].clone();
     match random.below(8) {
         0 => block = (0..random.below(400)).map(|_| random.bits() as u8).collect(),
@@ -104,7 +104,7 @@ fn drawn(shipped: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
 }
 
 /// What a loaded design reads at rising inputs, everywhere in the word and next to each other.
-fn never_falls(design: &LoadedDesign, random: &mut Random) {
+fn never_falls(design: &LoadedDesign, random: &mut Xorshift) {
     let end = design.parameters().last_rise.0;
     let mut counts: Vec<i32> = (0..32)
         .flat_map(|_| {
@@ -130,7 +130,7 @@ fn what_nobody_wrote_is_refused_or_never_falls() {
     for block in &shipped {
         LoadedDesign::read(block).expect("the shipped designs can be loaded");
     }
-    let mut random = Random::new(13);
+    let mut random = Xorshift::new(13);
     let mut outcomes: BTreeMap<&str, u64> = BTreeMap::new();
     for _ in 0..blocks {
         let block = drawn(&shipped, &mut random);

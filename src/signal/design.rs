@@ -11,7 +11,7 @@ use crate::signal::uncertainty::Uncertainty;
 use crate::transducer;
 use model_tables::block::BlockError;
 use model_tables::block::read::TipBlock;
-use model_tables::block::section::Kind;
+use model_tables::block::section::SectionKind;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
 use model_tables::table::loaded::LoadedTables;
@@ -103,7 +103,7 @@ impl<'a> LoadedDesign<'a> {
             None => None,
             Some(stored) => Some(
                 Calibration::stored(stored, tip.constants.transducer.range)
-                    .ok_or(BlockError::Value(Kind::Calibration, "a value"))?,
+                    .ok_or(BlockError::Value(SectionKind::Calibration, "a value"))?,
             ),
         };
         let layout = tip.tables.layout();

@@ -13,7 +13,7 @@ pub mod write;
 use crate::table::error::TablesError;
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
-use section::Kind;
+use section::SectionKind;
 
 /// The first bytes of a block.
 pub const MAGIC: [u8; 4] = *b"FTIP";
@@ -84,13 +84,13 @@ pub enum BlockError {
     /// A section of this number is for other firmware.
     UnknownSection(u16),
     /// A section has another version.
-    SectionVersion(Kind, u16),
+    SectionVersion(SectionKind, u16),
     /// A section that every block has is not there.
-    Missing(Kind),
+    Missing(SectionKind),
     /// A section is longer or shorter than its fields.
-    SectionLength(Kind),
+    SectionLength(SectionKind),
     /// A value is not in its range.
-    Value(Kind, &'static str),
+    Value(SectionKind, &'static str),
     /// The tables may answer wrongly.
     Tables(TablesError),
 }
@@ -115,7 +115,7 @@ impl fmt::Display for BlockError {
                 f,
                 "section {} of the tip's data has version {found}, and version {} is read",
                 kind.word(),
-                Kind::VERSION
+                SectionKind::VERSION
             ),
             Self::Missing(kind) => write!(f, "the tip's data has no section {}", kind.word()),
             Self::SectionLength(kind) => {

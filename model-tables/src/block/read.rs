@@ -2,7 +2,7 @@
 //! sequence panics or reads outside the block.
 
 use super::field::{Field, Visit};
-use super::section::{self, Kind};
+use super::section::{self, SectionKind};
 use super::{
     BlockError, ENTRY, HEAD, LAYOUT_VERSION, LONGEST_NAME, MAGIC, StoredCalibration, aligned, check,
 };
@@ -34,31 +34,31 @@ impl<'a> TipBlock<'a> {
     pub fn read(bytes: &'a [u8]) -> Result<Self, BlockError> {
         let (block, mut head) = whole(bytes)?;
         let mut constants = NO_CONSTANTS;
-        head.of = Kind::Constants;
+        head.of = SectionKind::Constants;
         section::identity(&mut constants, &mut head)?;
         let sections = Sections::of(block, &mut head)?;
 
-        let mut own = sections.needed(Kind::Constants)?;
+        let mut own = sections.needed(SectionKind::Constants)?;
         section::pressures(&mut constants, &mut own)?;
         section::transducer(&mut constants.transducer, &mut own)?;
         own.end()?;
         check_constants(&constants)?;
 
-        let mut own = sections.needed(Kind::Tables)?;
+        let mut own = sections.needed(SectionKind::Tables)?;
         let mut layout = NO_LAYOUT;
         section::layout(&mut layout, &mut own)?;
         let (words, []) = own.bytes.as_chunks::<4>() else {
-            return Err(BlockError::SectionLength(Kind::Tables));
+            return Err(BlockError::SectionLength(SectionKind::Tables));
         };
 
-        let name = core::str::from_utf8(sections.needed(Kind::Name)?.bytes).unwrap_or_default();
+        let name = core::str::from_utf8(sections.needed(SectionKind::Name)?.bytes).unwrap_or_default();
         let plain = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';
         if !(1..=LONGEST_NAME).contains(&name.len()) || !name.bytes().all(plain) {
-            return Err(BlockError::Value(Kind::Name, "name"));
+            return Err(BlockError::Value(SectionKind::Name, "name"));
         }
 
         let mut calibration = None;
-        if let Some(mut own) = sections.of_kind(Kind::Calibration) {
+        if let Some(mut own) = sections.of_kind(SectionKind::Calibration) {
             let mut found = StoredCalibration {
                 zero: 0,
                 temperature: 0,
@@ -91,7 +91,7 @@ fn whole(bytes: &[u8]) -> Result<(&[u8], Cursor<'_>), BlockError> {
     };
     let mut head = Cursor {
         bytes: bytes.get(..HEAD).ok_or(short(HEAD))?,
-        of: Kind::Constants,
+        of: SectionKind::Constants,
     };
     let _magic: u32 = head.next("magic")?;
     let version: u16 = head.next("layout version")?;
@@ -113,7 +113,7 @@ fn whole(bytes: &[u8]) -> Result<(&[u8], Cursor<'_>), BlockError> {
 }
 
 /// The directory: sections in the order of their numbers, one after the other without gaps but those that align them.
-struct Sections<'a>([Option<&'a [u8]>; Kind::ALL.len()]);
+struct Sections<'a>([Option<&'a [u8]>; SectionKind::ALL.len()]);
 
 impl<'a> Sections<'a> {
     fn of(block: &'a [u8], head: &mut Cursor<'_>) -> Result<Self, BlockError> {
@@ -127,18 +127,18 @@ impl<'a> Sections<'a> {
         if block.get(6..8) != Some(&u16::try_from(end).unwrap_or_default().to_le_bytes()) {
             return Err(BlockError::Directory);
         }
-        let mut sections = [None; Kind::ALL.len()];
+        let mut sections = [None; SectionKind::ALL.len()];
         let mut last = 0;
         for entry in directory.as_chunks::<ENTRY>().0 {
             let mut entry = Cursor {
                 bytes: entry,
-                of: Kind::Constants,
+                of: SectionKind::Constants,
             };
             let number: u16 = entry.next("number")?;
             let version: u16 = entry.next("version")?;
             let [offset, length]: [u32; 2] = entry.next("place")?;
-            let kind = Kind::of(number).ok_or(BlockError::UnknownSection(number))?;
-            if version != Kind::VERSION {
+            let kind = SectionKind::of(number).ok_or(BlockError::UnknownSection(number))?;
+            if version != SectionKind::VERSION {
                 return Err(BlockError::SectionVersion(kind, version));
             }
             let start = aligned(end);
@@ -160,12 +160,12 @@ impl<'a> Sections<'a> {
         }
     }
 
-    fn of_kind(&self, kind: Kind) -> Option<Cursor<'a>> {
+    fn of_kind(&self, kind: SectionKind) -> Option<Cursor<'a>> {
         let bytes = (*self.0.get(kind as usize - 1)?)?;
         Some(Cursor { bytes, of: kind })
     }
 
-    fn needed(&self, kind: Kind) -> Result<Cursor<'a>, BlockError> {
+    fn needed(&self, kind: SectionKind) -> Result<Cursor<'a>, BlockError> {
         self.of_kind(kind).ok_or(BlockError::Missing(kind))
     }
 }
@@ -173,7 +173,7 @@ impl<'a> Sections<'a> {
 /// The bytes of a section that are not read yet.
 struct Cursor<'a> {
     bytes: &'a [u8],
-    of: Kind,
+    of: SectionKind,
 }
 
 impl Cursor<'_> {
@@ -227,7 +227,7 @@ fn check_constants(constants: &DesignConstants) -> Result<(), BlockError> {
         ("noise", noise >= 0),
     ];
     match fields.into_iter().find(|(_, holds)| !holds) {
-        Some((field, _)) => Err(BlockError::Value(Kind::Constants, field)),
+        Some((field, _)) => Err(BlockError::Value(SectionKind::Constants, field)),
         None => Ok(()),
     }
 }

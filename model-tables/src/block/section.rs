@@ -7,7 +7,7 @@ use crate::table::Layout;
 
 /// The kinds of sections, by their number.
 #[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
-pub enum Kind {
+pub enum SectionKind {
     /// What the firmware needs to know of the design beside its tables.
     Constants = 1,
     /// Pressure rise to force and indentation of a flat plate, and the wall elastic.
@@ -22,7 +22,7 @@ pub enum Kind {
 /// one of these is for newer firmware: without them its readings would be wrong.
 pub const RESERVED: [u16; 3] = [5, 6, 7];
 
-impl Kind {
+impl SectionKind {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Constants, Self::Tables, Self::Calibration, Self::Name];
 

@@ -1,6 +1,6 @@
 use super::field::{Field, Visit};
 use super::read::TipBlock;
-use super::section::{self, Kind};
+use super::section::{self, SectionKind};
 use super::write::{TipData, sign};
 use super::*;
 use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
@@ -135,7 +135,7 @@ fn a_section_that_is_not_known_fails_the_whole_block() {
     }
     assert_eq!(
         error(&changed(entry(1) + 2, &[2, 0])),
-        BlockError::SectionVersion(Kind::Tables, 2)
+        BlockError::SectionVersion(SectionKind::Tables, 2)
     );
     // Twice the same, and out of order.
     assert_eq!(error(&changed(entry(1), &[1, 0])), BlockError::Directory);
@@ -160,7 +160,7 @@ fn a_section_that_is_not_known_fails_the_whole_block() {
 fn values_and_tables_out_of_their_ranges_are_refused_by_name() {
     // After head and four entries: constants from 88 on, tables from 128 on (see `LAYOUT.md`).
     let word = |at: usize, value: i32| error(&changed(at, &value.to_le_bytes()));
-    let of_constants = |field| BlockError::Value(Kind::Constants, field);
+    let of_constants = |field| BlockError::Value(SectionKind::Constants, field);
     assert_eq!(word(88, i32::MIN), of_constants("rest_pressure"));
     assert_eq!(word(92, 20_000), of_constants("maximum_pressure"));
     assert_eq!(word(96, 100_000), of_constants("range"));
@@ -184,7 +184,10 @@ fn values_and_tables_out_of_their_ranges_are_refused_by_name() {
         assert_eq!(word(tables + at, value), expected, "{value} at {at}");
     }
     for (at, field) in [(20, "powers"), (24, "constant")] {
-        assert_eq!(word(tables + at, 3), BlockError::Value(Kind::Tables, field));
+        assert_eq!(
+            word(tables + at, 3),
+            BlockError::Value(SectionKind::Tables, field)
+        );
     }
     let words = tables + 40;
     assert_eq!(word(words + 16, 1 << 18), BlockError::Tables(TablesError::Zero));
@@ -197,7 +200,7 @@ fn values_and_tables_out_of_their_ranges_are_refused_by_name() {
     let name = DATA.write().len() - 7;
     assert_eq!(
         error(&changed(name, b"\n")),
-        BlockError::Value(Kind::Name, "name")
+        BlockError::Value(SectionKind::Name, "name")
     );
 }
 
@@ -227,7 +230,7 @@ fn the_page_lists_every_field_where_it_lies() {
     let Ok(()) = section::layout(&mut layout, &mut rows);
     let mut rows = Rows(0);
     let Ok(()) = section::calibration(&mut calibration, &mut rows);
-    let numbers: BTreeSet<String> = Kind::ALL
+    let numbers: BTreeSet<String> = SectionKind::ALL
         .iter()
         .map(|&kind| format!("| {} | {} |", kind as u16, kind.word()))
         .collect();

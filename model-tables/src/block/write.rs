@@ -1,7 +1,7 @@
 //! The data of a tip -> a block of bytes.
 
 use super::field::{Field, Visit};
-use super::section::{self, Kind};
+use super::section::{self, SectionKind};
 use super::{CHECK_AT, ENTRY, HEAD, LAYOUT_VERSION, MAGIC, StoredCalibration, aligned, check};
 use crate::constants::DesignConstants;
 use crate::table::Layout;
@@ -53,14 +53,14 @@ impl TipData<'_> {
         let identity = described(|visit| section::identity(&mut constants, visit));
         let mut sections = vec![
             (
-                Kind::Constants,
+                SectionKind::Constants,
                 described(|visit| {
                     section::pressures(&mut constants, visit)?;
                     section::transducer(&mut constants.transducer, visit)
                 }),
             ),
             (
-                Kind::Tables,
+                SectionKind::Tables,
                 described(|visit| {
                     section::layout(&mut layout, visit)?;
                     self.words
@@ -71,15 +71,15 @@ impl TipData<'_> {
         ];
         if let Some(calibration) = &mut calibration {
             let bytes = described(|visit| section::calibration(calibration, visit));
-            sections.push((Kind::Calibration, bytes));
+            sections.push((SectionKind::Calibration, bytes));
         }
-        sections.push((Kind::Name, self.name.as_bytes().to_vec()));
+        sections.push((SectionKind::Name, self.name.as_bytes().to_vec()));
         block(&identity, &sections)
     }
 }
 
 /// Head, directory, sections, each from a multiple of four on.
-fn block(identity: &[u8], sections: &[(Kind, Vec<u8>)]) -> Vec<u8> {
+fn block(identity: &[u8], sections: &[(SectionKind, Vec<u8>)]) -> Vec<u8> {
     let head = HEAD + ENTRY * sections.len();
     let mut bytes = Vec::from(MAGIC);
     LAYOUT_VERSION.put(&mut bytes);
@@ -91,7 +91,7 @@ fn block(identity: &[u8], sections: &[(Kind, Vec<u8>)]) -> Vec<u8> {
     let mut end = head;
     for (kind, section) in sections {
         (*kind as u16).put(&mut bytes);
-        Kind::VERSION.put(&mut bytes);
+        SectionKind::VERSION.put(&mut bytes);
         let start = aligned(end);
         [start as u32, section.len() as u32].put(&mut bytes);
         end = start + section.len();

@@ -145,7 +145,7 @@ impl Sum {
         let step = i64::from(high - low) / i64::from(to - from);
         // Below 2^33 units of 2^-16 of a coefficient; a count is `step` of 2^32.
         let slope = self.least_slope(layout.powers, [distance(high, 0), distance(low, 0xFFFF)]);
-        step > 0 && slope >= (ROUNDING << 32) / step + 1 && fits(low) && fits(high)
+        step > 0 && slope > (ROUNDING << 32) / step && fits(low) && fits(high)
     }
 
     /// The sum at a mantissa, in as many bits as it takes.
