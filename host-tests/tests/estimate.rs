@@ -45,10 +45,10 @@ fn a_loaded_design_is_that_of_the_image() {
 }
 
 /// The reports, and what else goes on the line, of presses, pauses, faults, wild samples, commands and drift, drawn from a seed.
-fn life<D: Design + Clone>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
+fn life<D: Design + Copy>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
     let mut random = Xorshift::new(seed);
     let (rest, full) = (rest(&design), full_scale(&design));
-    let mut world = World::zeroed(design.clone(), rest);
+    let mut world = World::zeroed(design, rest);
     let (mut from, mut to) = (0.0, 0.0);
     let mut reports = vec![];
     for millisecond in 0..20_000 {
