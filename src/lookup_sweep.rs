@@ -3,7 +3,7 @@
 
 use crate::contact::{Contact, contact};
 use crate::design::Design;
-use crate::pressure::{Pressure, saturate};
+use crate::pressure::Pressure;
 use crate::report::{Measurement, Warnings};
 use model_tables::units::PressureRise;
 
@@ -13,7 +13,7 @@ const CONSECUTIVE: i64 = 4096;
 /// Evenly spaced from a sixteenth below zero to a sixteenth beyond the end.
 const SPREAD: i64 = 8192;
 
-/// The ends of the word and the neighbours of zero.
+/// The ends of what a rise can be, and the neighbours of zero.
 const CORNERS: [i32; 4] = [i32::MIN, -1, i32::MAX - 1, i32::MAX];
 
 /// How many inputs there are.
@@ -30,7 +30,7 @@ pub fn inputs<D: Design>() -> impl Iterator<Item = PressureRise> {
     consecutive
         .chain(spread)
         .chain(CORNERS.map(i64::from))
-        .map(|rise| PressureRise(saturate(rise)))
+        .map(PressureRise::held)
 }
 
 /// What chip and host answer to an input.

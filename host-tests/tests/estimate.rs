@@ -18,8 +18,12 @@ fn tables_of_the_tool_and_of_the_build_are_the_same() {
     }
     assert_eq!(bits, ImageDesign::PRESSURE_FRACTION_BITS);
     let lowest_rest = generated.transducer().lowest_rest(bits);
-    for count in (-2_000..tables.layout.maximum + 2_000).step_by(97) {
-        let rise = PressureRise(count);
+    let beyond = [i64::MIN, -i64::from(i32::MAX), i64::MAX].map(PressureRise::held);
+    let around = (-2_000..tables.layout.maximum + 2_000)
+        .step_by(97)
+        .map(PressureRise);
+    for rise in around.chain(beyond) {
+        let count = rise.0;
         let (tool, chip) = (tables.lookup(rise), contact::<ImageDesign>(rise, Warnings::NONE));
         assert_eq!(
             (tool.force, tool.indentation),
