@@ -3,6 +3,8 @@
 //! [`from_design_file`] goes the whole way: design file -> full model -> tables, every input checked. Tables
 //! that do not meet the design's accuracy are never returned.
 
+mod bounds;
+mod candidate;
 mod certify;
 mod design;
 mod emit;
@@ -11,6 +13,7 @@ mod owned;
 mod quantise;
 mod search;
 mod shape;
+mod tally;
 mod truth;
 
 use crate::curve::{Contact, Curve};
@@ -22,7 +25,7 @@ pub use design::{GenerateError, Generated, Limit, Solved, State, from_design, fr
 pub use owned::OwnedTables;
 
 /// Version of the tables' layout and of the generator; counts up when either changes the integers.
-pub const TABLE_VERSION: u32 = 4;
+pub const TABLE_VERSION: u32 = 5;
 
 /// Bytes above which a finer unit is tried too.
 const MANY: usize = 192;

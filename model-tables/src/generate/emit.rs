@@ -172,10 +172,17 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     for byte in generated.design.hash() {
         write!(hash, "{byte:02x}")?;
     }
+    let how = if certificate.every_input_evaluated {
+        "# What holds of the tables of this design. Every representable input was evaluated with the lookup\n\
+         # that runs on the chip, and compared with the curve of the full model."
+    } else {
+        "# What holds of the tables of this design on every representable input, as the lookup that runs on the chip\n\
+         # answers it, compared with the curve of the full model. Largest errors, steps and monotonicity are exact: bounds\n\
+         # of the sums settle all inputs but those evaluated. Mean and root-mean-square errors are of evenly spaced inputs."
+    };
     writeln!(
         out,
-        "# What holds of the tables of this design. Every representable input was evaluated with the lookup\n\
-         # that runs on the chip, and compared with the curve of the full model.\n\
+        "{how}\n\
          design = \"{}\"\n\
          design_sha256 = \"{hash}\"\n\
          table_version = {}\n\
