@@ -23,7 +23,7 @@ pub struct DesignConstants {
 
 /// Standard deviations of one sample below zero that noise is believed to explain: filtered white noise gets there
 /// less than once in 10^30 reports.
-const BELOW_ZERO_DEVIATIONS: i64 = 8;
+pub const BELOW_ZERO_DEVIATIONS: i64 = 8;
 
 /// The pressure transducer of a design.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

@@ -21,7 +21,10 @@ use crate::design_file::Accuracy;
 use truth::Truth;
 
 pub use certify::{Certificate, Errors, Spread};
-pub use design::{GenerateError, Generated, Limit, Solved, State, from_design, from_design_file, solve};
+pub use design::{
+    GenerateError, Generated, Limit, Solved, State, from_design, from_design_file, from_design_or_worse,
+    solve,
+};
 pub use owned::OwnedTables;
 
 /// Version of the tables' layout and of the generator; counts up when either changes the integers.

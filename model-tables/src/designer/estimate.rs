@@ -2,7 +2,8 @@
 
 use super::rows::{Cell, Rows};
 use super::{Answer, Refusal, finite};
-use crate::generate::{GenerateError, from_design_file};
+use crate::design_file::DesignFile;
+use crate::generate::{GenerateError, Generated, from_design, from_design_or_worse};
 use crate::units::PressureRise;
 use std::path::{Path, PathBuf};
 
@@ -16,6 +17,27 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "LIST", required = true, value_delimiter = ',',
           value_parser = finite, allow_hyphen_values = true)]
     pressure_rise_pa: Vec<f64>,
+    /// Answer also where the tables do not reach the accuracy that the design asks
+    #[arg(long)]
+    allow_worse: bool,
+}
+
+/// The tables of a design; those that do not reach the accuracy asked for only where worse is allowed.
+pub(super) fn generated(file: &Path, allow_worse: bool) -> Result<Generated, Refusal> {
+    let design = DesignFile::read(file)?;
+    let made = if allow_worse {
+        from_design_or_worse(design)
+    } else {
+        from_design(design)
+    };
+    let generated = made.map_err(|error| refusal(file, error))?;
+    match generated.shortfall() {
+        Some(shortfall) if !allow_worse => Err(Refusal::about(
+            file,
+            &format!("{shortfall}; or take these with --allow-worse"),
+        )),
+        _ => Ok(generated),
+    }
 }
 
 /// A refusal of the generator; errors of the file name it themselves.
@@ -28,7 +50,7 @@ pub(super) fn refusal(file: &Path, error: GenerateError) -> Refusal {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Answer, Refusal> {
     let file = &arguments.design;
-    let generated = from_design_file(file).map_err(|error| refusal(file, error))?;
+    let generated = generated(file, arguments.allow_worse)?;
     let tables = &generated.certified.tables;
     let bits = tables.layout.pressure_fraction_bits;
     let lowest_rest = generated.transducer().lowest_rest(bits);

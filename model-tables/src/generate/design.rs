@@ -1,7 +1,7 @@
 //! From a design to its tables: the full model, and every refusal on the way.
 
 use super::{Certified, NoTables, emit, tables};
-use crate::constants::{Transducer, TransducerKind};
+use crate::constants::{BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve};
 use crate::design_file::{
     DataCurve, DesignFile, DesignFileError, Supply, TransducerKindSection, TransducerSection, Transfer,
@@ -18,6 +18,9 @@ const CHECKED_SOLID: usize = 6;
 /// How much deeper than the press the curve goes where it can, so that the last input can be a number that the chip handles in
 /// fewer instructions: the pressure, which grows faster than the indentation, then goes on by as much at least.
 const BEYOND: f64 = 1.0 + 1.0 / 64.0;
+
+/// How often the accuracy is doubled at most where worse is allowed: a thousand times what was asked.
+const MOST_DOUBLINGS: u32 = 10;
 
 /// What tables of a design are made from.
 #[derive(Clone, Debug)]
@@ -87,6 +90,15 @@ pub enum GenerateError {
         /// The range, kilopascals.
         range: [f64; 2],
     },
+    /// The whole press raises the pressure by no more than what passes for noise around zero.
+    Unfelt {
+        /// By how much, pascals.
+        rise: f64,
+        /// What passes for noise, pascals.
+        least: f64,
+        /// The transducer's key that says so, and its value in pascals.
+        key: (&'static str, f64),
+    },
     /// The data that the tables are to come from end before `max_indentation_mm`.
     BeyondData {
         /// The indentation asked for, millimetres.
@@ -146,6 +158,15 @@ impl fmt::Display for GenerateError {
                     }
                 }
             }
+            Self::Unfelt {
+                rise,
+                least,
+                key: (key, value),
+            } => write!(
+                f,
+                "the whole press raises the pressure by {rise:.3} Pa, and up to {least:.3} Pa is noise ({BELOW_ZERO_DEVIATIONS} times \
+                 transducer.{key} = {value}): choose a finer transducer, or a design whose pressure rises more"
+            ),
             Self::BeyondData { asked, deepest } => write!(
                 f,
                 "press.max_indentation_mm = {asked} is beyond the data in [calibration], which end at {deepest} mm: \
@@ -171,6 +192,19 @@ pub fn from_design_file(path: &Path) -> Result<Generated, GenerateError> {
 /// # Errors
 /// [`GenerateError`].
 pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
+    make(design, 0)
+}
+
+/// The same, where no tables meet the accuracy with those of the nearest accuracy that some meet: that asked for, doubled as often
+/// as it takes. [`Generated::shortfall`] says what was not reached.
+///
+/// # Errors
+/// [`GenerateError`].
+pub fn from_design_or_worse(design: DesignFile) -> Result<Generated, GenerateError> {
+    make(design, MOST_DOUBLINGS)
+}
+
+fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
     let Solved {
@@ -180,8 +214,18 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
         end,
         rung,
     } = solve(&design)?;
-    let certified =
-        tables(&curve, end, &accuracy, transducer.resolution_pa).map_err(GenerateError::NoTables)?;
+    let mut allowed = accuracy;
+    let mut doubled = 0;
+    let certified = loop {
+        match tables(&curve, end, &allowed, transducer.resolution_pa) {
+            Err(NoTables::Inaccurate { .. }) if doubled < doublings => {
+                allowed.force_percent_of_reading *= 2.0;
+                allowed.indentation_percent_of_reading *= 2.0;
+                doubled += 1;
+            }
+            found => break found.map_err(GenerateError::NoTables)?,
+        }
+    };
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let model_error = rung.and_then(|rung| convergence(&design, &rung, &curve, end, from));
     Ok(Generated {
@@ -217,6 +261,7 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         State::Pressed { indentation },
         rest_pressure + end.pressure_rise,
     )?;
+    is_felt(&transducer, end.pressure_rise)?;
     Ok(Solved {
         transducer,
         rest_pressure,
@@ -224,6 +269,21 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         end,
         rung,
     })
+}
+
+/// Refuses a press that never leaves what the firmware takes for noise around zero.
+fn is_felt(transducer: &TransducerSection, rise: f64) -> Result<(), GenerateError> {
+    let (resolution, noise) = (transducer.resolution_pa, transducer.noise_pa);
+    let key = if noise > resolution {
+        ("noise_pa", noise)
+    } else {
+        ("resolution_pa", resolution)
+    };
+    let least = BELOW_ZERO_DEVIATIONS as f64 * key.1;
+    if rise > least {
+        return Ok(());
+    }
+    Err(GenerateError::Unfelt { rise, least, key })
 }
 
 /// Solves the design again on a finer mesh at some indentations.
@@ -333,6 +393,8 @@ pub enum Limit {
     Accuracy,
     /// Half of what the transducer tells apart, which is coarser.
     Transducer,
+    /// What integers reach, which is coarser: [`from_design_or_worse`].
+    Integers,
 }
 
 impl Limit {
@@ -341,6 +403,7 @@ impl Limit {
         match self {
             Self::Accuracy => "accuracy",
             Self::Transducer => "transducer",
+            Self::Integers => "integers",
         }
     }
 }
@@ -348,13 +411,32 @@ impl Limit {
 impl Generated {
     /// What force and indentation are held to.
     pub fn limits(&self) -> [Limit; 2] {
-        self.asked_percent().map(|asked| {
-            if self.floor() > asked {
+        let certificate = &self.certified.certificate;
+        let allowed = [&certificate.force, &certificate.indentation].map(|errors| errors.allowed_percent);
+        let asked = self.asked_percent();
+        [0, 1].map(|output| {
+            if allowed[output] <= asked[output] {
+                Limit::Accuracy
+            } else if allowed[output] <= self.floor() {
                 Limit::Transducer
             } else {
-                Limit::Accuracy
+                Limit::Integers
             }
         })
+    }
+
+    /// One line about the accuracy that `[accuracy]` asks and the tables do not reach; nothing where they do.
+    pub fn shortfall(&self) -> Option<String> {
+        let limits = self.limits();
+        if limits == [Limit::Accuracy; 2] {
+            return None;
+        }
+        let remedy = if limits.contains(&Limit::Integers) {
+            "allow more in [accuracy], or cover less with press.max_indentation_mm"
+        } else {
+            "allow more in [accuracy], or choose a finer transducer"
+        };
+        Some(format!("{}: {remedy}", self.choice()))
     }
 
     /// Percent of reading below which tables are waste for the transducer.
@@ -381,8 +463,15 @@ impl Generated {
             self.transducer.resolution_pa,
             self.floor()
         );
-        if self.limits() == [Limit::Accuracy; 2] {
+        let limits = self.limits();
+        if limits == [Limit::Accuracy; 2] {
             format!("held to the {force} % and {indentation} % that [accuracy] asks; {tells}")
+        } else if limits.contains(&Limit::Integers) {
+            let certificate = &self.certified.certificate;
+            format!(
+                "[accuracy] asks {force} % and {indentation} %, but no tables keep within that: these keep within {} % and {} %",
+                certificate.force.allowed_percent, certificate.indentation.allowed_percent
+            )
         } else {
             format!(
                 "[accuracy] asks {force} % and {indentation} %, but {tells}: the tables stop there, as finer ones would be waste"

@@ -237,6 +237,11 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
     let bits = tables.layout.pressure_fraction_bits;
     let resolvable = generated.certified.resolvable_percent;
     let held_to = generated.limits().map(Limit::word);
+    let integers = if held_to.contains(&Limit::Integers.word()) {
+        ", or \"integers\" where no tables reach it"
+    } else {
+        ""
+    };
     let touch = tables.lookup(PressureRise::from_pascals(transducer.resolution_pa, bits));
     writeln!(
         out,
@@ -248,7 +253,7 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
          resolution_moves_indentation_nm = {}\n\
          half_step_is_force_percent = {:.6}\n\
          half_step_is_indentation_percent = {:.6}\n\
-         # What the tables are held to: \"accuracy\", or \"transducer\" where more was asked than it can tell.\n\
+         # What the tables are held to: \"accuracy\", or \"transducer\" where more was asked than it can tell{}.\n\
          force_held_to = \"{}\"\n\
          indentation_held_to = \"{}\"",
         transducer.resolution_pa,
@@ -257,6 +262,7 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
         touch.indentation.0,
         resolvable[0],
         resolvable[1],
+        integers,
         held_to[0],
         held_to[1],
     )
