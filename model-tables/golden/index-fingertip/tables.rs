@@ -4,8 +4,8 @@
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     name: "index-fingertip",
     hash: 0x57e21f1b2d57bec1,
-    table_version: 4,
-    certificate: 0x549fcf4022cbe870,
+    table_version: 5,
+    certificate: 0x9928aa73102f4e82,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {

@@ -44,6 +44,7 @@ const USUAL: Effort = Effort {
 };
 /// Part of a unit that rounding can add to an error.
 const ROUNDING: f64 = 0.6;
+
 /// Tables that were accepted, and what was tried.
 pub(super) struct Found<T> {
     pub(super) tables: OwnedTables,
