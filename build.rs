@@ -4,36 +4,81 @@
 
 use model_tables::constants::TransducerKind;
 use model_tables::generate::{self, GenerateError, Limit};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip.toml";
 
+/// Each board with the linker's sizes of its chip; those of the default board are in `memory.x`.
+const BOARDS: [(&str, Option<&str>); 2] = [
+    ("nucleo-f429zi", None),
+    ("nucleo-l432kc", Some("src/board/nucleo_l432kc.x")),
+];
+
 fn main() {
-    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
     println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
+    println!("cargo::rerun-if-changed=build.rs");
     println!(
         "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
     );
-    let design = env::var("FINGERTIP_DESIGN").unwrap_or_else(|_| DEFAULT_DESIGN.into());
-    // The build script runs in the folder of its package, which is the workspace root.
-    println!("cargo::rerun-if-changed={design}");
-    match tables(Path::new(&design)) {
-        Ok(source) => fs::write(out.join("design.rs"), source).expect("cargo's folder can be written"),
-        Err(reason) => println!("cargo::error={}", reason.replace('\n', " ")),
-    }
-    if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
-        let root = env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it");
-        link_for_the_chip(Path::new(&root));
+    if let Err(reason) = build() {
+        println!("cargo::error={}", reason.replace('\n', " "));
     }
 }
 
-/// Bytes of stack of the image that runs the model, for the six or seven copies of a solution (9.3 kB each) that it
-/// makes at its deepest. What is left of the RAM just holds a press.
-const SOLVER_STACK: u32 = 64 * 1024;
+fn build() -> Result<(), String> {
+    let for_the_chip = env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none");
+    if for_the_chip {
+        link_for_the_chip()?;
+    }
+    // Without a design the library is the signal path alone, and nothing is solved.
+    if env::var_os("CARGO_FEATURE_DESIGN").is_some() {
+        fold_in_the_design(for_the_chip)?;
+    }
+    Ok(())
+}
 
-/// The same of the image that compares lookups, for the largest tables that it searches.
-const KERNELS_STACK: u32 = 24 * 1024;
+/// Writes the tables of the design, or says why there are none.
+fn fold_in_the_design(for_the_chip: bool) -> Result<(), String> {
+    let asked = env::var_os("FINGERTIP_DESIGN");
+    let design = design_path(asked.as_deref())?;
+    println!("cargo::rerun-if-changed={design}");
+    if for_the_chip || asked.is_some() {
+        // Cargo compares dates alone, and takes a variable that is not UTF-8 for unset: an older file in the design's
+        // place, or such a path, would go unnoticed. What does not exist is always changed, so that this runs, and
+        // sees, at every build: 7 s of a processor for an image.
+        println!("cargo::rerun-if-changed={design}/always");
+    }
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
+    fs::write(out.join("design.rs"), tables(Path::new(design))?).expect("cargo's folder can be written");
+    Ok(())
+}
+
+/// The design file: what `FINGERTIP_DESIGN` asks for, or the default. The build script runs in the folder of its
+/// package, which is the workspace root.
+fn design_path(asked: Option<&OsStr>) -> Result<&str, String> {
+    let Some(asked) = asked else {
+        return Ok(DEFAULT_DESIGN);
+    };
+    let path = asked.to_str().ok_or_else(|| {
+        format!(
+            "FINGERTIP_DESIGN={} is not UTF-8: rename the file or its folder",
+            asked.display()
+        )
+    })?;
+    if path.is_empty() {
+        return Err(
+            "FINGERTIP_DESIGN is empty: give a design file, or unset it for the default design".into(),
+        );
+    }
+    if !Path::new(path).is_file() {
+        return Err(format!(
+            "FINGERTIP_DESIGN={path} is no file: give a design file, absolute or relative to the workspace root"
+        ));
+    }
+    Ok(path)
+}
 
 /// The Rust source of the tables, or the reason why there are none.
 fn tables(design: &Path) -> Result<String, String> {
@@ -57,18 +102,27 @@ fn tables(design: &Path) -> Result<String, String> {
     Ok(generated.rust_source())
 }
 
-fn link_for_the_chip(root: &Path) {
+fn link_for_the_chip() -> Result<(), String> {
+    let feature = |board: &str| board.to_uppercase().replace('-', "_");
+    let chosen = |board: &str| env::var_os(format!("CARGO_FEATURE_BOARD_{}", feature(board))).is_some();
+    let boards: Vec<_> = BOARDS.iter().filter(|(board, _)| chosen(board)).collect();
+    let [(_, sizes)] = boards[..] else {
+        let known = BOARDS.map(|(board, _)| format!("board-{board}")).join(" or ");
+        return Err(format!(
+            "{} boards are chosen: choose one, with --package fingertip --no-default-features --features {known}",
+            boards.len()
+        ));
+    };
+    let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     println!("cargo::rerun-if-changed=memory.x");
     println!("cargo::rustc-link-search={}", root.display());
-    // The default board's chip is the one of memory.x; another one's sizes lie beside its file, and come first.
-    if env::var_os("CARGO_FEATURE_BOARD_NUCLEO_L432KC").is_some() {
-        let sizes = root.join("src/board/nucleo_l432kc.x");
-        println!("cargo::rerun-if-changed={}", sizes.display());
-        println!("cargo::rustc-link-arg-bins=-T{}", sizes.display());
+    if let Some(sizes) = sizes {
+        // Come first, and so before those of memory.x.
+        println!("cargo::rerun-if-changed={sizes}");
+        println!("cargo::rustc-link-arg-bins=-T{}", root.join(sizes).display());
     }
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");
     }
-    println!("cargo::rustc-link-arg-bin=kernel_probe=--defsym=_stack_length={KERNELS_STACK}");
-    println!("cargo::rustc-link-arg-bin=solver_probe=--defsym=_stack_length={SOLVER_STACK}");
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! The design this image is built for: what the build script solved and wrote.
 
-use crate::design::Design;
+use crate::signal::design::Design;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;

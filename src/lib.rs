@@ -1,43 +1,41 @@
 //! Contact force and indentation of a fluid-filled fingertip, from the pressure in its fluid.
 //!
-//! One sample's way: [`counts`] -> [`transducer`] -> [`stuck`] -> [`pressure`] -> [`temperature`] -> [`tare`] ->
-//! [`filter`] -> [`touch`] -> [`drift`] -> [`fluid`] -> [`contact`] -> [`uncertainty`] -> [`report`], called in that
-//! order by [`pipeline`]; [`telemetry`] and [`command`] put into
-//! words what goes over the [`wire`], where it waits in the [`outbox`]; [`calibration`] says what is known of this one
-//! fingertip, [`design`] of all of its kind, and [`image`] of the kind this build is for. Integers only,
-//! but for the full model's [`solver_states`], which the firmware does not solve; nothing here knows a clock or a bus:
-//! time and samples are arguments.
+//! A sample's way: [`transducer`] -> [`signal`] -> [`link`], and what accompanies it: [`storage`] and [`device`].
+//!
+//! | module | what | imports |
+//! |---|---|---|
+//! | [`units`] | the quantities between the stages | |
+//! | [`status`] | why there is no reading, and what qualifies one | |
+//! | [`transducer`] | a part's words -> pressure | `units`, `status` |
+//! | [`signal`] | pressure -> force and indentation with their 1-sigma | and `transducer` |
+//! | `image` | the design that this build is for (feature `design`) | and `signal` |
+//! | [`link`] | reports and commands as bytes | and `signal` |
+//! | [`storage`] | the calibration in flash | and `link` |
+//! | [`device`] | commands, resets, tasks that must report | all of these |
+//! | `board` | pins, clocks and interrupts, on the chip only | `units`, `status`, `transducer`, `image` |
+//!
+//! Integers only. No module but `board` knows a clock or a bus: time and samples are arguments.
 #![cfg_attr(not(test), no_std)]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(target_os = "none"), forbid(unsafe_code))]
+// On a chip only denied: the macros of the board's crates bind interrupts.
+#![cfg_attr(target_os = "none", deny(unsafe_code))]
 
-pub mod calibration;
-pub mod command;
-pub mod contact;
-pub mod counts;
-pub mod design;
-pub mod drift;
-pub mod filter;
-pub mod fluid;
-pub mod image;
-pub mod lookup_sweep;
-pub mod lookup_ways;
-pub mod outbox;
-pub mod pipeline;
-pub mod pressure;
-pub mod record;
-pub mod report;
-pub mod solver_states;
-pub mod station;
-pub mod store;
-pub mod stuck;
-pub mod supervisor;
-pub mod tare;
-pub mod telemetry;
-pub mod temperature;
-pub mod touch;
+pub mod units;
+
+pub mod status;
+
 pub mod transducer;
-pub mod uncertainty;
-pub mod wire;
 
-#[cfg(test)]
-mod test_design;
+pub mod signal;
+
+#[cfg(feature = "design")]
+pub mod image;
+
+pub mod link;
+
+pub mod storage;
+
+pub mod device;
+
+#[cfg(target_os = "none")]
+pub mod board;

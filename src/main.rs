@@ -1,15 +1,9 @@
-//! The firmware: samples in, one report each millisecond out.
+//! The firmware: samples in, one report each millisecond out. The tasks are in `firmware/`, pins and clocks in `board/`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![deny(unsafe_code)]
 
 #[cfg(target_os = "none")]
-mod board;
-#[cfg(target_os = "none")]
-mod chosen;
-#[cfg(target_os = "none")]
-mod retained;
-#[cfg(target_os = "none")]
-mod tasks;
+mod firmware;
 
 #[cfg(not(target_os = "none"))]
 fn main() {

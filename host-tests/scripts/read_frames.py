@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads the board's frames (src/PROTOCOL.md) from a file, a pipe, a serial port set to 921600 baud or tcp:HOST:PORT, and
+"""Reads the board's frames (src/link/PROTOCOL.md) from a file, a pipe, a serial port set to 921600 baud or tcp:HOST:PORT, and
 prints one line each; `--encode KIND SEQUENCE [HEX]` writes a command. Nothing but the standard library.
 
     stty -F /dev/ttyACM0 921600 raw && python3 read_frames.py /dev/ttyACM0
@@ -23,7 +23,7 @@ OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy"
             "memory failed"]
 CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
 STORED = ["none", "serves", "another design's", "damaged", "unreadable"]
-LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang"]
+LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang", "non-maskable interrupt"]
 LENGTHS = {1: 42, 2: 15, 3: 61, 4: 20}
 
 

@@ -3,9 +3,9 @@
 //! Bounds (model, table, conversion) are largest errors; the others are standard deviations. The sum is that of the bounds and
 //! the root of the sum of the others' squares.
 
-use fingertip::tare::WINDOW;
+use fingertip::signal::tare::WINDOW;
+use fingertip::signal::uncertainty::averaged;
 use fingertip::transducer::period;
-use fingertip::uncertainty::averaged;
 use model_tables::generate::Generated;
 use model_tables::units::PressureRise;
 use std::fmt::Write as _;

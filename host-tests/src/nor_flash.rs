@@ -1,15 +1,56 @@
 //! NOR flash whose power fails when it is told to: programming only clears bits, erasing sets them, and what is under
 //! way when power goes is left half done.
+//!
+//! Units of 4 bytes are the STM32F4's. Units of 8 bytes have error correction, as the STM32L4's (RM0351 3.3.2, 3.3.7):
+//! each is programmed once between erasures, but for all zeros, and one that is left half done may refuse to be read.
 
 use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use fingertip::calibration::Calibration;
-use fingertip::store::{Identity, Store};
+use fingertip::signal::calibration::Calibration;
+use fingertip::storage::store::{Identity, Store};
 
 /// Steps that one erasure is divided into: power may fail between and within them.
 pub const ERASE_STEPS: u64 = 16;
+
+/// How a step looks that power failed in: the unit that was written, or all that was not erased yet.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum HalfDone {
+    /// Any mixture, bit by bit; with error correction also unit by unit, of all looks.
+    #[default]
+    Mixed,
+    /// As if it had not begun.
+    Untouched,
+    /// As if it had ended.
+    Complete,
+    /// Refuses to be read.
+    Unreadable,
+    /// Reads as erased, and refuses to be programmed.
+    LooksErased,
+}
+
+impl HalfDone {
+    /// The looks of memory without error correction, ...
+    pub const PLAIN: &[Self] = &[Self::Mixed, Self::Untouched, Self::Complete];
+    /// ... and with it.
+    pub const CORRECTED: &[Self] = &[
+        Self::Mixed,
+        Self::Untouched,
+        Self::Complete,
+        Self::Unreadable,
+        Self::LooksErased,
+    ];
+}
+
+/// One unit of memory with error correction, beside its bytes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Unit {
+    /// Programmed since it was erased.
+    written: bool,
+    /// Two errors: it cannot be read.
+    spoilt: bool,
+}
 
 /// What the memory does wrong, beside losing power.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -35,8 +76,10 @@ pub enum Defect {
 
 /// The memory.
 #[derive(Clone, Debug)]
-pub struct SimulatedFlash<const SLOT: usize> {
+pub struct SimulatedFlash<const SLOT: usize, const UNIT: usize = 4> {
     bytes: Vec<u8>,
+    units: Vec<Unit>,
+    half_done: HalfDone,
     /// Steps until power fails.
     budget: Option<u64>,
     powered: bool,
@@ -56,11 +99,13 @@ impl NorFlashError for FlashFailure {
     }
 }
 
-impl<const SLOT: usize> SimulatedFlash<SLOT> {
+impl<const SLOT: usize, const UNIT: usize> SimulatedFlash<SLOT, UNIT> {
     /// Two erased slots; `seed` decides how half-done steps look.
     pub fn erased(seed: u64) -> Self {
         Self {
             bytes: vec![0xFF; 2 * SLOT],
+            units: vec![Unit::default(); 2 * SLOT / UNIT],
+            half_done: HalfDone::default(),
             budget: None,
             powered: true,
             steps: 0,
@@ -94,10 +139,30 @@ impl<const SLOT: usize> SimulatedFlash<SLOT> {
         self
     }
 
-    /// Another look for half-done steps.
+    /// Another look for half-done steps; `seed` decides the mixture.
     #[must_use]
-    pub fn seeded(mut self, seed: u64) -> Self {
+    pub fn leaving(mut self, half_done: HalfDone, seed: u64) -> Self {
+        self.half_done = half_done;
         self.random = seed.wrapping_mul(2).wrapping_add(1);
+        self
+    }
+
+    /// The looks that its half-done steps have.
+    pub const fn looks() -> &'static [HalfDone] {
+        if Self::CORRECTED {
+            HalfDone::CORRECTED
+        } else {
+            HalfDone::PLAIN
+        }
+    }
+
+    /// The same memory, which refuses to read the unit at `offset`.
+    #[must_use]
+    pub fn spoilt_at(mut self, offset: usize) -> Self {
+        self.units[offset / UNIT] = Unit {
+            written: true,
+            spoilt: true,
+        };
         self
     }
 
@@ -114,6 +179,79 @@ impl<const SLOT: usize> SimulatedFlash<SLOT> {
     /// What lies there.
     pub fn bytes_mut(&mut self) -> &mut [u8] {
         &mut self.bytes
+    }
+
+    /// Whether a unit has error correction.
+    const CORRECTED: bool = UNIT == 8;
+
+    /// Programs one unit; false: it refuses.
+    fn program(&mut self, unit: usize, data: &[u8]) -> bool {
+        let zeros = data.iter().all(|&byte| byte == 0);
+        if Self::CORRECTED && self.units[unit].written && !zeros {
+            return false;
+        }
+        for (at, &byte) in (unit * UNIT..).zip(data) {
+            self.bytes[at] &= byte;
+        }
+        self.units[unit] = Unit {
+            written: true,
+            spoilt: false,
+        };
+        true
+    }
+
+    fn erase_unit(&mut self, unit: usize) {
+        self.bytes[unit * UNIT..][..UNIT].fill(0xFF);
+        self.units[unit] = Unit::default();
+    }
+
+    /// How one unit is left: a mixture is of any look there is, or of bits.
+    fn look(&mut self) -> HalfDone {
+        match self.half_done {
+            HalfDone::Mixed if Self::CORRECTED => HalfDone::CORRECTED[usize::from(self.noise()) % 5],
+            look => look,
+        }
+    }
+
+    /// Programs one unit by half.
+    fn half_program(&mut self, unit: usize, data: &[u8]) {
+        match self.look() {
+            HalfDone::Untouched => {}
+            HalfDone::Complete => {
+                self.program(unit, data);
+            }
+            HalfDone::LooksErased => self.units[unit].written = true,
+            look => {
+                for (at, &byte) in (unit * UNIT..).zip(data) {
+                    self.bytes[at] &= byte | self.noise();
+                }
+                self.units[unit] = Unit {
+                    written: true,
+                    spoilt: look == HalfDone::Unreadable,
+                };
+            }
+        }
+    }
+
+    /// Erases one unit by half.
+    fn half_erase(&mut self, unit: usize) {
+        match self.look() {
+            HalfDone::Untouched => {}
+            HalfDone::Complete => self.erase_unit(unit),
+            HalfDone::LooksErased => {
+                self.erase_unit(unit);
+                self.units[unit].written = true;
+            }
+            look => {
+                for at in unit * UNIT..(unit + 1) * UNIT {
+                    self.bytes[at] |= self.noise();
+                }
+                self.units[unit] = Unit {
+                    written: true,
+                    spoilt: look == HalfDone::Unreadable,
+                };
+            }
+        }
     }
 
     /// One byte of noise (xorshift64*).
@@ -154,16 +292,20 @@ impl<const SLOT: usize> SimulatedFlash<SLOT> {
     }
 }
 
-impl<const SLOT: usize> ErrorType for SimulatedFlash<SLOT> {
+impl<const SLOT: usize, const UNIT: usize> ErrorType for SimulatedFlash<SLOT, UNIT> {
     type Error = FlashFailure;
 }
 
-impl<const SLOT: usize> ReadNorFlash for SimulatedFlash<SLOT> {
+impl<const SLOT: usize, const UNIT: usize> ReadNorFlash for SimulatedFlash<SLOT, UNIT> {
     const READ_SIZE: usize = 1;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashFailure> {
         self.operate()?;
         let from = offset as usize;
+        let units = from / UNIT..(from + bytes.len()).div_ceil(UNIT);
+        if self.units[units].iter().any(|unit| unit.spoilt) {
+            return Err(FlashFailure);
+        }
         bytes.copy_from_slice(&self.bytes[from..from + bytes.len()]);
         Ok(())
     }
@@ -173,8 +315,8 @@ impl<const SLOT: usize> ReadNorFlash for SimulatedFlash<SLOT> {
     }
 }
 
-impl<const SLOT: usize> NorFlash for SimulatedFlash<SLOT> {
-    const WRITE_SIZE: usize = 4;
+impl<const SLOT: usize, const UNIT: usize> NorFlash for SimulatedFlash<SLOT, UNIT> {
+    const WRITE_SIZE: usize = UNIT;
     const ERASE_SIZE: usize = SLOT;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashFailure> {
@@ -182,16 +324,15 @@ impl<const SLOT: usize> NorFlash for SimulatedFlash<SLOT> {
         if !self.operate()? {
             return Ok(());
         }
-        let length = (to - from) as usize / ERASE_STEPS as usize;
+        let units = from as usize / UNIT..to as usize / UNIT;
+        let length = units.len() / ERASE_STEPS as usize;
         for step in 0..ERASE_STEPS as usize {
-            let whole = self.step();
-            for i in 0..length {
-                let at = from as usize + step * length + i;
-                self.bytes[at] |= if whole { 0xFF } else { self.noise() };
-            }
-            if !whole {
+            let begin = units.start + step * length;
+            if !self.step() {
+                (begin..units.end).for_each(|unit| self.half_erase(unit));
                 return Err(FlashFailure);
             }
+            (begin..begin + length).for_each(|unit| self.erase_unit(unit));
         }
         Ok(())
     }
@@ -201,13 +342,12 @@ impl<const SLOT: usize> NorFlash for SimulatedFlash<SLOT> {
         if !self.operate()? {
             return Ok(());
         }
-        for (i, unit) in bytes.chunks(Self::WRITE_SIZE).enumerate() {
-            let whole = self.step();
-            for (j, &byte) in unit.iter().enumerate() {
-                let at = offset as usize + i * Self::WRITE_SIZE + j;
-                self.bytes[at] &= if whole { byte } else { byte | self.noise() };
+        for (unit, data) in (offset as usize / UNIT..).zip(bytes.chunks(UNIT)) {
+            if !self.step() {
+                self.half_program(unit, data);
+                return Err(FlashFailure);
             }
-            if !whole {
+            if !self.program(unit, data) {
                 return Err(FlashFailure);
             }
         }
@@ -221,7 +361,7 @@ impl<const SLOT: usize> NorFlash for SimulatedFlash<SLOT> {
 /// Never: nothing fails that memory.
 pub fn saved<const SLOT: usize>(identity: Identity, calibration: Calibration) -> Vec<u8> {
     let (mut store, _) = block_on(Store::open(
-        SimulatedFlash::<SLOT>::erased(1),
+        <SimulatedFlash<SLOT>>::erased(1),
         SLOT as u32,
         identity,
     ));

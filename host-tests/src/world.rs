@@ -1,15 +1,17 @@
 //! A fingertip of the image's design in virtual time: true pressures in, what the firmware says out.
 
-use fingertip::calibration::Calibration;
-use fingertip::command::{Command, Request};
-use fingertip::design::Design;
+use fingertip::device::station::{Beginning, Station, ToStore};
+use fingertip::device::supervisor::Breadcrumb;
 use fingertip::image::ImageDesign;
-use fingertip::report::{Fault, Microseconds, Report};
-use fingertip::station::{Beginning, Station, ToStore};
-use fingertip::supervisor::Breadcrumb;
-use fingertip::telemetry::{Message, ResetCause, Stored};
-use fingertip::transducer::{Millipascals, Sample};
-use model_tables::constants::{DesignConstants, TransducerKind};
+use fingertip::link::command::{Command, Request};
+use fingertip::link::telemetry::Message;
+use fingertip::signal::calibration::Calibration;
+use fingertip::signal::design::Design;
+use fingertip::signal::report::Report;
+use fingertip::status::{Fault, ResetCause, Stored};
+use fingertip::transducer::driver::Sample;
+use fingertip::units::{Microseconds, Millipascals};
+use model_tables::constants::{DesignConstants, Quantity, TransducerKind};
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;
 
@@ -21,6 +23,8 @@ impl Design for WithAbsolutePart {
     const CONSTANTS: DesignConstants = {
         let mut constants = ImageDesign::CONSTANTS;
         constants.transducer.kind = TransducerKind::Ms5837 { address: 0x76 };
+        constants.transducer.quantity = Quantity::Absolute;
+        constants.transducer.range = [1_000, 200_000];
         constants
     };
     const PRESSURE_FRACTION_BITS: u32 = ImageDesign::PRESSURE_FRACTION_BITS;
@@ -96,14 +100,21 @@ pub fn beginning<D: Design>(
     }
 }
 
-/// Pascals at rest.
+/// The air around the fingertip, pascals.
+const AIR: f64 = 101_325.0;
+
+/// Pascals at rest, as the transducer reads them: with the air where it is absolute.
 pub fn rest<D: Design>() -> f64 {
-    f64::from(D::CONSTANTS.rest_pressure)
+    let air = match D::CONSTANTS.transducer.quantity {
+        Quantity::Gauge => 0.0,
+        Quantity::Absolute => AIR,
+    };
+    f64::from(D::CONSTANTS.rest_pressure) + air
 }
 
 /// Pascals from rest to the end of the tables.
 pub fn full_scale<D: Design>() -> f64 {
-    f64::from(D::CONSTANTS.maximum_pressure) - rest::<D>()
+    f64::from(D::CONSTANTS.maximum_pressure - D::CONSTANTS.rest_pressure)
 }
 
 /// A sample of a pressure in pascals, measured half a period before it is given.

@@ -1,13 +1,13 @@
 //! The stored calibration survives a power cut at every step, every failing operation, and whatever lies in the flash.
 
 use embassy_futures::block_on;
-use fingertip::calibration::Calibration;
-use fingertip::record::LENGTH;
-use fingertip::store::{Identity, Store, StoreError};
-use fingertip::telemetry::Stored;
-use fingertip::transducer::Millipascals;
-use host_tests::assert_faults_says;
+use fingertip::signal::calibration::Calibration;
+use fingertip::status::Stored;
+use fingertip::storage::record::LENGTH;
+use fingertip::storage::store::{Identity, Store, StoreError};
+use fingertip::units::Millipascals;
 use host_tests::nor_flash::{Defect, SimulatedFlash};
+use host_tests::{assert_faults_says, workspace};
 
 const IDENTITY: Identity = Identity {
     design_hash: 0x0123_4567_89AB_CDEF,
@@ -20,6 +20,12 @@ const IDENTITY: Identity = Identity {
 const SLOT: usize = 8 * LENGTH;
 type Flash = SimulatedFlash<SLOT>;
 
+/// The units of the boards' memories, and their slots.
+const WORD: usize = 4;
+const DOUBLE_WORD: usize = 8;
+const SECTOR: usize = 16 * 1024;
+const PAGE: usize = 2 * 1024;
+
 fn calibration(number: i32) -> Calibration {
     Calibration {
         zero: Some(Millipascals(20_000_000 + number)),
@@ -27,110 +33,240 @@ fn calibration(number: i32) -> Calibration {
     }
 }
 
-fn open<const N: usize>(flash: SimulatedFlash<N>) -> (Store<SimulatedFlash<N>>, Stored) {
+fn open<const N: usize, const U: usize>(
+    flash: SimulatedFlash<N, U>,
+) -> (Store<SimulatedFlash<N, U>>, Stored) {
     block_on(Store::open(flash, N as u32, IDENTITY))
 }
 
-fn save<const N: usize>(
-    flash: SimulatedFlash<N>,
+fn save<const N: usize, const U: usize>(
+    flash: SimulatedFlash<N, U>,
     number: i32,
-) -> (SimulatedFlash<N>, Result<(), StoreError>) {
+) -> (SimulatedFlash<N, U>, Result<(), StoreError>) {
     let (mut store, _) = open(flash);
     let saved = block_on(store.save(Some(calibration(number))));
     (store.into_flash(), saved)
 }
 
 /// What a start finds.
-fn served<const N: usize>(flash: &SimulatedFlash<N>) -> (Stored, Option<Calibration>) {
+fn served<const N: usize, const U: usize>(flash: &SimulatedFlash<N, U>) -> (Stored, Option<Calibration>) {
     let (store, state) = open(flash.clone());
     (state, store.calibration())
 }
 
-/// Saves 0 to `saves`, each in the memory as the one before left it.
-fn histories(saves: i32) -> Vec<Flash> {
-    let mut flashes = vec![Flash::erased(1)];
+/// Saves 0 to `saves`, each behind the one before: the memory before each and after the last.
+fn histories<const N: usize, const U: usize>(saves: i32) -> Vec<SimulatedFlash<N, U>> {
+    let (mut store, _) = open(SimulatedFlash::erased(1));
+    let mut flashes = vec![store.clone().into_flash()];
     for number in 0..saves {
-        let (flash, saved) = save(flashes[number as usize].clone(), number);
-        assert_eq!(saved, Ok(()));
-        assert_eq!(served(&flash), (Stored::Serves, Some(calibration(number))));
-        flashes.push(flash);
+        assert_eq!(block_on(store.save(Some(calibration(number)))), Ok(()));
+        flashes.push(store.clone().into_flash());
     }
+    assert_eq!(
+        served(&flashes[saves as usize]),
+        (Stored::Serves, Some(calibration(saves - 1)))
+    );
     flashes
 }
 
-/// Every step of save `number`, cut with a different look of the half-done step.
-fn cuts(before: &Flash, number: i32, seed: u64) -> Vec<Flash> {
+/// Every step of save `number`, cut with every look of the half-done step.
+fn cuts<const N: usize, const U: usize>(
+    before: &SimulatedFlash<N, U>,
+    number: i32,
+) -> impl Iterator<Item = SimulatedFlash<N, U>> {
     let (whole, _) = save(before.clone(), number);
-    (0..whole.steps() - before.steps())
-        .map(|steps| {
-            let cut = before.clone().seeded(seed + steps).failing_after(steps);
+    let looks = SimulatedFlash::<N, U>::looks().iter();
+    (0..whole.steps() - before.steps()).flat_map(move |steps| {
+        looks.clone().map(move |&look| {
+            let seed = steps + 1000 * number as u64;
+            let cut = before.clone().leaving(look, seed).failing_after(steps);
             let (flash, saved) = save(cut, number);
             assert!(saved.is_err(), "cut after {steps} steps");
             flash.powered_up()
         })
-        .collect()
+    })
 }
 
 /// After a cut of save `number` the calibration before it or its own serves, and the next save works.
-fn assert_consistent(flash: &Flash, number: i32) {
+fn assert_consistent<const N: usize, const U: usize>(flash: &SimulatedFlash<N, U>, number: i32) {
     let (state, found) = served(flash);
     let before = (number > 0).then(|| calibration(number - 1));
-    if found != Some(calibration(number)) {
+    if found == Some(calibration(number)) {
+        assert_eq!(state, Stored::Serves, "save {number}");
+    } else {
         assert_eq!(found, before, "save {number}");
-        assert!(number == 0 || state == Stored::Serves, "save {number}: {state:?}");
+        // A place that may hold a later record is said; it never hides the one before.
+        assert!(
+            number == 0 || matches!(state, Stored::Serves | Stored::Unreadable),
+            "save {number}: {state:?}"
+        );
     }
     let (flash, saved) = save(flash.clone(), number + 1);
     assert_eq!(saved, Ok(()), "after save {number}");
     assert_eq!(served(&flash), (Stored::Serves, Some(calibration(number + 1))));
 }
 
-#[test]
-fn power_may_fail_at_every_step_of_every_save() {
-    let flashes = histories(60);
+/// Cuts these saves at every step, with every look; how many cuts that are.
+fn sweep<const N: usize, const U: usize>(saves: impl IntoIterator<Item = i32>) -> usize {
+    let saves: Vec<i32> = saves.into_iter().collect();
+    let flashes = histories::<N, U>(*saves.last().expect("some saves") + 1);
     let mut points = 0;
-    for (number, before) in flashes[..60].iter().enumerate() {
-        for seed in [1, 1_000_001, 2_000_003, 3_000_017] {
-            for flash in cuts(before, number as i32, seed) {
-                assert_consistent(&flash, number as i32);
-                points += 1;
-            }
+    for number in saves {
+        for flash in cuts(&flashes[number as usize], number) {
+            assert_consistent(&flash, number);
+            points += 1;
         }
     }
-    assert_faults_says(&format!("{points} power cuts, one at every step of 60 saves"));
+    points
 }
 
-#[test]
-fn power_may_fail_again_at_every_step_of_the_save_after_a_cut() {
-    // The ninth save turns the slots over: the one before it, it, and the one after.
-    let flashes = histories(10);
+/// Cuts these saves at every step, and the save after each cut again.
+fn sweep_twice<const N: usize, const U: usize>(saves: std::ops::Range<i32>) -> usize {
+    let flashes = histories::<N, U>(saves.end);
     let mut points = 0;
-    for number in 7..10_i32 {
-        for first in cuts(&flashes[number as usize], number, 7) {
+    for number in saves {
+        for first in cuts(&flashes[number as usize], number) {
             let (_, found) = served(&first);
             let before = if found == Some(calibration(number)) {
                 number
             } else {
                 number - 1
             };
-            for second in cuts(&first, number + 1, 11) {
-                let (state, found) = served(&second);
-                assert_eq!(state, Stored::Serves);
+            for second in cuts(&first, number + 1) {
+                let (_, found) = served(&second);
                 assert!(
                     found == Some(calibration(before)) || found == Some(calibration(number + 1)),
                     "{found:?}"
                 );
+                let (again, saved) = save(second, number + 2);
+                assert_eq!(saved, Ok(()));
+                assert_eq!(served(&again), (Stored::Serves, Some(calibration(number + 2))));
                 points += 1;
             }
         }
     }
-    assert_faults_says(&format!("{points} pairs of cuts"));
+    points
+}
+
+#[test]
+fn the_slots_here_are_the_boards() {
+    for (board, slot) in [("nucleo_f429zi", SECTOR), ("nucleo_l432kc", PAGE)] {
+        let file = workspace().join("src/board").join(board).with_extension("rs");
+        let source = std::fs::read_to_string(file).expect("the board has a file");
+        let line = format!("pub const SLOT: u32 = {} * 1024;", slot / 1024);
+        assert!(source.contains(&line), "{board}: {line}");
+    }
+}
+
+#[test]
+fn power_may_fail_at_every_step_of_every_save() {
+    let words = sweep::<SLOT, WORD>(0..60);
+    let double_words = sweep::<SLOT, DOUBLE_WORD>(0..60);
+    assert_faults_says(&format!(
+        "{words} power cuts in units of 4 bytes and {double_words} in units of 8 bytes with error correction, at every \
+         step of 60 saves with every look"
+    ));
+}
+
+#[test]
+fn power_may_fail_again_at_every_step_of_the_save_after_a_cut() {
+    // The ninth save turns the slots over: the one before it, it, and the one after.
+    let words = sweep_twice::<SLOT, WORD>(7..10);
+    let double_words = sweep_twice::<SLOT, DOUBLE_WORD>(7..10);
+    assert_faults_says(&format!("{words} and {double_words} pairs of cuts"));
+}
+
+#[test]
+fn power_may_fail_while_the_slots_of_a_board_turn_over() {
+    // A sector has 341 places, a page 42: the first saves, and those at the end of either slot.
+    let sectors = sweep::<SECTOR, WORD>([0, 1, 339, 340, 341, 342, 681, 682, 683]);
+    let pages = sweep::<PAGE, DOUBLE_WORD>(0..86);
+    assert_faults_says(&format!(
+        "{sectors} cuts at the turns of two 16 KB sectors, {pages} at every step of 86 saves in two 2 KB pages"
+    ));
+}
+
+/// A memory with saves 0 to `saves` whose record `number` is spoilt: on memory with error correction a unit of it.
+fn spoilt(saves: i32, number: usize, unit: usize) -> SimulatedFlash<SLOT, DOUBLE_WORD> {
+    let flashes = histories::<SLOT, DOUBLE_WORD>(saves);
+    flashes[saves as usize]
+        .clone()
+        .spoilt_at(number % 16 * LENGTH + unit * DOUBLE_WORD)
+}
+
+#[test]
+fn a_record_that_cannot_be_read_leaves_the_one_before_and_is_said() {
+    for saves in [1, 5, 8, 9, 16, 17] {
+        for unit in 0..LENGTH / DOUBLE_WORD {
+            let flash = spoilt(saves, saves as usize - 1, unit);
+            let before = (saves > 1).then(|| calibration(saves - 2));
+            assert_eq!(served(&flash), (Stored::Unreadable, before), "{saves}, {unit}");
+            let (flash, saved) = save(flash, saves - 2);
+            // Also what the record before holds already, as the lost one may have been another.
+            assert_eq!(saved, Ok(()));
+            assert_eq!(served(&flash), (Stored::Serves, Some(calibration(saves - 2))));
+        }
+    }
+}
+
+#[test]
+fn an_older_record_that_cannot_be_read_matters_to_nobody() {
+    for (saves, spoilt_ones) in [(8, 0..7), (12, 0..11)] {
+        for number in spoilt_ones {
+            let flash = spoilt(saves, number, 2);
+            let latest = Some(calibration(saves - 1));
+            assert_eq!(served(&flash), (Stored::Serves, latest), "{number}");
+            let mut flash = flash;
+            for next in saves..saves + 20 {
+                let (after, saved) = save(flash, next);
+                assert_eq!(saved, Ok(()), "{number}, {next}");
+                assert_eq!(served(&after), (Stored::Serves, Some(calibration(next))));
+                flash = after;
+            }
+        }
+    }
+}
+
+#[test]
+fn a_later_save_stays_the_last_when_a_lost_record_comes_back() {
+    let flashes = histories::<SLOT, DOUBLE_WORD>(5);
+    let (flash, saved) = save(flashes[5].clone().spoilt_at(4 * LENGTH), 99);
+    assert_eq!(saved, Ok(()));
+    let (store, _) = open(flash);
+    // Its place may have held number 5.
+    assert_eq!(store.sequence(), 6);
+}
+
+#[test]
+fn one_rotten_bit_of_the_last_record_is_said_too() {
+    let flashes = histories::<SLOT, WORD>(5);
+    for bit in 0..8 * LENGTH {
+        let mut flash = flashes[5].clone();
+        flash.bytes_mut()[4 * LENGTH + bit / 8] ^= 1 << (bit % 8);
+        assert_eq!(
+            served(&flash),
+            (Stored::Unreadable, Some(calibration(3))),
+            "{bit}"
+        );
+    }
+}
+
+#[test]
+fn nothing_but_places_that_cannot_be_read_is_said_and_written_over() {
+    let mut flash = histories::<SLOT, DOUBLE_WORD>(16)[16].clone();
+    for place in 0..16 {
+        flash = flash.spoilt_at(place * LENGTH);
+    }
+    assert_eq!(served(&flash), (Stored::Unreadable, None));
+    let (flash, saved) = save(flash, 20);
+    assert_eq!(saved, Ok(()));
+    assert_eq!(served(&flash), (Stored::Serves, Some(calibration(20))));
 }
 
 #[test]
 fn the_slots_of_the_board_turn_over_too() {
-    const BOARD: usize = 16 * 1024;
-    let mut flash = SimulatedFlash::<BOARD>::erased(1);
-    let places = (BOARD / LENGTH) as i32;
+    let mut flash = SimulatedFlash::<SECTOR, WORD>::erased(1);
+    let places = (SECTOR / LENGTH) as i32;
     let (mut store, _) = open(flash);
     for number in 0..=places {
         assert_eq!(block_on(store.save(Some(calibration(number)))), Ok(()));
@@ -142,7 +278,7 @@ fn the_slots_of_the_board_turn_over_too() {
 
 #[test]
 fn every_operation_may_fail_once_or_for_ever() {
-    let flashes = histories(12);
+    let flashes: Vec<Flash> = histories(12);
     let mut failures = 0;
     for (number, before) in flashes[..12].iter().enumerate() {
         let number = number as i32;
@@ -209,7 +345,7 @@ fn what_was_stored_can_be_made_void() {
 
 #[test]
 fn both_slots_damaged_are_said_so_and_written_again() {
-    let flashes = histories(10);
+    let flashes: Vec<Flash> = histories(10);
     let mut flash = flashes[10].clone();
     for (i, byte) in flash.bytes_mut().iter_mut().enumerate() {
         *byte ^= (i % 7) as u8 & !1;

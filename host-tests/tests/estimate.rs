@@ -1,9 +1,9 @@
 //! What the design tool says the chip would say, and what the signal path says.
 
-use fingertip::contact::contact;
-use fingertip::design::Design;
 use fingertip::image::ImageDesign;
-use fingertip::report::Warnings;
+use fingertip::signal::contact::contact;
+use fingertip::signal::design::Design;
+use fingertip::status::Warnings;
 use host_tests::design;
 use model_tables::generate;
 use model_tables::units::PressureRise;

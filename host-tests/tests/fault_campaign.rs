@@ -1,13 +1,13 @@
 //! Random grasps, random faults, random commands: no panic, no wrong number with status ok, no zero taken while pressed.
 
-use fingertip::command::Command;
-use fingertip::design::Design;
+use fingertip::device::supervisor::Breadcrumb;
 use fingertip::image::ImageDesign;
-use fingertip::report::{Fault, Status};
-use fingertip::supervisor::Breadcrumb;
-use fingertip::tare::{StartUp, Zero};
-use fingertip::telemetry::ResetCause;
-use fingertip::transducer::{Millipascals, Sample};
+use fingertip::link::command::Command;
+use fingertip::signal::design::Design;
+use fingertip::signal::zero::{StartUp, Zero};
+use fingertip::status::{Fault, ResetCause, Status};
+use fingertip::transducer::driver::Sample;
+use fingertip::units::Millipascals;
 use host_tests::assert_faults_says;
 use host_tests::world::{Random, World, beginning, full_scale, rest, rise, sample};
 
@@ -228,7 +228,7 @@ fn a_still_press_at_power_up_is_said_or_small() {
 #[test]
 fn no_reset_that_nobody_asked_for_takes_a_zero() {
     let kept = Zero {
-        pressure: fingertip::pressure::Pressure(
+        pressure: fingertip::units::Pressure(
             (rest::<Image>() * f64::from(1 << Image::PRESSURE_FRACTION_BITS)) as i32,
         ),
         verified: true,
@@ -249,7 +249,7 @@ fn no_reset_that_nobody_asked_for_takes_a_zero() {
             for press in (0..100).map(|i| f64::from(i) * full_scale::<Image>() / 100.0) {
                 let begins = beginning::<Image>(cause, None, left);
                 assert_eq!(
-                    StartUp::after(cause, begins.start.kept),
+                    StartUp::after(cause, begins.start.kept, Image::CONSTANTS.transducer.quantity),
                     left.map_or(StartUp::Stored, |_| StartUp::Kept(kept))
                 );
                 let mut world = World::<Image>::new(&begins);

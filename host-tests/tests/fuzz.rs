@@ -1,11 +1,13 @@
 //! Everything that reads bytes from outside, on bytes from outside: random ones, and whole ones changed a little.
 
-use fingertip::command::{self, Command, Request};
-use fingertip::record::{self, Record};
-use fingertip::report::{Fault, Microseconds, Report};
-use fingertip::supervisor::{Breadcrumb, WORDS};
-use fingertip::telemetry::{self, Frame, Message};
-use fingertip::wire::Deframer;
+use fingertip::device::supervisor::{Breadcrumb, WORDS};
+use fingertip::link::command::{self, Command, Request};
+use fingertip::link::telemetry::{self, Frame, Message};
+use fingertip::link::wire::Deframer;
+use fingertip::signal::report::Report;
+use fingertip::status::Fault;
+use fingertip::storage::record::{self, Record};
+use fingertip::units::Microseconds;
 use host_tests::assert_faults_says;
 use host_tests::world::Random;
 

@@ -4,10 +4,10 @@
 //! `model-tables/golden` anew, and the README's rows are named by the same test without it.
 
 use expect_test::expect_file;
-use fingertip::design::Design;
 use fingertip::image::ImageDesign;
 use fingertip::image::generated::TABLES;
-use fingertip::uncertainty::Uncertainty;
+use fingertip::signal::design::Design;
+use fingertip::signal::uncertainty::Uncertainty;
 use host_tests::budget::{self, Budget};
 use host_tests::{assert_readme_says, design, workspace};
 use model_tables::generate::{self, Generated};

@@ -1,9 +1,9 @@
 //! A grasp of eight hours, and what drift and weather do to it.
 
-use fingertip::design::Design;
 use fingertip::image::ImageDesign;
-use fingertip::report::{Report, Status, Warnings};
-use fingertip::touch::Touch;
+use fingertip::signal::design::Design;
+use fingertip::signal::report::Report;
+use fingertip::status::{Status, Touch, Warnings};
 use host_tests::assert_faults_says;
 use host_tests::world::{WithAbsolutePart, World, full_scale, rest, sample};
 
@@ -33,7 +33,7 @@ impl Held {
 /// Presses to `share` of the tables' pressure and holds for eight hours while the zero drifts, pascals an hour.
 fn hold<D: Design>(share: f64, drift: f64) -> Held {
     let mut world = World::<D>::zeroed(rest::<D>());
-    world.ask(fingertip::command::Command::Tare);
+    world.ask(fingertip::link::command::Command::Tare);
     for _ in 0..400 {
         world.step(1000, Ok(sample::<D>(rest::<D>())));
     }
@@ -100,7 +100,7 @@ fn weather_moves_the_force_of_an_absolute_part_and_it_says_so() {
 fn weather_is_followed_while_nothing_touches() {
     // 8 m of stairs in 25 s up, and down again.
     let mut world = World::<WithAbsolutePart>::zeroed(rest::<WithAbsolutePart>());
-    world.ask(fingertip::command::Command::Tare);
+    world.ask(fingertip::link::command::Command::Tare);
     let mut worst = 0.0_f64;
     for ms in 0..60_000 {
         let seconds = f64::from(ms) / 1000.0;

@@ -1,9 +1,10 @@
 //! The protocol's page, the reader in Python and the firmware agree, byte for byte.
 
-use fingertip::command::{self, Command, Request};
-use fingertip::report::{Fault, Measurement, Microseconds, Report, Warnings};
-use fingertip::telemetry::{self, Frame, Hello, LastFault, Message, ResetCause, Stored};
-use fingertip::touch::Touch;
+use fingertip::link::command::{self, Command, Request};
+use fingertip::link::telemetry::{self, Frame, Hello, Message};
+use fingertip::signal::report::{Measurement, Report};
+use fingertip::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings};
+use fingertip::units::Microseconds;
 use host_tests::workspace;
 use std::fs;
 use std::io::Write;
@@ -12,7 +13,7 @@ use std::process::{Command as Process, Stdio};
 
 /// The bytes of the page's example.
 fn example(what: &str) -> Vec<u8> {
-    let page = fs::read_to_string(workspace().join("src/PROTOCOL.md")).expect("the page is there");
+    let page = fs::read_to_string(workspace().join("src/link/PROTOCOL.md")).expect("the page is there");
     let row = page
         .lines()
         .find(|line| line.starts_with(&format!("| {what}")))
@@ -76,7 +77,7 @@ fn the_pages_examples_are_what_the_firmware_sends_and_takes() {
 
 #[test]
 fn the_page_names_every_code() {
-    let page = fs::read_to_string(workspace().join("src/PROTOCOL.md")).expect("the page is there");
+    let page = fs::read_to_string(workspace().join("src/link/PROTOCOL.md")).expect("the page is there");
     for (fault, code) in Fault::CODES {
         assert!(page.contains(&format!("| {code} | {fault}")), "{code} {fault}");
     }
@@ -217,7 +218,7 @@ fn the_reader_in_python_has_a_word_for_every_code() {
     for ((last_fault, _), word) in
         LastFault::CODES
             .into_iter()
-            .zip(["nothing", "late", "panic", "hard fault", "hang"])
+            .zip(["nothing", "late", "panic", "hard fault", "hang", "non-maskable"])
     {
         let hello = Hello {
             last_fault,

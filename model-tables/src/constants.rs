@@ -21,6 +21,21 @@ pub struct DesignConstants {
     pub transducer: Transducer,
 }
 
+/// The thinnest and the densest air around a hand, pascals absolute. 60 kPa is a little below the standard atmosphere at
+/// 4000 m (61.6 kPa, ISO 2533); 108 kPa is a high at sea level of which there are few a century (the highest on record
+/// below 750 m is 108.4 kPa, WMO World Weather and Climate Extremes Archive).
+pub const AIR: [i32; 2] = [60_000, 108_000];
+
+/// What a transducer measures against.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Quantity {
+    /// Against the air around it.
+    Gauge,
+    /// Against a vacuum: the air is in it, within [`AIR`], and the zero has to take it out. 1 hPa of weather or 8 m of
+    /// stairs read as 100 Pa.
+    Absolute,
+}
+
 /// Standard deviations of one sample below zero that noise is believed to explain: filtered white noise gets there
 /// less than once in 10^30 reports.
 pub const BELOW_ZERO_DEVIATIONS: i64 = 8;
@@ -28,12 +43,14 @@ pub const BELOW_ZERO_DEVIATIONS: i64 = 8;
 /// The pressure transducer of a design.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Transducer {
-    /// Gauge pressure at the lower and upper end of its range, pascals.
+    /// Pressure at the lower and upper end of the part's own range, pascals, in its own quantity.
     pub range: [i32; 2],
     /// Smallest change it tells apart, millipascals.
     pub resolution: i32,
     /// One standard deviation of one sample at the converter, millipascals.
     pub noise: i32,
+    /// What it measures against.
+    pub quantity: Quantity,
     /// Its kind, with what only that kind has.
     pub kind: TransducerKind,
 }

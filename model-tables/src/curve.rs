@@ -12,7 +12,7 @@ pub struct Contact {
 }
 
 #[cfg(feature = "std")]
-pub use sampled::{Curve, CurveError};
+pub use sampled::{Curve, CurveError, CurveFailure};
 
 #[cfg(feature = "std")]
 mod sampled {
@@ -76,6 +76,36 @@ mod sampled {
     }
 
     impl core::error::Error for CurveError {}
+
+    /// Why a model gives no curve; its own errors are `E`.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub enum CurveFailure<E> {
+        /// A state is missing.
+        Model(E),
+        /// Pressure or force do not grow with indentation.
+        Shape(CurveError),
+    }
+
+    impl<E> CurveFailure<E> {
+        /// From that of a model with errors of another kind.
+        pub fn of<M: Into<E>>(failure: CurveFailure<M>) -> Self {
+            match failure {
+                CurveFailure::Model(error) => Self::Model(error.into()),
+                CurveFailure::Shape(error) => Self::Shape(error),
+            }
+        }
+    }
+
+    impl<E: fmt::Display> fmt::Display for CurveFailure<E> {
+        fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            match self {
+                Self::Model(error) => error.fmt(f),
+                Self::Shape(error) => error.fmt(f),
+            }
+        }
+    }
+
+    impl<E: fmt::Debug + fmt::Display> core::error::Error for CurveFailure<E> {}
 
     impl Curve {
         /// A curve through states of increasing indentation, the state of rest left out.

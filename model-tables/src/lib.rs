@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use model_tables::design::{Design, Membrane, RestBy};
-//! use model_tables::{material::Law, membrane::TensionField, press::Press};
+//! use model_tables::{material::Law, membrane::TensionField, membrane::press::Press};
 //!
 //! // Metres and pascals: a small dome of Agilus30, inflated to 2.3 times its length at the pole.
 //! let design = Design {
@@ -18,40 +18,40 @@
 //! let mut press = Press::new(&design, TensionField::Relaxed)?;
 //! let state = press.at_indentation(1.5e-3)?;
 //! assert!((state.force - 8.371).abs() < 1e-3, "{} N", state.force);
-//! # Ok::<(), model_tables::press::ModelError>(())
+//! # Ok::<(), model_tables::membrane::press::MembraneError>(())
 //! ```
 //!
 //! # The way through the crate
 //!
-//! [`design`] (what the fingertip is) -> [`material`] -> [`membrane`] (the local equations) -> [`equilibrium`]
-//! (Newton's method over the [`solver`], which knows no physics) -> [`adapt`] (on a [`mesh`] that fits) -> [`rest`]
-//! and [`press`] ([`state`]s of equilibrium) -> [`curve`] (pressure rise -> force and indentation) -> `generate`
-//! (fits and certifies) -> [`table`] (integers for the chip, in the quantities of [`units`], beside the
-//! [`constants`] of the design). Beside it stands the feedback [`actuator`].
+//! [`design`] (what the fingertip is) of a [`material`] -> [`membrane`] (thin walls) or [`solid`] (walls that bend), with the
+//! [`solver`], which knows no physics -> `model` (either of them behind one interface, and which of them a design needs) ->
+//! [`curve`] (pressure rise -> force and indentation) -> `generate` (fits and certifies) -> [`table`] (integers for the
+//! chip, in the quantities of [`units`], beside the [`constants`] of the design). A design comes from a file by
+//! `design_file`. Beside it all stands the feedback [`actuator`].
 //!
-//! With `cli` come `fit` (bench data -> a calibrated design) and `size` (a wanted force -> designs).
+//! The command line, calibration and sizing are the package `designer`; other ways to solve and to look up, and campaigns,
+//! are `compare`.
 //!
 //! A law that [`material::Law`] lacks joins by implementing [`material::Hyperelastic`], and is pressed by
-//! [`press::Press::inflate`].
+//! [`membrane::press::Press::inflate`].
 //!
 //! # Features
 //!
 //! | feature | default | adds |
 //! |---|---|---|
 //! | none | | the model, the tables' look-up and their quantities: `no_std`, no allocation, no operating system |
-//! | `std` | yes | design files (`design_file`), the curve of a press, the table generator and its certificate (`generate`) |
-//! | `cli` | no | calibration (`fit`), sizing (`size`) and the `designer` command line; implies `std` |
+//! | `std` | yes | the solid, design files (`design_file`), the choice of model (`model`), the curve of a press, the table generator and its certificate (`generate`) |
 //!
 //! On a chip: `model-tables = { ..., default-features = false }`. The look-up works in integers alone. The model works in
-//! `f64` and keeps everything in one [`press::Press`] of less than 200 kB; a [`press::workspace::Workspace`] keeps that in
+//! `f64` and keeps everything in one [`Press`](membrane::press::Press) of less than 200 kB; a [`Workspace`](membrane::press::workspace::Workspace) keeps that in
 //! a static, so that it never passes through the stack.
 //!
 //! # What it promises
 //!
 //! - Host mathematics is `f64` in SI units; transcendental functions come from `libm`, so that every host computes the
 //!   same bits.
-//! - No global state: a [`press::Press`] is `Send` and `Sync`, and as many as wanted run side by side.
-//! - No unsafe code; what cannot be solved is a [`press::ModelError`], never a number.
+//! - No global state: a [`Press`](membrane::press::Press) is `Send` and `Sync`, and as many as wanted run side by side.
+//! - No unsafe code; what cannot be solved is an error with its reason ([`MembraneError`](membrane::press::MembraneError)), never a number.
 //! - Rust 1.95 or later (`rust-version`), the version it is tested with.
 //!
 //! How its numbers compare with published ones, and how far a membrane is from a real dome with a wall that bends, is
@@ -60,45 +60,23 @@
 #![forbid(unsafe_code)]
 
 pub mod actuator;
-pub mod adapt;
-#[cfg(feature = "std")]
-pub mod campaign;
 pub mod constants;
 pub mod curve;
 pub mod design;
 #[cfg(feature = "std")]
 pub mod design_file;
-#[cfg(feature = "cli")]
-pub mod designer;
-pub mod equilibrium;
-#[cfg(feature = "cli")]
-pub mod fit;
 #[cfg(feature = "std")]
 pub mod generate;
-pub mod history;
-pub mod inflation;
-pub mod lookups;
+pub mod limit;
 pub mod material;
 pub mod membrane;
-pub mod mesh;
 #[cfg(feature = "std")]
-pub mod methods;
+pub mod model;
 #[cfg(feature = "std")]
 pub mod monotone;
-pub mod press;
 #[cfg(feature = "std")]
-mod random;
-mod refine;
-pub mod rest;
-#[cfg(feature = "std")]
-pub mod rung;
-#[cfg(feature = "cli")]
-pub mod size;
+pub mod random;
 pub mod solid;
-pub mod solution;
 pub mod solver;
-pub mod stability;
-pub mod state;
 pub mod table;
 pub mod units;
-mod wrinkle;

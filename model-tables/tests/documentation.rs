@@ -1,6 +1,6 @@
 //! What the crate's documentation states, held to the crate.
 
-use model_tables::press::Press;
+use model_tables::membrane::press::Press;
 use toml::de::DeTable;
 
 const DOCUMENTATION: &str = include_str!("../src/lib.rs");

@@ -4,16 +4,17 @@
 mod common;
 
 use common::{AGILUS30, design};
-use model_tables::adapt::Failure;
 use model_tables::design::{Design, RestBy};
+use model_tables::limit::EndsBy;
 use model_tables::material::Law;
+use model_tables::material::stability::Mode;
 use model_tables::membrane::TensionField;
-use model_tables::press::{EndsBy, ModelError, Press};
-use model_tables::rest::Quantity;
-use model_tables::stability::Mode;
-use model_tables::state::Wrinkling;
+use model_tables::membrane::adapt::Unsolved;
+use model_tables::membrane::press::{MembraneError, Press};
+use model_tables::membrane::rest::RestQuantity;
+use model_tables::membrane::state::Wrinkling;
 
-fn relaxed(design: &Design) -> Result<Press, ModelError> {
+fn relaxed(design: &Design) -> Result<Press, MembraneError> {
     Press::new(design, TensionField::Relaxed)
 }
 
@@ -22,7 +23,7 @@ fn relaxed(design: &Design) -> Result<Press, ModelError> {
 fn a_pole_beyond_the_stability_of_its_law_is_refused_by_the_stretch() {
     let law = Law::MooneyRivlin { c1: 100e3, c2: -25e3 };
     match relaxed(&design(6.0, 3.0, 0.5, law, 2.3)).map(|press| *press.rest()) {
-        Err(ModelError::LawUnstable { asked, margin }) => {
+        Err(MembraneError::LawUnstable { asked, margin }) => {
             assert!((asked - 2.3).abs() < 1e-15);
             assert!((margin.meridional_stretch - 2.0).abs() < 1e-9, "{margin:?}");
             assert!((margin.hoop_stretch - 2.0).abs() < 1e-9);
@@ -45,8 +46,8 @@ fn a_pole_that_inflation_does_not_stretch_so_far_is_refused_by_its_greatest_stre
     };
     let long = |stretch| design(6.0, 7.458, 0.5, law, stretch);
     let greatest = match relaxed(&long(1.3)).map(|press| *press.rest()) {
-        Err(ModelError::NoRestState {
-            quantity: Quantity::PoleStretch,
+        Err(MembraneError::NoRestState {
+            quantity: RestQuantity::PoleStretch,
             greatest,
             ..
         }) => greatest,
@@ -65,9 +66,9 @@ fn a_plain_membrane_that_would_push_at_the_contact_edge_is_refused() {
     let plate = design(9.0, 14.46, 0.5, Law::NeoHookean { c1: 100e3 }, 1.005);
     let mut plain = Press::new(&plate, TensionField::Plain).expect("rest");
     let reached = match plain.at_indentation(3e-3) {
-        Err(ModelError::PressUnsolved {
+        Err(MembraneError::PressUnsolved {
             reached,
-            failure: Failure::EdgePushes { .. },
+            failure: Unsolved::EdgePushes { .. },
             ..
         }) => reached,
         other => panic!("{other:?}"),
@@ -110,7 +111,9 @@ fn an_equator_smaller_than_inflation_makes_it_is_refused() {
     };
     let plain = |part: f64| Press::new(&by_radius(part), TensionField::Plain).map(|press| *press.rest());
     match plain(0.97) {
-        Err(ModelError::NoRestState { least, .. }) => assert!((least / 9e-3 - 0.977).abs() < 1e-3, "{least}"),
+        Err(MembraneError::NoRestState { least, .. }) => {
+            assert!((least / 9e-3 - 0.977).abs() < 1e-3, "{least}");
+        }
         other => panic!("{other:?}"),
     }
     let back = plain(0.99999).expect("the more stretched state");
@@ -210,7 +213,7 @@ fn a_bulge_that_lifts_off_again_has_ended_the_press() {
     let mut press = relaxed(&dome).expect("rest");
     let height = press.rest().height;
     match press.at_indentation(0.96 * height) {
-        Err(ModelError::BeyondLimit { limit, .. }) => {
+        Err(MembraneError::BeyondLimit { limit, .. }) => {
             assert_eq!(limit.ends_by, EndsBy::BulgeTouchesBase);
             let part = limit.indentation / height;
             assert!((0.9..0.92).contains(&part), "{part}");
@@ -244,8 +247,8 @@ fn a_plain_membrane_is_pressed_beyond_the_indentations_without_a_state() {
         assert!(
             matches!(
                 between,
-                Err(ModelError::PressUnsolved {
-                    failure: Failure::EdgePushes { .. },
+                Err(MembraneError::PressUnsolved {
+                    failure: Unsolved::EdgePushes { .. },
                     ..
                 })
             ),
@@ -275,7 +278,7 @@ fn a_dome_that_inflates_by_itself_is_refused() {
     assert!(rise_per_force(&dome(1.79)) > 10.0 * rise_per_force(&dome(1.6)));
     assert!(matches!(
         relaxed(&dome(1.8)).map(|press| *press.rest()),
-        Err(ModelError::Unheld { largest: None, .. })
+        Err(MembraneError::Unheld { largest: None, .. })
     ));
     let softening = Law::Yeoh {
         c1: 459_938.16,
@@ -288,7 +291,7 @@ fn a_dome_that_inflates_by_itself_is_refused() {
         ..balloon
     };
     let largest = match relaxed(&with(1e-6)).map(|press| *press.rest()) {
-        Err(ModelError::Unheld {
+        Err(MembraneError::Unheld {
             largest: Some(largest),
             ..
         }) => largest,

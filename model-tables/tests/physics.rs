@@ -3,13 +3,14 @@
 mod common;
 
 use common::{AGILUS30, design};
-use model_tables::adapt::Resolution;
 use model_tables::design::{Design, RestBy};
+use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::press::{EndsBy, ModelError, Press, SWEEP};
-use model_tables::rest::Branch;
-use model_tables::state::Wrinkling;
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::{MembraneError, Press, SWEEP};
+use model_tables::membrane::rest::Branch;
+use model_tables::membrane::state::Wrinkling;
 use proptest::prelude::*;
 
 fn press(design: &Design) -> Press {
@@ -210,7 +211,7 @@ fn beyond_the_limit_there_is_no_state() {
     let mut press = press(&design(4.5, 2.7, 1.0, AGILUS30, 2.3));
     for asked in [4.2e-3, 6e-3, 1.0] {
         match press.at_indentation(asked) {
-            Err(ModelError::BeyondLimit { asked: named, limit }) => {
+            Err(MembraneError::BeyondLimit { asked: named, limit }) => {
                 assert!((named - asked).abs() < 1e-15);
                 assert!((limit.indentation - 4.166_107_072e-3).abs() < 1e-9);
                 assert_eq!(limit.ends_by, EndsBy::BulgeTouchesBase);
@@ -220,11 +221,11 @@ fn beyond_the_limit_there_is_no_state() {
     }
     assert!(matches!(
         press.at_indentation(f64::NAN),
-        Err(ModelError::NotAnIndentation { .. })
+        Err(MembraneError::NotAnIndentation { .. })
     ));
     assert!(matches!(
         press.at_indentation(-1e-9),
-        Err(ModelError::NotAnIndentation { .. })
+        Err(MembraneError::NotAnIndentation { .. })
     ));
 }
 
@@ -306,7 +307,7 @@ fn neo_hookean_inflation_has_two_states_below_its_limit_point_and_none_above() {
         TensionField::Relaxed,
     );
     match above {
-        Err(ModelError::NoRestState { greatest, .. }) => {
+        Err(MembraneError::NoRestState { greatest, .. }) => {
             assert!((greatest / pressure(peak) - 1.0).abs() < 0.01, "{greatest}");
         }
         other => panic!("{other:?}"),

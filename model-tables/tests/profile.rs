@@ -4,12 +4,12 @@ mod common;
 
 use common::{AGILUS30, design};
 use core::f64::consts::{FRAC_PI_2, PI};
-use model_tables::adapt::Resolution;
 use model_tables::design::Design;
 use model_tables::material::{Hyperelastic as _, Law};
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::Press;
+use model_tables::membrane::state::{MeridianPoint, PressedState, Wrinkling};
 use model_tables::membrane::{TensionField, Zone};
-use model_tables::press::Press;
-use model_tables::state::{MeridianPoint, PressedState, Wrinkling};
 
 /// Designs and indentations: deep, barely touched, wrinkled, with a slack core.
 fn cases() -> Vec<(Design, TensionField, f64)> {

@@ -1,10 +1,11 @@
 //! Every state of the reference designs, in both tension fields, against independent solutions.
 
 use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
-use model_tables::press::{EndsBy, Press};
-use model_tables::state::Wrinkling;
+use model_tables::membrane::press::Press;
+use model_tables::membrane::state::Wrinkling;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

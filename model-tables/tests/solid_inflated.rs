@@ -6,7 +6,8 @@ use domes::dome;
 use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
 use model_tables::material::preset::{AGILUS30, SKIN};
-use model_tables::press::ModelError;
+use model_tables::model::ModelError;
+use model_tables::solid::SolidError;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::{COARSE, FULL, Press};
 
@@ -102,7 +103,9 @@ fn a_rest_pressure_out_of_reach_is_refused() {
         rest: RestBy::Pressure(pressure),
         ..dome(9.0, 9.0, 0.5, law)
     };
-    let Err(ModelError::PressureOutOfReach { greatest, .. }) = Press::new(&design(1e6), COARSE) else {
+    let Err(ModelError::Solid(SolidError::PressureOutOfReach { greatest, .. })) =
+        Press::new(&design(1e6), COARSE)
+    else {
         panic!("no rest state has that pressure");
     };
     let within = Press::new(&design(0.95 * greatest), COARSE).expect("a rest state");
@@ -114,6 +117,6 @@ fn a_rest_pressure_out_of_reach_is_refused() {
     };
     assert!(matches!(
         Press::new(&stretched, COARSE),
-        Err(ModelError::RestNotForSolid)
+        Err(ModelError::Solid(SolidError::RestNotForSolid))
     ));
 }

@@ -1,6 +1,8 @@
 //! The flash of the calibration, with an end to every wait: a memory that never says that it is ready is one that
-//! failed.
+//! failed. What cannot be read is an error, and never what the caches hold from before.
 
+use super::ecc;
+use embassy_stm32::pac::FLASH;
 use embassy_time::{Duration, with_timeout};
 use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
@@ -12,22 +14,40 @@ const ERASE: Duration = Duration::from_secs(2);
 /// Longest write of a record: 12 words of 0.1 ms.
 const WRITE: Duration = Duration::from_millis(10);
 
+/// Forgets what the caches hold. The flash changes beneath them (RM0351 3.3.5, RM0090 3.5.1: a cache is reset while it
+/// is off), and of what was programmed the caches may hold the blank from before.
+fn flush_caches() {
+    let before = FLASH.acr().read();
+    if !before.icen() && !before.dcen() {
+        return;
+    }
+    FLASH.acr().modify(|w| {
+        w.set_icen(false);
+        w.set_dcen(false);
+    });
+    FLASH.acr().modify(|w| {
+        w.set_icrst(true);
+        w.set_dcrst(true);
+    });
+    FLASH.acr().write_value(before);
+}
+
 /// A flash from an offset on.
-pub(crate) struct Patient<F> {
+pub struct Patient<F> {
     flash: F,
     base: u32,
 }
 
 impl<F> Patient<F> {
     /// The flash from `base` on.
-    pub(crate) const fn new(flash: F, base: u32) -> Self {
+    pub const fn new(flash: F, base: u32) -> Self {
         Self { flash, base }
     }
 }
 
-/// It refused, or was not ready in time.
+/// It refused, was not ready in time, or gave up correcting what was read.
 #[derive(Debug)]
-pub(crate) struct MemoryFailure;
+pub struct MemoryFailure;
 
 impl NorFlashError for MemoryFailure {
     fn kind(&self) -> NorFlashErrorKind {
@@ -43,8 +63,13 @@ impl<F: NorFlash> ReadNorFlash for Patient<F> {
     const READ_SIZE: usize = F::READ_SIZE;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), MemoryFailure> {
-        let read = self.flash.read(self.base + offset, bytes);
-        read.await.map_err(|_| MemoryFailure)
+        ecc::begin();
+        let read = self.flash.read(self.base + offset, bytes).await;
+        if ecc::failed() {
+            flush_caches();
+            return Err(MemoryFailure);
+        }
+        read.map_err(|_| MemoryFailure)
     }
 
     fn capacity(&self) -> usize {
@@ -57,18 +82,14 @@ impl<F: NorFlash> NorFlash for Patient<F> {
     const ERASE_SIZE: usize = F::ERASE_SIZE;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), MemoryFailure> {
-        let erased = with_timeout(ERASE, self.flash.erase(self.base + from, self.base + to));
-        erased
-            .await
-            .map_err(|_| MemoryFailure)?
-            .map_err(|_| MemoryFailure)
+        let erased = with_timeout(ERASE, self.flash.erase(self.base + from, self.base + to)).await;
+        flush_caches();
+        erased.map_err(|_| MemoryFailure)?.map_err(|_| MemoryFailure)
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), MemoryFailure> {
-        let written = with_timeout(WRITE, self.flash.write(self.base + offset, bytes));
-        written
-            .await
-            .map_err(|_| MemoryFailure)?
-            .map_err(|_| MemoryFailure)
+        let written = with_timeout(WRITE, self.flash.write(self.base + offset, bytes)).await;
+        flush_caches();
+        written.map_err(|_| MemoryFailure)?.map_err(|_| MemoryFailure)
     }
 }

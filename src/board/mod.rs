@@ -1,24 +1,37 @@
-//! One file per board: pins, clocks and interrupts, each with its reason. Every board gives the same things.
+//! The boards: one short file each with its pins, clocks and interrupts and their reasons, one file for each family of chips,
+//! and what all boards share.
 
+mod common;
+#[cfg(transducer = "ratiometric")]
+mod converter;
 #[cfg(not(transducer = "ratiometric"))]
 mod i2c;
 mod memory;
-
-/// Whether the transducer has a supply of its own, which is measured beside its output.
-#[cfg(transducer = "ratiometric")]
-const SUPPLY_MEASURED: bool = fingertip::transducer::ratiometric::supply_measured(
-    &<fingertip::image::ImageDesign as fingertip::design::Design>::CONSTANTS.transducer,
-);
+#[macro_use]
+mod pins;
 
 #[cfg(feature = "board-nucleo-f429zi")]
-mod nucleo_f429zi;
+#[path = "stm32f4.rs"]
+mod chip;
 #[cfg(feature = "board-nucleo-f429zi")]
-pub(crate) use nucleo_f429zi::{Board, Clock, Ears, Line, Memory, Port, SLOT, Watchdog};
+#[path = "nucleo_f429zi.rs"]
+mod chosen;
+#[cfg(feature = "board-nucleo-f429zi")]
+#[path = "ecc_none.rs"]
+pub mod ecc;
 
 #[cfg(feature = "board-nucleo-l432kc")]
-mod nucleo_l432kc;
+#[path = "stm32l4.rs"]
+mod chip;
 #[cfg(feature = "board-nucleo-l432kc")]
-pub(crate) use nucleo_l432kc::{Board, Clock, Ears, Line, Memory, Port, SLOT, Watchdog};
+#[path = "nucleo_l432kc.rs"]
+mod chosen;
+#[cfg(feature = "board-nucleo-l432kc")]
+#[path = "ecc_stm32l4.rs"]
+pub mod ecc;
+
+pub use chosen::SLOT;
+pub use common::{Board, Clock, Ears, Line, Memory, Port, Watchdog, begin};
 
 #[cfg(not(any(feature = "board-nucleo-f429zi", feature = "board-nucleo-l432kc")))]
 compile_error!("choose a board: --no-default-features --features board-nucleo-l432kc");

@@ -15,41 +15,39 @@
 //! supply. A pull-up of about 1 megohm to 3.3 V makes a broken wire read as open.
 
 #[cfg(transducer = "ratiometric")]
-use super::SUPPLY_MEASURED;
-#[cfg(not(transducer = "ratiometric"))]
-use super::i2c::{I2cBus, Wires};
-use super::memory::Patient;
-#[cfg(transducer = "ratiometric")]
-use core::sync::atomic::{AtomicU32, Ordering, fence};
-#[cfg(transducer = "ratiometric")]
-use embassy_stm32::adc::{Adc, SampleTime};
+use super::pins::Input;
 use embassy_stm32::flash::{self, Bank2Region1, Flash};
 #[cfg(not(transducer = "ratiometric"))]
-use embassy_stm32::gpio::{Level, OutputOpenDrain, Speed};
-#[cfg(not(transducer = "ratiometric"))]
-use embassy_stm32::i2c::{self, I2c, Master};
-use embassy_stm32::mode::Async;
-use embassy_stm32::peripherals::{DMA1_CH1, DMA1_CH3, IWDG, USART3};
+use embassy_stm32::i2c;
+use embassy_stm32::peripherals::{self, DMA1_CH1, DMA1_CH3, USART3};
 use embassy_stm32::rcc::{
     AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllSource, Sysclk,
 };
 use embassy_stm32::time::Hertz;
-use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
-use embassy_stm32::wdg::IndependentWatchdog;
-use embassy_stm32::{Config, bind_interrupts, dma, pac, peripherals};
-use embassy_time::Instant;
-#[cfg(transducer = "ratiometric")]
-use embassy_time::{Duration, Ticker};
-use fingertip::report::Microseconds;
-use fingertip::telemetry::ResetCause;
-#[cfg(transducer = "ratiometric")]
-use fingertip::{
-    counts::{BLOCK_LENGTH, Block, PERIOD, Ring},
-    transducer::ratiometric,
-};
-use static_cell::ConstStaticCell;
+use embassy_stm32::{Config, Peri, bind_interrupts, dma, pac, usart};
 
-bind_interrupts!(struct Interrupts {
+pins! {
+    board {
+        watchdog: IWDG,
+        #[cfg(transducer = "ratiometric")]
+        converter: ADC1,
+        serial: USART3,
+        receive: PD9,
+        transmit: PD8,
+        transmit_dma: DMA1_CH3,
+        receive_dma: DMA1_CH1,
+        flash: FLASH,
+    }
+    bus {
+        i2c: I2C1,
+        clock: PB8,
+        data: PB9,
+        transmit_dma: DMA1_CH6,
+        receive_dma: DMA1_CH0,
+    }
+}
+
+bind_interrupts!(pub(super) struct Interrupts {
     DMA1_STREAM1 => dma::InterruptHandler<DMA1_CH1>;
     DMA1_STREAM3 => dma::InterruptHandler<DMA1_CH3>;
     FLASH => flash::InterruptHandler;
@@ -57,191 +55,88 @@ bind_interrupts!(struct Interrupts {
 });
 
 #[cfg(not(transducer = "ratiometric"))]
-bind_interrupts!(struct BusInterrupts {
+bind_interrupts!(pub(super) struct BusInterrupts {
     I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>;
     I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
     DMA1_STREAM0 => dma::InterruptHandler<peripherals::DMA1_CH0>;
     DMA1_STREAM6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
 });
 
+/// The transducer's output.
+#[cfg(transducer = "ratiometric")]
+pub(super) const OUTPUT: Input = Input {
+    channel: 3,
+    port: pac::GPIOA,
+    pin: 3,
+};
+
+/// Its supply.
+#[cfg(transducer = "ratiometric")]
+pub(super) const SUPPLY: Input = Input {
+    channel: 10,
+    port: pac::GPIOC,
+    pin: 0,
+};
+
 /// The crystal oscillator of the ST-LINK.
 const HSE: Hertz = Hertz(8_000_000);
 
 /// Half used by reports of 46 bytes each millisecond. From 32 MHz the divider gives 920 863, 0.1 % slow.
-const BAUD: u32 = 921_600;
+pub(super) const BAUD: u32 = 921_600;
 
 /// The slowest report comes after a transducer's start, 60 ms; the oscillator of the watchdog runs at 17 to 47 kHz for a
 /// nominal 32 (DS9405 table 43), so this is 136 to 376 ms.
-const WATCHDOG: u32 = 200_000;
+pub(super) const WATCHDOG: u32 = 200_000;
 
 /// The crystal is given this many looks to be ready, some 3 ms at the 16 MHz the core starts with (DS9405 table 38: 2 ms).
 const LOOKS: u32 = 8_000;
 
-/// The serial port's sender.
-pub(crate) type Line = UartTx<'static, Async>;
-
-/// The serial port's receiver.
-pub(crate) type Ears = RingBufferedUartRx<'static>;
-
-/// Bytes heard and not yet taken: 2.8 ms of a line that never pauses.
-static HEARD: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
-
 /// Where the calibration lies: the first sectors of bank 2.
-pub(crate) type Memory = Patient<Bank2Region1<'static, flash::Async>>;
+pub(super) type Region = Bank2Region1<'static, flash::Async>;
 
 /// Bytes of each of its two slots: a sector.
-pub(crate) const SLOT: u32 = 16 * 1024;
+pub const SLOT: u32 = 16 * 1024;
 
-/// Resets the chip unless it is fed.
-pub(crate) type Watchdog = IndependentWatchdog<'static, IWDG>;
+/// The first of them, from the start of the region.
+pub(super) const CALIBRATION: u32 = 0;
 
-/// Time since the board was set up.
-///
-/// Not the bare counter of the executor: setting that up can leave a compare flag behind, which starts it one
-/// period, 65 536 us, ahead.
-#[derive(Clone, Copy)]
-pub(crate) struct Clock {
-    start: Instant,
+/// The flash of the calibration.
+pub(super) fn region(flash: Peri<'static, peripherals::FLASH>) -> Region {
+    steady_bank_2();
+    Flash::new(flash, Interrupts).into_regions().bank2_region1
 }
 
-impl Clock {
-    /// The time.
-    pub(crate) fn now(self) -> Microseconds {
-        Microseconds(Instant::now().as_micros().saturating_sub(self.start.as_micros()))
-    }
-}
-
-/// What the tasks get.
-pub(crate) struct Board {
-    /// The time, from here on.
-    pub(crate) clock: Clock,
-    /// What the transducer is on.
-    pub(crate) port: Port,
-    /// The way out for frames.
-    pub(crate) line: Line,
-    /// The way in for commands.
-    pub(crate) ears: Ears,
-    /// Where the calibration lies.
-    pub(crate) memory: Memory,
-    /// Running from here on.
-    pub(crate) watchdog: Watchdog,
-    /// Why the chip was reset.
-    pub(crate) reset_cause: ResetCause,
-    /// Whether the crystal runs; the chip's own oscillator, 1 % off, has taken its place if not.
-    pub(crate) crystal: bool,
-}
-
-/// What the transducer is on: the converter, ...
-#[cfg(transducer = "ratiometric")]
-pub(crate) type Port = Converter;
-
-/// ... or the bus.
-#[cfg(not(transducer = "ratiometric"))]
-pub(crate) type Port = I2cBus<I2c1>;
-
-impl Board {
-    /// Sets up clocks, pins and peripherals. Called once; all failures in here are faults of this file, found by
-    /// running the image once.
-    pub(crate) fn take() -> Self {
-        // Before anything that can hang. Until it is set below, it is fed for half a second (RM0090 21.3.3).
-        pac::IWDG.kr().write(|w| w.set_key(pac::iwdg::vals::Key::START));
-        let crystal = crystal_runs();
-        let mut config = Config::default();
-        config.rcc.hse = crystal.then_some(Hse {
-            freq: HSE,
-            mode: HseMode::Bypass,
-        });
-        // 2 MHz into the PLL has the least jitter (RM0090 6.3.2): of 8 MHz, or of the internal 16.
-        let (source, division) = if crystal {
-            (PllSource::HSE, PllPreDiv::DIV4)
-        } else {
-            (PllSource::HSI, PllPreDiv::DIV8)
-        };
-        config.rcc.pll_src = source;
-        // 128 MHz, and not the part's 168 or 180, because the converter's 4 MHz divide from it: a block is then a
-        // millisecond to the cycle.
-        config.rcc.pll = Some(Pll {
-            prediv: division,
-            mul: PllMul::MUL128,
-            divp: Some(PllPDiv::DIV2),
-            divq: None,
-            divr: None,
-        });
-        config.rcc.sys = Sysclk::PLL1_P;
-        config.rcc.ahb_pre = AHBPrescaler::DIV1;
-        // 32 MHz, of at most 45.
-        config.rcc.apb1_pre = APBPrescaler::DIV4;
-        // 8 MHz: nothing but the converter lives there.
-        config.rcc.apb2_pre = APBPrescaler::DIV16;
-        let peripherals = embassy_stm32::init(config);
-        let clock = Clock {
-            start: Instant::now(),
-        };
-
-        let mut watchdog = IndependentWatchdog::new(peripherals.IWDG, WATCHDOG);
-        watchdog.unleash();
-
-        #[cfg(transducer = "ratiometric")]
-        let port = Converter::new(Adc::new(peripherals.ADC1));
-        #[cfg(not(transducer = "ratiometric"))]
-        let port = I2cBus(I2c1 {
-            i2c: peripherals.I2C1,
-            clock: peripherals.PB8,
-            data: peripherals.PB9,
-            sender: peripherals.DMA1_CH6,
-            receiver: peripherals.DMA1_CH0,
-        });
-
-        let mut serial = usart::Config::default();
-        serial.baudrate = BAUD;
-        let (line, ears) = Uart::new(
-            peripherals.USART3,
-            peripherals.PD9,
-            peripherals.PD8,
-            peripherals.DMA1_CH3,
-            peripherals.DMA1_CH1,
-            Interrupts,
-            serial,
-        )
-        .expect("the rate divides from the clock")
-        .split();
-
-        steady_bank_2();
-        let flash = Flash::new(peripherals.FLASH, Interrupts).into_regions();
-
-        Self {
-            clock,
-            port,
-            line,
-            ears: ears.into_ring_buffered(HEARD.take()),
-            memory: Patient::new(flash.bank2_region1, 0),
-            watchdog,
-            reset_cause: take_reset_cause(),
-            crystal,
-        }
-    }
-}
-
-/// Reads and clears the flags of the last reset. Every internal reset also pulls the pin, so that one is
-/// asked last (RM0090 6.1.1).
-fn take_reset_cause() -> ResetCause {
-    let flags = pac::RCC.csr().read();
-    pac::RCC.csr().modify(|register| register.set_rmvf(true));
-    if flags.wdgrstf() || flags.wwdgrstf() {
-        ResetCause::Watchdog
-    } else if flags.lpwrrstf() {
-        ResetCause::LowPower
-    } else if flags.sftrstf() {
-        ResetCause::Software
-    } else if flags.porrstf() {
-        ResetCause::PowerOn
-    } else if flags.borrstf() {
-        ResetCause::BrownOut
-    } else if flags.padrstf() {
-        ResetCause::Pin
+/// The clocks, and whether the crystal runs.
+pub(super) fn clocks() -> (Config, bool) {
+    let crystal = crystal_runs();
+    let mut config = Config::default();
+    config.rcc.hse = crystal.then_some(Hse {
+        freq: HSE,
+        mode: HseMode::Bypass,
+    });
+    // 2 MHz into the PLL has the least jitter (RM0090 6.3.2): of 8 MHz, or of the internal 16.
+    let (source, division) = if crystal {
+        (PllSource::HSE, PllPreDiv::DIV4)
     } else {
-        ResetCause::Unknown
-    }
+        (PllSource::HSI, PllPreDiv::DIV8)
+    };
+    config.rcc.pll_src = source;
+    // 128 MHz, and not the part's 168 or 180, because the converter's 4 MHz divide from it: a block is then a
+    // millisecond to the cycle.
+    config.rcc.pll = Some(Pll {
+        prediv: division,
+        mul: PllMul::MUL128,
+        divp: Some(PllPDiv::DIV2),
+        divq: None,
+        divr: None,
+    });
+    config.rcc.sys = Sysclk::PLL1_P;
+    config.rcc.ahb_pre = AHBPrescaler::DIV1;
+    // 32 MHz, of at most 45.
+    config.rcc.apb1_pre = APBPrescaler::DIV4;
+    // 8 MHz: nothing but the converter lives there.
+    config.rcc.apb2_pre = APBPrescaler::DIV16;
+    (config, crystal)
 }
 
 /// Chips before revision 3 may read bank 2 wrong unless PA12 is pulled low (ES0206 2.2.14); the driver insists on it. On
@@ -267,150 +162,4 @@ fn crystal_runs() -> bool {
     pac::RCC.cr().modify(|w| w.set_hsebyp(true));
     pac::RCC.cr().modify(|w| w.set_hseon(true));
     (0..LOOKS).any(|_| pac::RCC.cr().read().hserdy())
-}
-
-/// The ring that the converter's DMA fills: see [`Converter`].
-#[cfg(transducer = "ratiometric")]
-static RING: [Block; 2] = [const { [const { AtomicU32::new(0) }; BLOCK_LENGTH / 2] }; 2];
-
-/// ADC1 on PA3, free-running at 4 MHz, its DMA (stream 0 of DMA2, channel 0) filling [`RING`] without an interrupt: the
-/// clock, of the same oscillator, says when a block is there.
-///
-/// 28 cycles of sampling (7 us, enough for 10 kilo-ohm) and 12 of conversion are 10 us; 100 of them 1 ms to the cycle. Where
-/// the supply is measured, every second one is of PC0.
-#[cfg(transducer = "ratiometric")]
-pub(crate) struct Converter {
-    ticker: Ticker,
-}
-
-#[cfg(transducer = "ratiometric")]
-impl Converter {
-    const CHANNEL: u8 = 3;
-    const SUPPLY: u8 = 10;
-    const SUPPLY_PIN: usize = 0;
-
-    /// The ticks come this long after the end of a block, microseconds.
-    const MARGIN: u64 = 20;
-
-    fn new(adc: Adc<'static, peripherals::ADC1>) -> Self {
-        // Powered and clocked; dropping it would undo that.
-        core::mem::forget(adc);
-        pac::GPIOA
-            .moder()
-            .modify(|w| w.set_moder(usize::from(Self::CHANNEL), pac::gpio::vals::Moder::ANALOG));
-        let adc = pac::ADC1;
-        adc.smpr2()
-            .modify(|w| w.set_smp(usize::from(Self::CHANNEL), SampleTime::CYCLES28));
-        adc.sqr1().modify(|w| w.set_l(u8::from(SUPPLY_MEASURED)));
-        adc.sqr3().modify(|w| w.set_sq(0, Self::CHANNEL));
-        if SUPPLY_MEASURED {
-            pac::GPIOC
-                .moder()
-                .modify(|w| w.set_moder(Self::SUPPLY_PIN, pac::gpio::vals::Moder::ANALOG));
-            // The upper channels have a register of their own, from 10 on.
-            adc.smpr1()
-                .modify(|w| w.set_smp(usize::from(Self::SUPPLY) - 10, SampleTime::CYCLES28));
-            adc.sqr3().modify(|w| w.set_sq(1, Self::SUPPLY));
-            adc.cr1().modify(|w| w.set_scan(true));
-        }
-        Self {
-            ticker: Ticker::every(Duration::from_micros(u64::from(PERIOD))),
-        }
-    }
-}
-
-#[cfg(transducer = "ratiometric")]
-impl ratiometric::Converter for Converter {
-    const CONVERSION: u32 = 10;
-
-    fn restart(&mut self) {
-        use pac::dma::vals::{Dir, Pl, Size};
-        let (adc, dma, stream) = (pac::ADC1, pac::DMA2, pac::DMA2.st(0));
-        adc.cr2().write(|_| {});
-        stream.cr().write(|_| {});
-        // It ends the transfer under way, a few cycles.
-        while stream.cr().read().en() {}
-        dma.ifcr(0).write(|w| {
-            w.set_tcif(0, true);
-            w.set_htif(0, true);
-            w.set_teif(0, true);
-            w.set_dmeif(0, true);
-            w.set_feif(0, true);
-        });
-        stream.par().write_value(adc.dr().as_ptr() as u32);
-        stream.m0ar().write_value(RING.as_ptr() as u32);
-        stream.ndtr().write(|w| w.set_ndt(Ring::LENGTH as u16));
-        stream.cr().write(|w| {
-            w.set_chsel(0);
-            w.set_dir(Dir::PERIPHERAL_TO_MEMORY);
-            w.set_pl(Pl::VERY_HIGH);
-            w.set_msize(Size::BITS16);
-            w.set_psize(Size::BITS16);
-            w.set_minc(true);
-            w.set_circ(true);
-            w.set_en(true);
-        });
-        adc.sr().write(|_| {});
-        adc.cr2().write(|w| {
-            w.set_dma(true);
-            w.set_dds(pac::adc::vals::Dds::CONTINUOUS);
-            w.set_cont(true);
-            w.set_adon(true);
-        });
-        // It needs 3 us to wake (DS9405 table 74).
-        embassy_time::block_for(Duration::from_micros(3));
-        adc.cr2().modify(|w| w.set_swstart(true));
-        self.ticker.reset_after(Duration::from_micros(Self::MARGIN));
-    }
-
-    async fn tick(&mut self) {
-        self.ticker.next().await;
-    }
-
-    fn position(&self) -> Option<usize> {
-        let running = !pac::ADC1.sr().read().ovr();
-        let position = Ring::LENGTH - usize::from(pac::DMA2.st(0).ndtr().read().ndt());
-        // What the DMA wrote before it counted is there to be read.
-        fence(Ordering::SeqCst);
-        running.then_some(position)
-    }
-
-    fn ring(&self) -> &[Block; 2] {
-        &RING
-    }
-}
-
-/// I2C1 on D15 (PB8, clock) and D14 (PB9, data) at 400 kHz, with pull-ups of 2.2 to 4.7 kilo-ohm on the transducer's
-/// side.
-#[cfg(not(transducer = "ratiometric"))]
-pub(crate) struct I2c1 {
-    i2c: embassy_stm32::Peri<'static, peripherals::I2C1>,
-    clock: embassy_stm32::Peri<'static, peripherals::PB8>,
-    data: embassy_stm32::Peri<'static, peripherals::PB9>,
-    sender: embassy_stm32::Peri<'static, peripherals::DMA1_CH6>,
-    receiver: embassy_stm32::Peri<'static, peripherals::DMA1_CH0>,
-}
-
-#[cfg(not(transducer = "ratiometric"))]
-impl Wires for I2c1 {
-    fn i2c(&mut self) -> I2c<'_, Async, Master> {
-        let mut config = i2c::Config::default();
-        config.frequency = Hertz(400_000);
-        I2c::new(
-            self.i2c.reborrow(),
-            self.clock.reborrow(),
-            self.data.reborrow(),
-            self.sender.reborrow(),
-            self.receiver.reborrow(),
-            BusInterrupts,
-            config,
-        )
-    }
-
-    fn lines(&mut self) -> [OutputOpenDrain<'_>; 2] {
-        [
-            OutputOpenDrain::new(self.clock.reborrow(), Level::High, Speed::Low),
-            OutputOpenDrain::new(self.data.reborrow(), Level::High, Speed::Low),
-        ]
-    }
 }

@@ -3,9 +3,10 @@
 //! `AA 00 00` starts a measurement; seven bytes answer: status, pressure and temperature, the highest byte first. No
 //! command resets the part and none identifies it: what tells it from another is a status that only it gives.
 
-use super::bus::{self, Bus};
-use super::{Centidegrees, Millipascals, Sample, Transducer};
-use crate::report::Fault;
+use crate::status::Fault;
+use crate::transducer::bus::{self, Bus};
+use crate::transducer::driver::{Driver, Sample};
+use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
 use model_tables::constants;
 use model_tables::constants::TransducerKind;
@@ -63,7 +64,7 @@ impl<B: Bus, D: DelayNs> Abp2<B, D> {
     }
 }
 
-impl<B: Bus, D: DelayNs> Transducer for Abp2<B, D> {
+impl<B: Bus, D: DelayNs> Driver for Abp2<B, D> {
     /// Nothing to set up: a measurement tells whether the part is there and sound.
     async fn start(&mut self) -> Result<(), Fault> {
         self.sample().await.map(|_| ())
@@ -146,7 +147,7 @@ impl Line {
 }
 
 fn millipascals(number: i64) -> Millipascals {
-    Millipascals(crate::pressure::saturate(number))
+    Millipascals(saturate(number))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What a driver needs of its bus, and what an error on it means.
 
-use crate::report::Fault;
+use crate::status::Fault;
 use embedded_hal_async::i2c::{Error, ErrorKind, I2c};
 
 /// Longest that one operation on the bus takes, microseconds: 20 bytes at 100 kHz take 1.9 ms. What takes longer is

@@ -1,13 +1,18 @@
-//! Infineon DPS310 on I2C: absolute pressure, 30 to 120 kPa, so a light-touch part: at sea level its range ends 16 to
-//! 19 kPa above the air around it (datasheet V1.2 of 2020-10-15, whose sections are cited).
+//! Infineon DPS310 on I2C: absolute pressure, 30 to 120 kPa, so a light-touch part: in the densest air its range ends
+//! 12 kPa above it (datasheet V1.2 of 2020-10-15, whose sections are cited).
+//!
+//! A Goertek SPL06 answers with the same identity and the same coefficients, measures to 110 kPa only, and lacks the register
+//! that says which temperature sensor the coefficients are of: that reads as a sensor it must not be read with
+//! (Infineon/DPS310-Pressure-Sensor issue 20, `ArduPilot` pull request 32480). So a part is refused that does not name the
+//! sensor on the pressure element; a DPS310 calibrated for the other one, which the datasheet allows, is refused with it.
 //!
 //! One pressure and one temperature are commanded for each sample, so that the time of each is known, and the settings
 //! are read back with the words: a part that was reset by itself would go on with another scale.
 
-use super::bus::{self, Bus};
-use super::{Centidegrees, Millipascals, Sample, Transducer};
-use crate::pressure::saturate;
-use crate::report::Fault;
+use crate::status::Fault;
+use crate::transducer::bus::{self, Bus};
+use crate::transducer::driver::{Driver, Sample, recognise};
+use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
 
 /// From one sample to the next, microseconds.
@@ -45,8 +50,10 @@ const PRESSURE_SCALE: i64 = 3_670_016;
 const TEMPERATURE_PRECISION: u8 = 0x00;
 const TEMPERATURE_CONVERSION: u32 = 3_600;
 const TEMPERATURE_SCALE: i64 = 524_288;
-/// Of `TMP_CFG`: which of the two temperature sensors, the one that the coefficients are of (section 8.12).
+/// Of `COEF_SRCE` and `TMP_CFG`: the temperature sensor on the pressure element, and not the other one (sections 8.4 and
+/// 8.12). Of which the coefficients are, that one has to be read.
 const TEMPERATURE_SOURCE: u8 = 0x80;
+const TEMPERATURE_SETTINGS: u8 = TEMPERATURE_SOURCE | TEMPERATURE_PRECISION;
 
 /// From a reset until the coefficients can be read, microseconds, and how long more is waited (section 3.6, table 8:
 /// at most 40 ms).
@@ -71,6 +78,8 @@ pub struct Dps310<B, D> {
     delay: D,
     address: u8,
     calibration: Option<Calibration>,
+    /// Since the last start it gave a pressure that this part can give.
+    recognised: bool,
 }
 
 impl<B: Bus, D: DelayNs> Dps310<B, D> {
@@ -81,6 +90,7 @@ impl<B: Bus, D: DelayNs> Dps310<B, D> {
             delay,
             address,
             calibration: None,
+            recognised: false,
         }
     }
 
@@ -125,6 +135,9 @@ impl<B: Bus, D: DelayNs> Dps310<B, D> {
             return Err(Fault::SensorCalibration);
         }
         let [source] = self.read(COEF_SRCE).await?;
+        if source & TEMPERATURE_SOURCE == 0 {
+            return Err(Fault::WrongSensor);
+        }
         // Infineon's own driver does this: parts with one fuse bit wrong measure temperature too high without it.
         for (register, value) in [
             (0x0E, 0xA5),
@@ -135,17 +148,17 @@ impl<B: Bus, D: DelayNs> Dps310<B, D> {
         ] {
             self.write(register, value).await?;
         }
-        let temperature_settings = source & TEMPERATURE_SOURCE | TEMPERATURE_PRECISION;
         self.write(PRS_CFG, PRESSURE_PRECISION).await?;
-        self.write(TMP_CFG, temperature_settings).await?;
+        self.write(TMP_CFG, TEMPERATURE_SETTINGS).await?;
         self.write(CFG_REG, 0).await?;
-        Calibration::of(coefficients, temperature_settings)
+        Calibration::of(coefficients)
     }
 }
 
-impl<B: Bus, D: DelayNs> Transducer for Dps310<B, D> {
+impl<B: Bus, D: DelayNs> Driver for Dps310<B, D> {
     async fn start(&mut self) -> Result<(), Fault> {
         self.calibration = None;
+        self.recognised = false;
         self.calibration = Some(self.set_up().await?);
         Ok(())
     }
@@ -161,11 +174,11 @@ impl<B: Bus, D: DelayNs> Transducer for Dps310<B, D> {
         self.ready(TMP_RDY | PRS_RDY).await?;
         let [p2, p1, p0, t2, t1, t0, pressure_settings, temperature_settings]: [u8; 8] =
             self.read(PRS_B2).await?;
-        if [pressure_settings, temperature_settings] != [PRESSURE_PRECISION, calibration.temperature_settings]
-        {
+        if [pressure_settings, temperature_settings] != [PRESSURE_PRECISION, TEMPERATURE_SETTINGS] {
             return Err(Fault::SensorReset);
         }
-        calibration.sample(signed([p2, p1, p0]), signed([t2, t1, t0]))
+        let sample = calibration.sample(signed([p2, p1, p0]), signed([t2, t1, t0]))?;
+        recognise(&mut self.recognised, sample)
     }
 
     async fn free(&mut self) {
@@ -178,7 +191,7 @@ const fn signed([high, middle, low]: [u8; 3]) -> i32 {
     i32::from_be_bytes([high, middle, low, 0]) >> 8
 }
 
-/// The coefficients (section 8.11, table 18) and what `TMP_CFG` has to say.
+/// The coefficients (section 8.11, table 18).
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 struct Calibration {
     /// 12 bits each.
@@ -193,7 +206,6 @@ struct Calibration {
     c20: i64,
     c21: i64,
     c30: i64,
-    temperature_settings: u8,
 }
 
 /// Bits of the scaled words below one: |Ts| <= 16 and |Ps| < 2.3 then take 32 and 30.
@@ -201,7 +213,7 @@ const FRACTION: u32 = 28;
 
 impl Calibration {
     /// The coefficients in registers 0x10 to 0x21.
-    fn of(bytes: [u8; 18], temperature_settings: u8) -> Result<Self, Fault> {
+    fn of(bytes: [u8; 18]) -> Result<Self, Fault> {
         // Empty fuses, or a line that nobody drives.
         if bytes.iter().all(|&byte| byte == bytes[0]) {
             return Err(Fault::SensorCalibration);
@@ -224,7 +236,6 @@ impl Calibration {
             c20: sixteen(12),
             c21: sixteen(14),
             c30: sixteen(16),
-            temperature_settings,
         })
     }
 

@@ -9,8 +9,8 @@
 //! Every fault is handed on as soon as it is known. A pause is at most [`LONGEST_PAUSE`], so a part that comes back
 //! is noticed after that, its start and one conversion.
 
-use super::{Sample, Transducer};
-use crate::report::Fault;
+use crate::status::Fault;
+use crate::transducer::driver::{Driver, Sample};
 use embedded_hal_async::delay::DelayNs;
 
 /// First pause, microseconds; each further one is twice as long ...
@@ -28,7 +28,7 @@ pub struct Keeper<T, D> {
     faults: u32,
 }
 
-impl<T: Transducer, D: DelayNs> Keeper<T, D> {
+impl<T: Driver, D: DelayNs> Keeper<T, D> {
     /// A keeper of a part that is not started yet.
     pub const fn new(transducer: T, delay: D) -> Self {
         Self {
@@ -82,8 +82,8 @@ impl<T: Transducer, D: DelayNs> Keeper<T, D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transducer::Millipascals;
     use crate::transducer::script::Stopwatch;
+    use crate::units::Millipascals;
     use embassy_futures::block_on;
     use std::cell::RefCell;
     use std::rc::Rc;
@@ -102,7 +102,7 @@ mod tests {
         }
     }
 
-    impl Transducer for Fickle {
+    impl Driver for Fickle {
         async fn start(&mut self) -> Result<(), Fault> {
             self.did.borrow_mut().push("start");
             self.stopwatch.delay_us(100).await;

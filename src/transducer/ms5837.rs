@@ -1,12 +1,16 @@
 //! TE MS5837-02BA on I2C: absolute pressure up to 2 bar, gel-filled, made to be immersed (datasheet of 09/2017).
 //!
+//! Its sister of 30 bar carries the same version bits, where those are those of the 02BA01, and another scale: read by this
+//! part's formula, every pressure of it is a twentieth. Two things tell: its calibration word C1, and the air, which it
+//! reads as 5 kPa.
+//!
 //! The part gives two raw words and, once, six calibration words guarded by a CRC; the pressure is computed here,
 //! with the second-order compensation below 20 degC.
 
-use super::bus::{self, Bus};
-use super::{Centidegrees, Millipascals, Sample, Transducer};
-use crate::pressure::saturate;
-use crate::report::Fault;
+use crate::status::Fault;
+use crate::transducer::bus::{self, Bus};
+use crate::transducer::driver::{Driver, Sample, recognise};
+use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
 
 /// From one sample to the next, microseconds.
@@ -32,6 +36,10 @@ const READ: u32 = 150;
 /// Versions in bits 11:5 of the first word: the 02BA01 and the 02BA21. (0x1A is the 30 bar part.)
 const VERSIONS: [u16; 2] = [0x00, 0x15];
 
+/// The sensitivity C1 is above this. The datasheets' typical values are 46372 for the 02BA and 34982 for the 30BA; the
+/// parts that the authors of `ArduPilot` collected (pull request 29122) lie apart at 37000.
+const LEAST_SENSITIVITY: u16 = 37_000;
+
 /// What the part measures, pascals: 10 to 2000 mbar.
 const LOWEST: i64 = 1_000;
 const HIGHEST: i64 = 200_000;
@@ -43,6 +51,8 @@ pub struct Ms5837<B, D> {
     delay: D,
     address: u8,
     calibration: Option<Calibration>,
+    /// Since the last start it gave a pressure that this part can give.
+    recognised: bool,
 }
 
 impl<B: Bus, D: DelayNs> Ms5837<B, D> {
@@ -53,6 +63,7 @@ impl<B: Bus, D: DelayNs> Ms5837<B, D> {
             delay,
             address,
             calibration: None,
+            recognised: false,
         }
     }
 
@@ -79,9 +90,10 @@ impl<B: Bus, D: DelayNs> Ms5837<B, D> {
     }
 }
 
-impl<B: Bus, D: DelayNs> Transducer for Ms5837<B, D> {
+impl<B: Bus, D: DelayNs> Driver for Ms5837<B, D> {
     async fn start(&mut self) -> Result<(), Fault> {
         self.calibration = None;
+        self.recognised = false;
         self.command(RESET).await?;
         self.delay.delay_us(RELOAD).await;
         let mut prom = [0; 7];
@@ -102,7 +114,8 @@ impl<B: Bus, D: DelayNs> Transducer for Ms5837<B, D> {
         let temperature = self.convert(CONVERT_TEMPERATURE, TEMPERATURE_CONVERSION).await?;
         // Pressure last, so that it is as young as can be.
         let pressure = self.convert(CONVERT_PRESSURE, PRESSURE_CONVERSION).await?;
-        calibration.sample(pressure, temperature)
+        let sample = calibration.sample(pressure, temperature)?;
+        recognise(&mut self.recognised, sample)
     }
 
     async fn free(&mut self) {
@@ -130,7 +143,7 @@ impl Calibration {
         if empty || crc4(prom) != first >> 12 {
             return Err(Fault::SensorCalibration);
         }
-        if !VERSIONS.contains(&(first >> 5 & 0x7F)) {
+        if !VERSIONS.contains(&(first >> 5 & 0x7F)) || coefficients[0] <= LEAST_SENSITIVITY {
             return Err(Fault::WrongSensor);
         }
         let [c1, c2, c3, c4, c5, c6] = coefficients.map(i64::from);

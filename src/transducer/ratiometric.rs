@@ -2,10 +2,10 @@
 //! -> gauge pressure. Where the supply is also the converter's reference, it cancels; where it is another, the board
 //! measures it too, in every second code, and it cancels by a division.
 
-use super::{Millipascals, Sample, Transducer};
-use crate::counts::{self, Block, CountSum, Edges, PERIOD, Ring, Window};
-use crate::pressure::saturate;
-use crate::report::Fault;
+use crate::status::Fault;
+use crate::transducer::counts::{self, Block, CountSum, Edges, PERIOD, Ring, Window};
+use crate::transducer::driver::{Driver, Sample};
+use crate::units::{Millipascals, saturate};
 use model_tables::constants;
 use model_tables::constants::TransducerKind;
 
@@ -73,7 +73,7 @@ impl<C: Converter> Ratiometric<C> {
     }
 }
 
-impl<C: Converter> Transducer for Ratiometric<C> {
+impl<C: Converter> Driver for Ratiometric<C> {
     async fn start(&mut self) -> Result<(), Fault> {
         self.converter.restart();
         self.ring = Ring::default();
@@ -192,11 +192,12 @@ const fn rounded(a: i128, b: i128) -> i128 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Warnings;
+    use crate::status::Warnings;
     use crate::transducer::keeper::Keeper;
     use crate::transducer::script::Stopwatch;
     use core::sync::atomic::{AtomicU32, Ordering};
     use embassy_futures::block_on;
+    use model_tables::constants::Quantity;
     use proptest::prelude::*;
     use std::cell::RefCell;
     use std::rc::Rc;
@@ -206,6 +207,7 @@ mod tests {
             range,
             resolution: 10_000,
             noise: 10_000,
+            quantity: Quantity::Gauge,
             kind: TransducerKind::Ratiometric {
                 output: [2621, 61604],
                 supply_measured: false,

@@ -1,9 +1,9 @@
 //! For the tests: a bus that plays a list of transactions, fails where it is told to, and a clock that only waiting
 //! moves.
 
-use super::bus::Bus;
-use super::{Sample, Transducer};
-use crate::report::Fault;
+use crate::status::Fault;
+use crate::transducer::bus::Bus;
+use crate::transducer::driver::{Driver, Sample};
 use core::convert::Infallible;
 use core::future::Future;
 use core::pin::pin;
@@ -161,7 +161,7 @@ impl Bus for Script {
 }
 
 /// Starts a part and takes one sample, all of the script.
-pub(crate) fn play<T: Transducer>(
+pub(crate) fn play<T: Driver>(
     address: u8,
     steps: &[Step],
     make: impl FnOnce(Script, Stopwatch) -> T,
@@ -175,14 +175,14 @@ pub(crate) fn play<T: Transducer>(
     (outcome, stopwatch.microseconds())
 }
 
-async fn started_and_sampled(part: &mut impl Transducer) -> Result<Sample, Fault> {
+async fn started_and_sampled(part: &mut impl Driver) -> Result<Sample, Fault> {
     part.start().await?;
     part.sample().await
 }
 
 /// Lets every transaction fail in every way, once: the fault is said, nothing else, and the next start and sample are
 /// as if nothing had been. Returns how many failures there were.
-pub(crate) fn fail_everywhere<T: Transducer>(
+pub(crate) fn fail_everywhere<T: Driver>(
     address: u8,
     steps: &[Step],
     make: impl Fn(Script, Stopwatch) -> T,

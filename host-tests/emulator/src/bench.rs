@@ -4,7 +4,7 @@ use crate::board::Nucleo;
 use crate::image::{Image, ImageError};
 use crate::plant::Plant;
 use crate::scenario::Happening;
-use fingertip::command::{self, Request};
+use fingertip::link::command::{self, Request};
 use rigless::emulator::{Access, AccessKind, Driver, Hit, Host, Settled, Start, Stop, Watch};
 use rigless::session::{Reset, Session};
 use rigless::time::VirtualNanos;

@@ -3,7 +3,7 @@
 
 use crate::accuracy::{force_error, indentation_error};
 use crate::record::Row;
-use fingertip::report::Status;
+use fingertip::status::Status;
 use model_tables::curve::Contact;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
@@ -355,8 +355,7 @@ mod tests {
     use super::*;
     use crate::noise::Noise;
     use crate::plant::tests::{press, ramp};
-    use fingertip::report::{Fault, Warnings};
-    use fingertip::touch::Touch;
+    use fingertip::status::{Fault, Touch, Warnings};
 
     fn rows() -> (Vec<Row>, Contact) {
         let plant = press(8e3, ramp());

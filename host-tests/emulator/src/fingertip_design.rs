@@ -3,11 +3,12 @@
 use crate::plant::Plant;
 use crate::scenario::{Scenario, WireFault};
 use crate::transducer::{Part, Transducer, Wiring};
+use model_tables::curve::CurveFailure;
 use model_tables::curve::{Contact, Curve};
 use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
 use model_tables::generate::{self, GenerateError};
-use model_tables::press::{CurveFailure, ModelError};
-use model_tables::rung::Rung;
+use model_tables::model::Fingertip;
+use model_tables::model::ModelError;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -33,7 +34,7 @@ pub enum FingertipDesignError {
     /// The model has no rest state.
     Rest(ModelError),
     /// The model does not reach the deepest indentation.
-    Press(CurveFailure),
+    Press(CurveFailure<ModelError>),
     /// The data of a design from data do not.
     Data(PathBuf, Box<GenerateError>),
 }
@@ -76,8 +77,8 @@ pub fn workspace() -> PathBuf {
 /// The design that the image is built for when none is asked for: `FINGERTIP_DESIGN`, which is relative to the
 /// workspace, or the index fingertip.
 pub fn default_path() -> PathBuf {
-    let asked = std::env::var_os("FINGERTIP_DESIGN").filter(|path| !path.is_empty());
-    workspace().join(asked.map_or("model-tables/designs/index-fingertip.toml".into(), PathBuf::from))
+    let asked = std::env::var_os("FINGERTIP_DESIGN");
+    workspace().join(asked.unwrap_or_else(|| "model-tables/designs/index-fingertip.toml".into()))
 }
 
 impl FingertipDesign {
@@ -108,9 +109,11 @@ impl FingertipDesign {
             TransducerKindSection::Ms5837 => on_the_bus(Part::Ms5837(MS5837)),
         };
         let transducer = Transducer {
-            range: section.range_kpa.map(|kilopascals| kilopascals * 1e3),
+            quantity: section.quantity,
+            range: section.own_range_kpa().map(|kilopascals| kilopascals * 1e3),
             output_at_range,
             noise: section.noise_pa,
+            resolution: section.resolution_pa,
             part,
             supply: match supply {
                 Supply::Reference => 1.0,
@@ -184,7 +187,7 @@ impl FingertipDesign {
                 .map_err(|error| FingertipDesignError::Data(self.path.clone(), Box::new(error)))?;
             return Ok((measured.rest_pressure, measured.curve));
         }
-        let mut press = Rung::new(&self.file).map_err(FingertipDesignError::Rest)?;
+        let mut press = Fingertip::new(&self.file).map_err(FingertipDesignError::Rest)?;
         let curve = press
             .curve(self.max_indentation)
             .map_err(FingertipDesignError::Press)?;

@@ -28,6 +28,8 @@ pub struct Image {
 pub enum ImageError {
     /// The Rust target is missing and could not be added.
     Target(String),
+    /// The design's path is not UTF-8, and the build takes no other.
+    DesignPath(PathBuf),
     /// cargo could not be started.
     Cargo(std::io::Error),
     /// cargo did not build it. It has said why.
@@ -62,6 +64,11 @@ impl fmt::Display for ImageError {
                 f,
                 "the Rust target {TARGET} is missing and cannot be added ({why}): `rustup target add {TARGET}`"
             ),
+            Self::DesignPath(path) => write!(
+                f,
+                "{}: the path of a design must be UTF-8: rename the file or its folder",
+                path.display()
+            ),
             Self::Cargo(error) => write!(f, "cannot start cargo: {error}"),
             Self::Build { binary } => write!(f, "the image `{binary}` does not build, see above"),
             Self::Missing { binary } => write!(f, "cargo built no binary `{binary}`"),
@@ -93,22 +100,31 @@ impl Image {
     /// # Errors
     /// [`ImageError`] when the target is missing or cargo does not build it.
     pub fn firmware(design: Option<&Path>) -> Result<Self, ImageError> {
-        Self::build("firmware", design)
+        Self::build_for("firmware", design, None)
     }
 
-    /// The binary called `binary` of the firmware package. cargo's own progress goes to standard error.
+    /// The binary called `binary` of the package of probes. cargo's own progress goes to standard error.
     ///
     /// # Errors
     /// [`ImageError`] when the target is missing or cargo does not build it.
     pub fn build(binary: &str, design: Option<&Path>) -> Result<Self, ImageError> {
-        Self::build_for(binary, design, None)
+        Self::build_in("probes", binary, design, None)
     }
 
-    /// The same for the board of a feature of the firmware package; without one, the default board.
+    /// The binary called `binary` of the firmware package, for the board of a feature; without one, the default board.
     ///
     /// # Errors
     /// [`ImageError`] when the target is missing or cargo does not build it.
     pub fn build_for(binary: &str, design: Option<&Path>, board: Option<&str>) -> Result<Self, ImageError> {
+        Self::build_in("fingertip", binary, design, board)
+    }
+
+    fn build_in(
+        package: &str,
+        binary: &str,
+        design: Option<&Path>,
+        board: Option<&str>,
+    ) -> Result<Self, ImageError> {
         /// From the build to the reading: images for different designs are the same file.
         static BUILDING: Mutex<()> = Mutex::new(());
         let _building = BUILDING.lock();
@@ -117,10 +133,13 @@ impl Image {
         cargo
             .current_dir(workspace())
             .args(["build", "--profile", "firmware", "--target", TARGET])
-            .args(["--package", "fingertip", "--bin", binary])
+            .args(["--package", package, "--bin", binary])
             .arg("--message-format=json-render-diagnostics")
             .stdout(Stdio::piped());
         if let Some(design) = design {
+            let design = design
+                .to_str()
+                .ok_or_else(|| ImageError::DesignPath(design.to_owned()))?;
             cargo.env("FINGERTIP_DESIGN", design);
         }
         if let Some(board) = board {

@@ -2,8 +2,11 @@
 
 use crate::noise::Noise;
 use crate::scenario::Scenario;
-use crate::transducer::{AIR, Output, Part, Transducer, Wiring};
+use crate::transducer::{Output, Part, Transducer, Wiring};
 use model_tables::curve::{Contact, Curve};
+
+/// A report is made of samples up to one period before and after its time, and a part takes up to a period to measure one.
+const REACH: f64 = 1.5;
 
 /// The world outside the board. Its truth is the full model, solved afresh: it knows no table.
 #[derive(Clone, Debug)]
@@ -53,6 +56,28 @@ impl Plant {
         }
     }
 
+    /// The same fingertip going through another scenario.
+    #[must_use]
+    pub fn through(&self, scenario: Scenario) -> Self {
+        Self {
+            noise: Noise::new(scenario.seed),
+            scenario,
+            last: (0.0, 0.0),
+            ..self.clone()
+        }
+    }
+
+    /// The same with another transducer in its fluid.
+    #[must_use]
+    pub fn with_transducer(self, transducer: Transducer) -> Self {
+        Self { transducer, ..self }
+    }
+
+    /// What the transducer measures of the untouched fingertip in air of a pressure, both in pascals.
+    pub fn rest_in(&self, air: f64) -> f64 {
+        self.transducer.measured(self.rest_pressure, air)
+    }
+
     /// Shares of reading of force and indentation that the tables may be off.
     pub fn tables_allowed(&self) -> [f64; 2] {
         self.tables_allowed
@@ -84,6 +109,22 @@ impl Plant {
         self.transducer
     }
 
+    /// The lowest and the highest pressure rise, pascals, while the samples of a report of this time in seconds are measured:
+    /// [`REACH`] sample periods before and after it.
+    pub fn pressure_rises(&self, time: f64) -> [f64; 2] {
+        let reach = REACH * self.transducer.period();
+        let (from, until) = (time - reach, time + reach);
+        // Between two phases' ends the plate moves one way.
+        self.scenario
+            .phase_ends()
+            .filter(|end| (from..until).contains(end))
+            .chain([from, until])
+            .map(|time| self.truth(time).pressure_rise)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rise| {
+                [low.min(rise), high.max(rise)]
+            })
+    }
+
     /// What the transducer does to the board at a time in seconds. Each call draws new noise.
     pub fn output(&mut self, time: f64) -> Output {
         // Drawn in every case, so that a fault leaves the noise after it as it would have been.
@@ -92,7 +133,8 @@ impl Plant {
         if share.to_bits() != self.last.0.to_bits() {
             self.last = (share, self.truth(time).pressure_rise);
         }
-        let pressure = self.rest_pressure + self.last.1 + noise;
+        let gauge = self.rest_pressure + self.last.1 + noise;
+        let pressure = self.transducer.measured(gauge, 1e3 * self.scenario.air_kpa);
         let wiring = self.scenario.wiring(time);
         match (self.transducer.part, wiring) {
             (Part::Analogue, wiring) => {
@@ -108,7 +150,7 @@ impl Plant {
                 };
                 Output::Share(output, supply)
             }
-            (_, wiring) => Output::Pressure(AIR + pressure, wiring),
+            (_, wiring) => Output::Pressure(pressure, wiring),
         }
     }
 }
@@ -117,6 +159,7 @@ impl Plant {
 pub(crate) mod tests {
     use super::*;
     use crate::scenario::{Phase, WireFault};
+    use model_tables::constants::Quantity;
 
     /// A press with the asymptotes of a first contact, in closed form: no solver, no table.
     pub(crate) fn closed_form(rise: f64) -> Contact {
@@ -134,9 +177,11 @@ pub(crate) mod tests {
         let curve = Curve::new(points).expect("the closed form is monotone");
         let max_indentation = curve.end().indentation;
         let transducer = Transducer {
+            quantity: Quantity::Gauge,
             range: [0.0, 100e3],
             output_at_range: [0.1, 0.9],
             noise: 10.0,
+            resolution: 5.0,
             part: Part::Analogue,
             supply: 1.0,
         };
@@ -152,6 +197,7 @@ pub(crate) mod tests {
         Scenario {
             about: "a ramp".to_owned(),
             seed: 3,
+            air_kpa: 101.325,
             phase: vec![
                 phase("rest", 100.0, None),
                 phase("press", 400.0, Some(100.0)),
@@ -191,6 +237,20 @@ pub(crate) mod tests {
         let tolerance = 5.0 * 10.0 / libm::sqrt(f64::from(n)) * 0.8 / 100e3;
         assert!((mean(&mut plant, 0.05) - 0.116).abs() < tolerance);
         assert!((mean(&mut plant, 0.55) - 0.18).abs() < tolerance);
+    }
+
+    #[test]
+    fn an_absolute_transducer_gives_the_air_too() {
+        let mut scenario = ramp();
+        scenario.air_kpa = 80.0;
+        let mut plant = press(8e3, scenario);
+        plant.transducer.noise = 0.0;
+        let gauge = share(&mut plant, 0.05);
+        plant.transducer.quantity = Quantity::Absolute;
+        plant.transducer.range = [20e3, 250e3];
+        // 2 kPa above the air at rest: 0.1 + 0.8 (82 - 20) / (250 - 20).
+        assert!((gauge - 0.116).abs() < 1e-12);
+        assert!((share(&mut plant, 0.05) - (0.1 + 0.8 * 62.0 / 230.0)).abs() < 1e-12);
     }
 
     #[test]

@@ -2,9 +2,10 @@
 
 use crate::bench::{Listener, Moment};
 use crate::plant::Plant;
-use fingertip::report::{Report, Status};
-use fingertip::telemetry::{Answer, DecodeError, Decoder, Frame, Hello, Message};
-use fingertip::touch::Touch;
+use fingertip::link::telemetry::{Answer, Decoder, Frame, Hello, Message};
+use fingertip::link::wire::DecodeError;
+use fingertip::signal::report::Report;
+use fingertip::status::{Status, Touch};
 use model_tables::curve::Contact;
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -184,9 +185,10 @@ pub fn write_csv(rows: &[Row], to: impl Write) -> csv::Result<()> {
 mod tests {
     use super::*;
     use crate::plant::tests::{press, ramp};
-    use fingertip::report::{Fault, Measurement, Microseconds, Sigma, Warnings};
-    use fingertip::telemetry::encode;
-    use fingertip::touch::Touch;
+    use fingertip::link::telemetry::encode;
+    use fingertip::signal::report::{Measurement, Sigma};
+    use fingertip::status::{Fault, Touch, Warnings};
+    use fingertip::units::Microseconds;
     use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
     fn frame(sequence: u16, time: u64, outcome: Result<Measurement, Fault>) -> Frame {

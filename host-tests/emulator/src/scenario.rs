@@ -1,7 +1,7 @@
 //! What happens to the fingertip: the plate's travel over time, and faults of the transducer's wire.
 
 use crate::transducer::Wiring;
-use fingertip::command::Command;
+use fingertip::link::command::Command;
 use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -15,6 +15,9 @@ pub struct Scenario {
     /// Seed of the transducer's noise.
     #[serde(default)]
     pub seed: u64,
+    /// Pressure of the air around the board, kilopascals: what a barometer measures, 30 .. 120.
+    #[serde(default = "standard_air_kpa")]
+    pub air_kpa: f64,
     /// The plate's travel, one phase after another.
     pub phase: Vec<Phase>,
     /// What happens to the transducer's wire, in any order; it is sound at other times.
@@ -26,6 +29,11 @@ pub struct Scenario {
     /// Plate and wire begin anew when it is over, for ever; events happen once. No word of the file.
     #[serde(skip)]
     pub repeats: bool,
+}
+
+/// The standard atmosphere at sea level, kilopascals (ISO 2533).
+pub(crate) const fn standard_air_kpa() -> f64 {
+    101.325
 }
 
 /// Something that happens to the chip or its serial line.
@@ -235,6 +243,14 @@ impl Scenario {
             .map_or("", |phase| phase.name.as_str())
     }
 
+    /// When each phase ends, seconds.
+    pub fn phase_ends(&self) -> impl Iterator<Item = f64> {
+        self.phase.iter().scan(0.0, |ends, phase| {
+            *ends += phase.duration_ms * 1e-3;
+            Some(*ends)
+        })
+    }
+
     /// What is on the transducer's wire at a time in seconds.
     pub fn wiring(&self, time: f64) -> Wiring {
         let ms = self.place(time) * 1e3;
@@ -256,6 +272,13 @@ impl Scenario {
         if self.phase.is_empty() {
             return Err(ScenarioError::Empty);
         }
+        let found = self.air_kpa;
+        demand(
+            (30.0..=120.0).contains(&found),
+            "air_kpa".to_owned(),
+            found,
+            "from 30 to 120",
+        )?;
         for (i, phase) in self.phase.iter().enumerate() {
             let found = phase.duration_ms;
             let key = format!("phase[{i}].duration_ms");
@@ -362,6 +385,16 @@ mod tests {
     }
 
     #[test]
+    fn the_air_is_that_of_the_file_or_the_standard_atmosphere() {
+        let air = |words: &str| {
+            let scenario = parsed(&format!("{words}\n{TRAPEZIUM}")).expect("it is well formed");
+            scenario.air_kpa
+        };
+        assert!((air("") - 101.325).abs() < 1e-12);
+        assert!((air("air_kpa = 80") - 80.0).abs() < 1e-12);
+    }
+
+    #[test]
     fn the_wire_is_faulty_in_its_window_alone() {
         let scenario = parsed(TRAPEZIUM).expect("it is well formed");
         assert_eq!(scenario.wiring(0.149), Wiring::Sound);
@@ -377,6 +410,14 @@ mod tests {
             with("to_percent = 50", "to_percent = 101"),
             "phase[1].to_percent = 101, but it must be from 0 to 100"
         );
+        let air = |kpa: &str| parsed(&format!("air_kpa = {kpa}\n{TRAPEZIUM}"));
+        for kpa in ["29.9", "120.1", "nan"] {
+            let error = air(kpa).expect_err("no place has such air");
+            assert!(
+                error.starts_with("air_kpa = ") && error.ends_with("it must be from 30 to 120"),
+                "{error}"
+            );
+        }
         assert!(with("duration_ms = 200", "duration_ms = -1").contains("phase[1].duration_ms = -1"));
         assert!(with("until_ms = 160", "until_ms = 150").contains("above from_ms"));
         assert!(with("\"open\"", "\"loose\"").contains("loose"));

@@ -2,8 +2,8 @@
 //! MS5837-02BA by their datasheets.
 
 use crate::abp2::Abp2;
-use crate::ms5837::Ms5837;
-use crate::transducer::{AIR, Part, Transducer, Wiring};
+use crate::ms5837::{self, Ms5837};
+use crate::transducer::{Part, Transducer, Wiring};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rigless::chip::Timeline;
@@ -12,9 +12,10 @@ use rigless::chip::i2c::Peer;
 use rigless::snapshot::Store;
 use rigless::time::VirtualNanos;
 
-/// Registers of the DPS310.
+/// Registers of the DPS310; an SPL06 lacks the last one.
 const MEAS_CFG: u8 = 0x08;
 const RESET: u8 = 0x0C;
+const COEF_SRCE: u8 = 0x28;
 const SOFT_RESET: u8 = 0x09;
 /// Both ready flags of `MEAS_CFG`.
 const READY: u8 = 0x30;
@@ -38,6 +39,8 @@ enum Chip {
 pub(crate) struct Sensor {
     chip: Chip,
     address: u8,
+    /// A register that it does not have: it reads as zeros.
+    lacks: Option<u8>,
     wiring: Wiring,
     /// The part is to be reset at the next start.
     resets: bool,
@@ -55,7 +58,7 @@ impl Sensor {
     pub(crate) fn new(transducer: &Transducer) -> Option<Self> {
         let (chip, address) = match transducer.part {
             Part::Analogue => return None,
-            Part::Dps310(address) => {
+            Part::Dps310(address) | Part::Spl06(address) => {
                 let sdo = if address == Sdo::Low.address() {
                     Sdo::Low
                 } else {
@@ -67,11 +70,13 @@ impl Sensor {
                 let part = Abp2::new(counts.map(f64::from), transducer.range);
                 (Chip::Abp2(part), address)
             }
-            Part::Ms5837(address) => (Chip::Ms5837(Ms5837::new()), address),
+            Part::Ms5837(address) => (Chip::Ms5837(Ms5837::new(ms5837::TWO_BAR)), address),
+            Part::Ms5837ThirtyBar(address) => (Chip::Ms5837(Ms5837::new(ms5837::THIRTY_BAR)), address),
         };
         Some(Self {
             chip,
             address,
+            lacks: matches!(transducer.part, Part::Spl06(_)).then_some(COEF_SRCE),
             wiring: Wiring::Sound,
             resets: false,
             names: false,
@@ -82,7 +87,8 @@ impl Sensor {
         })
     }
 
-    /// The pressure on the part, pascals absolute, and what is wrong with its wires. A stuck part feels nothing.
+    /// The pressure on the part, pascals, gauge or absolute as it measures, and what is wrong with its wires. A stuck part
+    /// feels nothing.
     pub(crate) fn set(&mut self, pascals: f64, wiring: Wiring) {
         let late = match wiring {
             Wiring::Slow => None,
@@ -96,7 +102,7 @@ impl Sensor {
             Chip::Abp2(chip) => {
                 chip.late = late;
                 if feels {
-                    chip.pascals = pascals - AIR;
+                    chip.pascals = pascals;
                 }
             }
             Chip::Ms5837(chip) => {
@@ -175,6 +181,7 @@ impl Peer for Sensor {
             Chip::Abp2(chip) => (chip.read(), false),
             Chip::Ms5837(chip) => (chip.read(), false),
         };
+        let byte = if self.lacks == Some(register) { 0 } else { byte };
         match self.wiring {
             Wiring::Garbage => self.garbage.next_u32() as u8,
             // A line that nobody drives.

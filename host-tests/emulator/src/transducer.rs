@@ -1,14 +1,21 @@
-//! The pressure transducer: gauge pressure to a share of the converter's reference, or to a part on the bus.
+//! The pressure transducer: pressure to a share of the converter's reference, or to a part on the bus.
+
+use fingertip::transducer;
+use model_tables::constants::Quantity;
 
 /// What the transducer does to a pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transducer {
-    /// Gauge pressures at the two ends of the range, pascals, ascending.
+    /// What it measures.
+    pub quantity: Quantity,
+    /// Pressures at the two ends of its own range, pascals, ascending; gauge or absolute as `quantity` is.
     pub range: [f64; 2],
     /// Output at those ends, as a share of the reference, 0 .. 1.
     pub output_at_range: [f64; 2],
     /// Noise of one reading, one standard deviation, pascals, >= 0.
     pub noise: f64,
+    /// Smallest change that a reading shows, pascals, > 0.
+    pub resolution: f64,
     /// What the board reads.
     pub part: Part,
     /// Its supply at the board's input, as a share of the converter's reference, 0 .. 1; 1 where it is that reference.
@@ -20,23 +27,24 @@ pub struct Transducer {
 pub enum Part {
     /// Its voltage.
     Analogue,
-    /// A DPS310 on the bus, at this address: absolute pressure, so its output is none.
+    /// A DPS310 on the bus, at this address.
     Dps310(u8),
     /// An ABP2 on the bus, at this address, with these counts at the ends of its range.
     Abp2(u8, [u32; 2]),
     /// An MS5837-02BA on the bus, at this address.
     Ms5837(u8),
+    /// In the place of the one before, its sister of 30 bar with the same version in its words.
+    Ms5837ThirtyBar(u8),
+    /// In a DPS310's place a Goertek SPL06: the same identity, and no register for the source of its coefficients.
+    Spl06(u8),
 }
-
-/// The air around the board, pascals.
-pub const AIR: f64 = 101_325.0;
 
 /// What the transducer does to the board at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
     /// A voltage and the transducer's supply, as shares of the converter's reference, 0 .. 1.
     Share(f64, f64),
-    /// A pressure on a part on the bus, pascals absolute, and what is wrong with it.
+    /// A pressure on a part on the bus, pascals, gauge or absolute as the part measures, and what is wrong with it.
     Pressure(f64, Wiring),
 }
 
@@ -87,7 +95,31 @@ impl Wiring {
 }
 
 impl Transducer {
-    /// The output at a gauge pressure in pascals, a share of the supply. It ends at the rails.
+    /// The pressure that it measures, pascals, where the gauge pressure in the fluid and the pressure of the air are these.
+    pub fn measured(&self, gauge: f64, air: f64) -> f64 {
+        match self.quantity {
+            Quantity::Gauge => gauge,
+            Quantity::Absolute => air + gauge,
+        }
+    }
+
+    /// One standard deviation of its noise or its resolution, whichever is more, pascals.
+    pub fn fineness(&self) -> f64 {
+        self.noise.max(self.resolution)
+    }
+
+    /// From one sample to the next, seconds.
+    pub fn period(&self) -> f64 {
+        let microseconds = match self.part {
+            Part::Analogue => fingertip::transducer::counts::PERIOD,
+            Part::Dps310(_) | Part::Spl06(_) => transducer::dps310::PERIOD,
+            Part::Abp2(..) => transducer::abp2::PERIOD,
+            Part::Ms5837(_) | Part::Ms5837ThirtyBar(_) => transducer::ms5837::PERIOD,
+        };
+        f64::from(microseconds) * 1e-6
+    }
+
+    /// The output at a pressure that it measures, pascals, a share of the supply. It ends at the rails.
     pub fn output(&self, pressure: f64) -> f64 {
         let ([low, high], [at_low, at_high]) = (self.range, self.output_at_range);
         (at_low + (pressure - low) / (high - low) * (at_high - at_low)).clamp(0.0, 1.0)
@@ -104,9 +136,11 @@ mod tests {
     use super::*;
 
     const HUNDRED_KPA: Transducer = Transducer {
+        quantity: Quantity::Gauge,
         range: [0.0, 100e3],
         output_at_range: [0.1, 0.9],
         noise: 10.0,
+        resolution: 5.0,
         part: Part::Analogue,
         supply: 1.0,
     };
@@ -116,6 +150,26 @@ mod tests {
         assert!((HUNDRED_KPA.output(0.0) - 0.1).abs() < 1e-15);
         assert!((HUNDRED_KPA.output(50e3) - 0.5).abs() < 1e-15);
         assert!((HUNDRED_KPA.output(100e3) - 0.9).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_absolute_part_measures_the_air_too() {
+        let absolute = Transducer {
+            quantity: Quantity::Absolute,
+            ..HUNDRED_KPA
+        };
+        assert!((absolute.measured(2e3, 80e3) - 82e3).abs() < 1e-9);
+        assert!((HUNDRED_KPA.measured(2e3, 80e3) - 2e3).abs() < 1e-9);
+    }
+
+    #[test]
+    fn its_fineness_is_noise_or_resolution() {
+        let coarse = Transducer {
+            resolution: 30.0,
+            ..HUNDRED_KPA
+        };
+        assert!((HUNDRED_KPA.fineness() - 10.0).abs() < 1e-12);
+        assert!((coarse.fineness() - 30.0).abs() < 1e-12);
     }
 
     #[test]

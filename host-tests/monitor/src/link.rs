@@ -95,7 +95,7 @@ impl Address {
 
 /// What a link has to say.
 #[derive(Clone, Debug, Eq, PartialEq)]
-pub enum Event {
+pub enum LinkEvent {
     /// It is connected.
     Connected,
     /// Bytes came.
@@ -107,7 +107,7 @@ pub enum Event {
 /// A connection that comes back. Dropped, it ends.
 #[derive(Debug)]
 pub struct Link {
-    events: Receiver<Event>,
+    events: Receiver<LinkEvent>,
     outgoing: Sender<Vec<u8>>,
 }
 
@@ -121,7 +121,7 @@ impl Link {
     }
 
     /// The next event, if it comes within that time.
-    pub fn next(&self, within: Duration) -> Option<Event> {
+    pub fn next(&self, within: Duration) -> Option<LinkEvent> {
         self.events.recv_timeout(within).ok()
     }
 
@@ -133,12 +133,12 @@ impl Link {
 }
 
 /// Keeps the connection until nobody listens.
-fn keep(address: &Address, say: &Sender<Event>, to_send: &Receiver<Vec<u8>>) {
+fn keep(address: &Address, say: &Sender<LinkEvent>, to_send: &Receiver<Vec<u8>>) {
     loop {
         let reason = match address.open() {
             Ok(mut wire) => {
                 while to_send.try_recv().is_ok() {}
-                if say.send(Event::Connected).is_err() {
+                if say.send(LinkEvent::Connected).is_err() {
                     return;
                 }
                 match carry(wire.as_mut(), say, to_send) {
@@ -148,7 +148,7 @@ fn keep(address: &Address, say: &Sender<Event>, to_send: &Receiver<Vec<u8>>) {
             }
             Err(error) => error.to_string(),
         };
-        if say.send(Event::Lost(reason)).is_err() {
+        if say.send(LinkEvent::Lost(reason)).is_err() {
             return;
         }
         thread::sleep(RETRY);
@@ -156,7 +156,7 @@ fn keep(address: &Address, say: &Sender<Event>, to_send: &Receiver<Vec<u8>>) {
 }
 
 /// Carries bytes until the wire breaks, or nobody listens.
-fn carry(wire: &mut dyn Wire, say: &Sender<Event>, to_send: &Receiver<Vec<u8>>) -> io::Result<()> {
+fn carry(wire: &mut dyn Wire, say: &Sender<LinkEvent>, to_send: &Receiver<Vec<u8>>) -> io::Result<()> {
     let mut buffer = [0; 4096];
     loop {
         match wire.read(&mut buffer) {
@@ -167,7 +167,7 @@ fn carry(wire: &mut dyn Wire, say: &Sender<Event>, to_send: &Receiver<Vec<u8>>) 
                 ));
             }
             Ok(count) => {
-                if say.send(Event::Bytes(buffer[..count].to_vec())).is_err() {
+                if say.send(LinkEvent::Bytes(buffer[..count].to_vec())).is_err() {
                     return Ok(());
                 }
             }
@@ -227,15 +227,15 @@ mod tests {
         let link = Link::start(Address::Tcp(address.to_string()));
         for round in 0..2_u8 {
             let (mut peer, _) = server.accept().expect("it connects");
-            assert_eq!(link.next(LONG), Some(Event::Connected));
+            assert_eq!(link.next(LONG), Some(LinkEvent::Connected));
             peer.write_all(&[round]).expect("it reads");
-            assert_eq!(link.next(LONG), Some(Event::Bytes(vec![round])));
+            assert_eq!(link.next(LONG), Some(LinkEvent::Bytes(vec![round])));
             link.send(&[7, round]);
             let mut got = [0; 2];
             peer.read_exact(&mut got).expect("it writes");
             assert_eq!(got, [7, round]);
             drop(peer);
-            assert!(matches!(link.next(LONG), Some(Event::Lost(_))));
+            assert!(matches!(link.next(LONG), Some(LinkEvent::Lost(_))));
         }
     }
 
@@ -245,11 +245,11 @@ mod tests {
         let address = free.local_addr().expect("bound");
         drop(free);
         let link = Link::start(Address::Tcp(address.to_string()));
-        assert!(matches!(link.next(LONG), Some(Event::Lost(reason)) if !reason.is_empty()));
+        assert!(matches!(link.next(LONG), Some(LinkEvent::Lost(reason)) if !reason.is_empty()));
         let link = Link::start(Address::Serial {
             port: "/dev/no-such-port".to_owned(),
             baud: BAUD,
         });
-        assert!(matches!(link.next(LONG), Some(Event::Lost(reason)) if !reason.is_empty()));
+        assert!(matches!(link.next(LONG), Some(LinkEvent::Lost(reason)) if !reason.is_empty()));
     }
 }

@@ -1,14 +1,18 @@
 //! What came over the wire: the latest report, a history of the force, the greeting, the answers, and what was lost.
 
-use fingertip::command::{self, Command, CommandKind, Outcome, Request};
-use fingertip::report::{Microseconds, Report, Status};
-use fingertip::telemetry::{Answer, Decoder, Hello, Message};
-use fingertip::touch::Touch;
+use fingertip::link::command::{self, Command, CommandKind, Outcome, Request};
+use fingertip::link::telemetry::{Answer, Decoder, Hello, Message};
+use fingertip::signal::report::Report;
+use fingertip::status::{Status, Touch};
+use fingertip::units::Microseconds;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// A report this old is no longer the fingertip's state.
+/// A report older than this is no longer the fingertip's state. Of a board that sends few reports: one older than
+/// `MISSED` of the periods in its hello, where that is longer.
 pub const STALE: Duration = Duration::from_millis(500);
+/// Reports missed in a row.
+const MISSED: u32 = 3;
 /// How far the history reaches back, seconds of the board's clock.
 pub const HISTORY: f64 = 10.0;
 /// Between points of the history, seconds.
@@ -18,20 +22,20 @@ const LINES: usize = 50;
 
 /// A report as people read it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct LiveReading {
     /// The board's clock, since its reset.
     pub time: Microseconds,
     /// How far to believe it.
     pub status: Status,
     /// Its values; a fault has none.
-    pub values: Option<Values>,
+    pub values: Option<LiveValues>,
     /// Whether something presses.
     pub touch: Touch,
 }
 
 /// The values of a report.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Values {
+pub struct LiveValues {
     /// Pressure over the zero, pascals, and its standard deviation.
     pub pressure_rise_pa: [f64; 2],
     /// Force, newtons, and its standard deviation.
@@ -40,12 +44,12 @@ pub struct Values {
     pub indentation_mm: [f64; 2],
 }
 
-impl Reading {
+impl LiveReading {
     fn of(report: &Report, pressure_fraction_bits: u8) -> Self {
         let bits = u32::from(pressure_fraction_bits);
         let values = report.outcome.ok().map(|measurement| {
             let sigma = measurement.sigma;
-            Values {
+            LiveValues {
                 pressure_rise_pa: [
                     measurement.pressure_rise.pascals(bits),
                     sigma.pressure_rise.pascals(bits),
@@ -66,7 +70,7 @@ impl Reading {
     }
 
     /// Its values if they hold as they stand, else nothing: what is qualified or missing is not for showing.
-    pub fn ok(&self) -> Option<Values> {
+    pub fn ok(&self) -> Option<LiveValues> {
         self.values.filter(|_| self.status == Status::Ok)
     }
 }
@@ -88,7 +92,7 @@ pub struct Monitor {
     decoder: Decoder,
     sequence: Option<u16>,
     counts: Counts,
-    latest: Option<(Reading, Duration)>,
+    latest: Option<(LiveReading, Duration)>,
     history: VecDeque<(f64, Option<f64>)>,
     hello: Option<Hello>,
     journal: VecDeque<String>,
@@ -128,7 +132,7 @@ impl Monitor {
     }
 
     /// Takes a byte that came at `now`, since the start; gives the report that it completes.
-    pub fn hear(&mut self, byte: u8, now: Duration) -> Option<Reading> {
+    pub fn hear(&mut self, byte: u8, now: Duration) -> Option<LiveReading> {
         let Ok(frame) = self.decoder.push(byte)? else {
             self.counts.broken += 1;
             return None;
@@ -141,7 +145,7 @@ impl Monitor {
                 report,
                 pressure_fraction_bits,
             } => {
-                let reading = Reading::of(&report, pressure_fraction_bits);
+                let reading = LiveReading::of(&report, pressure_fraction_bits);
                 self.counts.reports += 1;
                 self.remember(&reading);
                 self.latest = Some((reading, now));
@@ -158,7 +162,7 @@ impl Monitor {
         }
     }
 
-    fn remember(&mut self, reading: &Reading) {
+    fn remember(&mut self, reading: &LiveReading) {
         let time = reading.time.0 as f64 * 1e-6;
         let force = reading.ok().map(|values| values.force_n[0]);
         match self.history.back() {
@@ -193,9 +197,11 @@ impl Monitor {
     }
 
     /// The latest report, unless it is stale.
-    pub fn latest(&self, now: Duration) -> Option<Reading> {
+    pub fn latest(&self, now: Duration) -> Option<LiveReading> {
+        let period = self.hello.map_or(0, |hello| hello.report_period);
+        let stale = STALE.max(MISSED * Duration::from_micros(period.into()));
         self.latest
-            .filter(|(_, came)| now.saturating_sub(*came) < STALE)
+            .filter(|(_, came)| now.saturating_sub(*came) < stale)
             .map(|(reading, _)| reading)
     }
 

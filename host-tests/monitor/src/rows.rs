@@ -1,7 +1,7 @@
 //! Reports as rows: a CSV file while the view runs, CSV or JSON in a pipe.
 
-use crate::readings::Reading;
-use fingertip::touch::Touch;
+use crate::readings::LiveReading;
+use fingertip::status::Touch;
 use std::io::{self, Write};
 
 /// The columns.
@@ -49,7 +49,7 @@ impl<W: Write> Writer<W> {
     ///
     /// # Errors
     /// What the output answers.
-    pub fn write(&mut self, reading: &Reading) -> io::Result<()> {
+    pub fn write(&mut self, reading: &LiveReading) -> io::Result<()> {
         let touch = match reading.touch {
             Touch::Unknown => "unknown",
             Touch::Untouched => "untouched",
@@ -99,14 +99,15 @@ fn line(to: &mut impl Write, cells: &[String]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::readings::Values;
-    use fingertip::report::{Fault, Microseconds, Status, Warnings};
+    use crate::readings::LiveValues;
+    use fingertip::status::{Fault, Status, Warnings};
+    use fingertip::units::Microseconds;
 
-    fn reading(status: Status) -> Reading {
-        Reading {
+    fn reading(status: Status) -> LiveReading {
+        LiveReading {
             time: Microseconds(1_250),
             status,
-            values: (!matches!(status, Status::Fault(_))).then_some(Values {
+            values: (!matches!(status, Status::Fault(_))).then_some(LiveValues {
                 pressure_rise_pa: [1000.5, 2.0],
                 force_n: [1.25, 0.001],
                 indentation_mm: [0.75, 0.002],

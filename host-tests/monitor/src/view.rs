@@ -1,8 +1,7 @@
 //! The terminal: values with their unit, or the reason why there are none; the force over the last seconds; what happened.
 
 use crate::readings::{Connection, HISTORY, Monitor};
-use fingertip::report::Status;
-use fingertip::touch::Touch;
+use fingertip::status::{Status, Touch};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};

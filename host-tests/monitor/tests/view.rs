@@ -1,9 +1,10 @@
 //! The view on a terminal of memory: frames of the firmware's own encoder in, the screen out.
 
-use fingertip::command::{Command, CommandKind, Outcome};
-use fingertip::report::{Fault, Measurement, Microseconds, Report, Sigma, Warnings};
-use fingertip::telemetry::{Answer, Frame, Hello, Message, encode};
-use fingertip::touch::Touch;
+use fingertip::link::command::{Command, CommandKind, Outcome};
+use fingertip::link::telemetry::{Answer, Frame, Hello, Message, encode};
+use fingertip::signal::report::{Measurement, Report, Sigma};
+use fingertip::status::{Fault, Touch, Warnings};
+use fingertip::units::Microseconds;
 use monitor::readings::{Monitor, STALE};
 use monitor::view::{self, Surroundings};
 use ratatui::Terminal;
@@ -139,6 +140,28 @@ fn a_force_that_is_not_ok_is_refused_with_its_reason() {
     }
 }
 
+/// Every hundredth report of a DPS310.
+#[test]
+fn a_report_of_a_board_that_sends_few_is_shown_until_three_are_missing() {
+    let mut monitor = connected();
+    let hello = Message::Hello(Hello {
+        report_period: 1_400_000,
+        ..Hello::default()
+    });
+    hear(
+        &mut monitor,
+        0,
+        NOW,
+        &[hello, report(0, Ok(measurement(Warnings::NONE)))],
+    );
+    let force = |milliseconds| {
+        let screen = screen(&monitor, NOW + Duration::from_millis(milliseconds));
+        line(&screen, "force").to_owned()
+    };
+    assert!(force(4_199).contains("1.2345 N"));
+    assert!(force(4_200).contains("not shown: no report"));
+}
+
 #[test]
 fn a_report_that_is_old_or_of_a_lost_board_is_not_shown() {
     let mut monitor = connected();
@@ -194,7 +217,7 @@ fn what_is_lost_or_broken_is_counted_and_answers_are_told() {
     assert_eq!((counts.reports, counts.missing, counts.broken), (3, 2, 1));
     let sent = monitor.command(Command::Tare);
     assert_eq!(
-        fingertip::command::decode(&sent[..sent.len() - 1])
+        fingertip::link::command::decode(&sent[..sent.len() - 1])
             .map(|request| (request.sequence, request.command)),
         Ok((1, Command::Tare))
     );

@@ -12,6 +12,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
         range: [0, 100000],
         resolution: 10000,
         noise: 10000,
+        quantity: model_tables::constants::Quantity::Gauge,
         kind: model_tables::constants::TransducerKind::Ratiometric { output: [6554, 58982], supply_measured: false },
     },
 };

@@ -12,6 +12,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
         range: [0, 400000],
         resolution: 20000,
         noise: 40000,
+        quantity: model_tables::constants::Quantity::Gauge,
         kind: model_tables::constants::TransducerKind::Ratiometric { output: [6554, 58982], supply_measured: false },
     },
 };

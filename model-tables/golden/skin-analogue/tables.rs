@@ -12,6 +12,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
         range: [0, 40000],
         resolution: 5000,
         noise: 5000,
+        quantity: model_tables::constants::Quantity::Gauge,
         kind: model_tables::constants::TransducerKind::Ratiometric { output: [6554, 58982], supply_measured: false },
     },
 };

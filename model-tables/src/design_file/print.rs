@@ -1,6 +1,9 @@
 //! The canonical text of a design: the same design always gives the same bytes.
 
-use super::{DesignFile, ModelSection, RestSection, Supply, TransducerKindSection, Transfer};
+use super::{
+    DesignFile, ModelSection, RestSection, Supply, TransducerKindSection, TransducerSection, Transfer,
+};
+use crate::constants::Quantity;
 use crate::material::Law;
 use std::fmt::{self, Write};
 
@@ -57,42 +60,8 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
     if let Some(depth) = file.max_indentation_mm {
         writeln!(out, "\n[press]\nmax_indentation_mm = {depth:?}")?;
     }
-    if let Some(transducer) = &file.transducer {
-        writeln!(out, "\n[transducer]")?;
-        match transducer.kind {
-            TransducerKindSection::Ratiometric {
-                output_fraction_at_range: [low, high],
-                supply,
-            } => {
-                writeln!(
-                    out,
-                    "kind = \"ratiometric\"\noutput_fraction_at_range = [{low:?}, {high:?}]"
-                )?;
-                // A default that came later is not printed: the hashes of older designs stay.
-                match supply {
-                    Supply::Reference => {}
-                    Supply::Measured => writeln!(out, "supply = \"measured\"")?,
-                }
-            }
-            TransducerKindSection::Abp2 { address, transfer } => {
-                let transfer = match transfer {
-                    Transfer::A => "A",
-                    Transfer::B => "B",
-                };
-                writeln!(
-                    out,
-                    "kind = \"abp2\"\naddress = {address:#04x}\ntransfer = \"{transfer}\""
-                )?;
-            }
-            TransducerKindSection::Ms5837 => writeln!(out, "kind = \"ms5837-02ba\"")?,
-            TransducerKindSection::Dps310 { address } => {
-                writeln!(out, "kind = \"dps310\"\naddress = {address:#04x}")?;
-            }
-        }
-        let [low, high] = transducer.range_kpa;
-        writeln!(out, "range_kpa = [{low:?}, {high:?}]")?;
-        writeln!(out, "resolution_pa = {:?}", transducer.resolution_pa)?;
-        writeln!(out, "noise_pa = {:?}", transducer.noise_pa)?;
+    if let Some(section) = &file.transducer {
+        transducer(section, out)?;
     }
     if let Some(accuracy) = &file.accuracy {
         writeln!(out, "\n[accuracy]")?;
@@ -112,4 +81,47 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
         writeln!(out, "\n[actuator]\ndiameter_mm = {diameter:?}")?;
     }
     file.calibration.print(out)
+}
+
+fn transducer(section: &TransducerSection, out: &mut String) -> fmt::Result {
+    writeln!(out, "\n[transducer]")?;
+    match section.kind {
+        TransducerKindSection::Ratiometric {
+            output_fraction_at_range: [low, high],
+            supply,
+        } => {
+            writeln!(
+                out,
+                "kind = \"ratiometric\"\noutput_fraction_at_range = [{low:?}, {high:?}]"
+            )?;
+            // A default that came later is not printed: the hashes of older designs stay.
+            match supply {
+                Supply::Reference => {}
+                Supply::Measured => writeln!(out, "supply = \"measured\"")?,
+            }
+        }
+        TransducerKindSection::Abp2 { address, transfer } => {
+            let transfer = match transfer {
+                Transfer::A => "A",
+                Transfer::B => "B",
+            };
+            writeln!(
+                out,
+                "kind = \"abp2\"\naddress = {address:#04x}\ntransfer = \"{transfer}\""
+            )?;
+        }
+        TransducerKindSection::Ms5837 => writeln!(out, "kind = \"ms5837-02ba\"")?,
+        TransducerKindSection::Dps310 { address } => {
+            writeln!(out, "kind = \"dps310\"\naddress = {address:#04x}")?;
+        }
+    }
+    // As with the supply: gauge, which every older design was.
+    match section.quantity {
+        Quantity::Gauge => {}
+        Quantity::Absolute => writeln!(out, "quantity = \"absolute\"")?,
+    }
+    let [low, high] = section.range_kpa;
+    writeln!(out, "range_kpa = [{low:?}, {high:?}]")?;
+    writeln!(out, "resolution_pa = {:?}", section.resolution_pa)?;
+    writeln!(out, "noise_pa = {:?}", section.noise_pa)
 }

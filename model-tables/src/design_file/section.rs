@@ -6,11 +6,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The line (where there is one) and what is wrong there.
-pub(crate) type Fault = (Option<usize>, Problem);
+pub type Fault = (Option<usize>, Problem);
 
 /// Numbers a key may take.
 #[derive(Clone, Copy)]
-pub(crate) struct Bounds {
+pub struct Bounds {
     low: f64,
     high: f64,
     open_low: bool,
@@ -19,7 +19,7 @@ pub(crate) struct Bounds {
 
 impl Bounds {
     /// `low < value <= high`.
-    pub(crate) const fn above(low: f64, high: f64, unit: &'static str) -> Self {
+    pub const fn above(low: f64, high: f64, unit: &'static str) -> Self {
         Self {
             low,
             high,
@@ -29,7 +29,7 @@ impl Bounds {
     }
 
     /// `low <= value <= high`.
-    pub(crate) const fn within(low: f64, high: f64, unit: &'static str) -> Self {
+    pub const fn within(low: f64, high: f64, unit: &'static str) -> Self {
         Self {
             low,
             high,
@@ -58,7 +58,7 @@ impl Bounds {
 }
 
 /// One table, and the keys that were asked for.
-pub(crate) struct Section<'a> {
+pub struct Section<'a> {
     text: &'a str,
     path: &'static str,
     header: usize,
@@ -68,7 +68,7 @@ pub(crate) struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// The document itself.
-    pub(crate) fn root(text: &'a str, table: &'a DeTable<'a>) -> Self {
+    pub fn root(text: &'a str, table: &'a DeTable<'a>) -> Self {
         Self {
             text,
             path: "",
@@ -79,7 +79,10 @@ impl<'a> Section<'a> {
     }
 
     /// The sub-table of that name, if it is there.
-    pub(crate) fn sub(&mut self, name: &'static str) -> Result<Option<Section<'a>>, Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn sub(&mut self, name: &'static str) -> Result<Option<Section<'a>>, Fault> {
         let Some(value) = self.get(name) else {
             return Ok(None);
         };
@@ -96,7 +99,10 @@ impl<'a> Section<'a> {
     }
 
     /// The sub-table of that name, which must be there.
-    pub(crate) fn needed_sub(&mut self, name: &'static str, holds: &str) -> Result<Section<'a>, Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn needed_sub(&mut self, name: &'static str, holds: &str) -> Result<Section<'a>, Fault> {
         match self.sub(name)? {
             Some(section) => Ok(section),
             None => Err((
@@ -110,12 +116,15 @@ impl<'a> Section<'a> {
     }
 
     /// Whether the key is there.
-    pub(crate) fn has(&mut self, key: &'static str) -> bool {
+    pub fn has(&mut self, key: &'static str) -> bool {
         self.get(key).is_some()
     }
 
     /// A number, if the key is there.
-    pub(crate) fn number(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<f64>, Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn number(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<f64>, Fault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -126,7 +135,10 @@ impl<'a> Section<'a> {
     }
 
     /// A number that must be there.
-    pub(crate) fn needed_number(&mut self, key: &'static str, bounds: Bounds) -> Result<f64, Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn needed_number(&mut self, key: &'static str, bounds: Bounds) -> Result<f64, Fault> {
         match self.number(key, bounds)? {
             Some(number) => Ok(number),
             None => Err(self.missing(key, &bounds.describe())),
@@ -134,7 +146,10 @@ impl<'a> Section<'a> {
     }
 
     /// Two increasing numbers, if the key is there.
-    pub(crate) fn pair(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<[f64; 2]>, Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn pair(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<[f64; 2]>, Fault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -152,7 +167,10 @@ impl<'a> Section<'a> {
     }
 
     /// Two increasing numbers that must be there.
-    pub(crate) fn needed_pair(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn needed_pair(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
         match self.pair(key, bounds)? {
             Some(pair) => Ok(pair),
             None => Err(self.missing(key, &pair_wanted(bounds))),
@@ -160,8 +178,10 @@ impl<'a> Section<'a> {
     }
 
     /// Two increasing numbers, or one for both, that must be there.
-    #[cfg(feature = "cli")]
-    pub(crate) fn span(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn span(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
         let array = self.get(key).is_some_and(|value| value.get_ref().is_array());
         if array {
             return self.needed_pair(key, bounds);
@@ -170,8 +190,10 @@ impl<'a> Section<'a> {
     }
 
     /// Texts in brackets that must be there.
-    #[cfg(feature = "cli")]
-    pub(crate) fn texts(&mut self, key: &'static str, allowed: &str) -> Result<Vec<&'a str>, Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn texts(&mut self, key: &'static str, allowed: &str) -> Result<Vec<&'a str>, Fault> {
         let Some(value) = self.get(key) else {
             return Err(self.missing(key, allowed));
         };
@@ -185,7 +207,10 @@ impl<'a> Section<'a> {
     }
 
     /// Strictly increasing numbers, `count[0]` to `count[1]` of them, that must be there.
-    pub(crate) fn increasing(
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn increasing(
         &mut self,
         key: &'static str,
         bounds: Bounds,
@@ -214,7 +239,10 @@ impl<'a> Section<'a> {
     }
 
     /// A text, if the key is there.
-    pub(crate) fn text(&mut self, key: &'static str, allowed: &str) -> Result<Option<&'a str>, Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn text(&mut self, key: &'static str, allowed: &str) -> Result<Option<&'a str>, Fault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -225,7 +253,10 @@ impl<'a> Section<'a> {
     }
 
     /// A text that must be there.
-    pub(crate) fn needed_text(&mut self, key: &'static str, allowed: &str) -> Result<&'a str, Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn needed_text(&mut self, key: &'static str, allowed: &str) -> Result<&'a str, Fault> {
         match self.text(key, allowed)? {
             Some(text) => Ok(text),
             None => Err(self.missing(key, allowed)),
@@ -233,7 +264,7 @@ impl<'a> Section<'a> {
     }
 
     /// The value of `key` is not `allowed`.
-    pub(crate) fn refuse(&self, key: &str, allowed: &str) -> Fault {
+    pub fn refuse(&self, key: &str, allowed: &str) -> Fault {
         let found = self
             .table
             .get(key)
@@ -248,7 +279,7 @@ impl<'a> Section<'a> {
     }
 
     /// `key` is missing here.
-    pub(crate) fn missing(&self, key: &str, allowed: &str) -> Fault {
+    pub fn missing(&self, key: &str, allowed: &str) -> Fault {
         let problem = Problem::Missing {
             key: self.full(key),
             allowed: allowed.to_owned(),
@@ -258,7 +289,10 @@ impl<'a> Section<'a> {
     }
 
     /// The end of reading: a key that was never asked for is an error. The first in the file is named.
-    pub(crate) fn finish(self) -> Result<(), Fault> {
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn finish(self) -> Result<(), Fault> {
         let unknown = self
             .table
             .keys()
@@ -302,7 +336,7 @@ impl<'a> Section<'a> {
 }
 
 /// The line of a byte offset, counted from 1.
-pub(crate) fn line_at(text: &str, offset: usize) -> usize {
+pub fn line_at(text: &str, offset: usize) -> usize {
     1 + text.bytes().take(offset).filter(|&byte| byte == b'\n').count()
 }
 

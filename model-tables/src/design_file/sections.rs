@@ -4,12 +4,12 @@ use super::calibration::Calibration;
 use super::error::Problem;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::{
-    Accuracy, DesignFile, MembraneSection, ModelSection, RestSection, Supply, TransducerKindSection,
-    TransducerSection, Transfer,
+    Accuracy, DEFAULT_ELEMENTS, DesignFile, MembraneSection, ModelSection, RestSection, Supply,
+    TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air,
 };
+use crate::constants::Quantity;
 use crate::material::Law;
 use crate::material::preset::{PRESETS, Preset};
-use crate::rung::choice::FINE;
 use toml::de::DeTable;
 
 /// Lengths of a fingertip, from a hair to a hand.
@@ -252,8 +252,8 @@ fn model(mut section: Section<'_>) -> Result<ModelSection, Fault> {
     let model = match section.text("kind", KINDS)? {
         None | Some("membrane") => ModelSection::Membrane,
         Some("solid") => ModelSection::Solid {
-            through: elements(&mut section, "through", 1.0, 8.0)?.unwrap_or(FINE.through as u32),
-            along: elements(&mut section, "along", 4.0, 400.0)?.unwrap_or(FINE.along as u32),
+            through: elements(&mut section, "through", 1.0, 8.0)?.unwrap_or(DEFAULT_ELEMENTS[0]),
+            along: elements(&mut section, "along", 4.0, 400.0)?.unwrap_or(DEFAULT_ELEMENTS[1]),
         },
         Some("auto") => ModelSection::Auto,
         Some(_) => return Err(section.refuse("kind", KINDS)),
@@ -315,18 +315,10 @@ fn transducer(mut section: Section<'_>) -> Result<TransducerSection, Fault> {
         },
         _ => return Err(section.refuse("kind", KINDS)),
     };
+    let quantity = quantity(&mut section, &kind)?;
     let range_kpa = section.needed_pair("range_kpa", RANGE)?;
-    // What a part measures against a vacuum, from which the air is taken at 101.325 kPa.
-    let reach = match kind {
-        TransducerKindSection::Ms5837 => Some(([-100.325, 98.675], "an MS5837-02BA measures 1 to 200")),
-        TransducerKindSection::Dps310 { .. } => Some(([-71.325, 18.675], "a DPS310 measures 30 to 120")),
-        TransducerKindSection::Ratiometric { .. } | TransducerKindSection::Abp2 { .. } => None,
-    };
-    if let Some(([low, high], why)) = reach
-        && (range_kpa[0] < low || range_kpa[1] > high)
-    {
-        let allowed = format!("within [{low}, {high}]: {why} kPa absolute, and the air is 101.325 kPa");
-        return Err(section.refuse("range_kpa", &allowed));
+    if quantity == Quantity::Absolute {
+        fits_the_air(&section, &kind, range_kpa)?;
     }
     let resolution_pa = section.needed_number("resolution_pa", FINENESS)?;
     if resolution_pa >= 1e3 * (range_kpa[1] - range_kpa[0]) {
@@ -338,8 +330,65 @@ fn transducer(mut section: Section<'_>) -> Result<TransducerSection, Fault> {
         range_kpa,
         resolution_pa,
         noise_pa: noise_pa.unwrap_or(resolution_pa),
+        quantity,
         kind,
     })
+}
+
+/// What the part measures against: parts on a bus know theirs, an analogue one is gauge unless it says otherwise.
+fn quantity(section: &mut Section<'_>, kind: &TransducerKindSection) -> Result<Quantity, Fault> {
+    const QUANTITIES: &str = "\"gauge\" or \"absolute\"";
+    let given = match section.text("quantity", QUANTITIES)? {
+        None => None,
+        Some("gauge") => Some(Quantity::Gauge),
+        Some("absolute") => Some(Quantity::Absolute),
+        Some(_) => return Err(section.refuse("quantity", QUANTITIES)),
+    };
+    match (kind.own_quantity(), given) {
+        (Some(own), Some(given)) if own != given => {
+            let own = match own {
+                Quantity::Gauge => "gauge",
+                Quantity::Absolute => "absolute",
+            };
+            Err(section.refuse(
+                "quantity",
+                &format!("\"{own}\", as every part of this transducer.kind is, or left out"),
+            ))
+        }
+        (Some(own), _) => Ok(own),
+        (None, given) => Ok(given.unwrap_or(Quantity::Gauge)),
+    }
+}
+
+/// Whether an absolute part reads the range in any air. Of a part on a bus the range is gauge; of an analogue one it is the
+/// part's own, which has to hold the air itself.
+fn fits_the_air(
+    section: &Section<'_>,
+    kind: &TransducerKindSection,
+    range_kpa: [f64; 2],
+) -> Result<(), Fault> {
+    let [thinnest, densest] = air_kpa();
+    let air = format!("the air is {thinnest} to {densest} kPa");
+    let [low, high] = range_kpa;
+    let allowed = if let Some(own) = kind.absolute_range_kpa() {
+        let [lowest, highest] = in_any_air(own);
+        if low >= lowest && high <= highest {
+            return Ok(());
+        }
+        format!(
+            "gauge pressures within [{lowest}, {highest}]: the part measures {} to {} kPa absolute, and {air}",
+            own[0], own[1]
+        )
+    } else {
+        if low >= 0.0 && low <= thinnest && high > densest {
+            return Ok(());
+        }
+        format!(
+            "the two ends that the datasheet gives, kPa absolute as transducer.quantity says, from at most {thinnest} to \
+             above {densest}: {air}"
+        )
+    };
+    Err(section.refuse("range_kpa", &allowed))
 }
 
 const SUPPLIES: &str = "\"reference\" (of the converter) or \"measured\" (beside the output)";

@@ -117,7 +117,7 @@ fn takes_each_kind_of_transducer() {
     let with = |kind: &str| {
         let text = GOOD
             .replace("kind = \"ratiometric\"", kind)
-            .replace("[0, 400.0]", "[0, 18.0]");
+            .replace("[0, 400.0]", "[0, 12.0]");
         DesignFile::parse(&text, "kind.toml")
             .expect(kind)
             .transducer
@@ -152,6 +152,108 @@ fn takes_each_kind_of_transducer() {
     );
 }
 
+/// The good file with another `[transducer]`.
+fn with_transducer(keys: &str) -> Result<DesignFile, DesignFileError> {
+    let (before, after) = GOOD.split_once("[transducer]").expect("it has one");
+    let (_, after) = after.split_once("[accuracy]").expect("it follows");
+    let text = format!("{before}[transducer]\n{keys}\nresolution_pa = 10.0\n[accuracy]{after}");
+    DesignFile::parse(&text, "quantity.toml")
+}
+
+fn same([a, b]: [f64; 2], [c, d]: [f64; 2]) -> bool {
+    (a - c).abs() < 1e-9 && (b - d).abs() < 1e-9
+}
+
+#[test]
+fn an_absolute_analogue_part_is_described_as_its_datasheet_has_it() {
+    // NXP MPX4250A: 20 to 250 kPa, Vs (0.004 P - 0.04).
+    let file = with_transducer(
+        "kind = \"ratiometric\"\nquantity = \"absolute\"\nrange_kpa = [20, 250]\n\
+         output_fraction_at_range = [0.04, 0.96]",
+    )
+    .expect("the part");
+    let transducer = file.transducer.expect("there");
+    assert_eq!(transducer.quantity, Quantity::Absolute);
+    assert!(same(transducer.own_range_kpa(), [20.0, 250.0]));
+    // In 60 kPa of air it reads 40 kPa below it, in 108 kPa 142 above.
+    assert!(same(transducer.gauge_range_kpa(), [-40.0, 142.0]));
+    let gauge = with_transducer(
+        "kind = \"ratiometric\"\nrange_kpa = [20, 250]\noutput_fraction_at_range = [0.04, 0.96]",
+    )
+    .expect("a gauge part");
+    assert_ne!(file.hash(), gauge.hash());
+    assert!(file.canonical().contains("\nquantity = \"absolute\"\n"));
+    let again = DesignFile::parse(&file.canonical(), "again.toml").expect("its canonical text");
+    assert_eq!(file, again);
+}
+
+#[test]
+fn a_gauge_range_for_an_absolute_analogue_part_is_refused_with_what_it_should_be() {
+    let error = with_transducer("kind = \"ratiometric\"\nquantity = \"absolute\"\nrange_kpa = [0, 100]")
+        .expect_err("no air fits")
+        .to_string();
+    assert!(
+        error.contains("`transducer.range_kpa` is [0, 100]")
+            && error.contains("the two ends that the datasheet gives, kPa absolute")
+            && error.contains("the air is 60 to 108 kPa"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_part_on_a_bus_knows_what_it_measures_against() {
+    for (kind, own, [wrong, right], own_range) in [
+        ("abp2", Quantity::Gauge, ["absolute", "gauge"], [0.0, 12.0]),
+        (
+            "ms5837-02ba",
+            Quantity::Absolute,
+            ["gauge", "absolute"],
+            [1.0, 200.0],
+        ),
+        ("dps310", Quantity::Absolute, ["gauge", "absolute"], [30.0, 120.0]),
+    ] {
+        let with =
+            |quantity: &str| with_transducer(&format!("kind = \"{kind}\"\nrange_kpa = [0, 12]\n{quantity}"));
+        let silent = with("").expect(kind);
+        let said = with(&format!("quantity = \"{right}\"")).expect(kind);
+        assert_eq!(silent, said);
+        let transducer = silent.transducer.expect("there");
+        assert_eq!(transducer.quantity, own);
+        // Wanted of it, whatever the air; and what it has.
+        assert!(same(transducer.gauge_range_kpa(), [0.0, 12.0]));
+        assert!(same(transducer.own_range_kpa(), own_range));
+        let error = with(&format!("quantity = \"{wrong}\""))
+            .expect_err(kind)
+            .to_string();
+        assert!(
+            error.contains(&format!("`transducer.quantity` is \"{wrong}\""))
+                && error.contains(&format!("\"{right}\", as every part")),
+            "{error}"
+        );
+    }
+}
+
+/// Of 120 kPa the densest air leaves 12, of 30 kPa the thinnest leaves -30.
+#[test]
+fn the_range_of_an_absolute_part_on_a_bus_is_judged_in_any_air() {
+    for (kind, [lowest, highest]) in [("dps310", [-30, 12]), ("ms5837-02ba", [-59, 92])] {
+        let with = |low: f64, high: f64| {
+            with_transducer(&format!("kind = \"{kind}\"\nrange_kpa = [{low:?}, {high:?}]"))
+        };
+        let (low, high) = (f64::from(lowest), f64::from(highest));
+        assert!(with(low, high).is_ok());
+        for outside in [with(low - 0.1, high), with(low, high + 0.1)] {
+            let error = outside.expect_err(kind).to_string();
+            assert!(
+                error.contains("`transducer.range_kpa` is")
+                    && error.contains(&format!("within [{lowest}, {highest}]"))
+                    && error.contains("the air is 60 to 108 kPa"),
+                "{error}"
+            );
+        }
+    }
+}
+
 #[test]
 fn reading_what_was_printed_gives_the_same_design() {
     let kinds = [
@@ -171,7 +273,7 @@ fn reading_what_was_printed_gives_the_same_design() {
         for rest in rests {
             let text = GOOD
                 .replace("kind = \"ratiometric\"", kind)
-                .replace("[0, 400.0]", "[0, 18.0]")
+                .replace("[0, 400.0]", "[0, 12.0]")
                 .replace("pole_stretch = 2.3", rest)
                 + "[actuator]\ndiameter_mm = 9\n[fluid]\ncompliance_mm3_per_kpa = 0.3333333333333333\n";
             let file = DesignFile::parse(&text, "a.toml").expect("a good file");
@@ -302,6 +404,37 @@ const IMPOSSIBLE: &[(&str, &str, &str)] = &[
     ("\"ratiometric\"", "\"dps310\"", "transducer.range_kpa"),
     ("\"ratiometric\"", "\"ms5837-02ba\"", "transducer.range_kpa"),
     ("[0, 400.0]", "[0, 2500.0]", "transducer.range_kpa"),
+    (
+        "resolution_pa",
+        "quantity = \"differential\"\nresolution_pa",
+        "transducer.quantity",
+    ),
+    (
+        "\"ratiometric\"",
+        "\"abp2\"\nquantity = \"absolute\"",
+        "transducer.quantity",
+    ),
+    (
+        "\"ratiometric\"",
+        "\"dps310\"\nquantity = \"gauge\"",
+        "transducer.quantity",
+    ),
+    // Ends that leave out the air that the part stands in.
+    (
+        "[0, 400.0]",
+        "[0, 100.0]\nquantity = \"absolute\"",
+        "transducer.range_kpa",
+    ),
+    (
+        "[0, 400.0]",
+        "[-80, 150.0]\nquantity = \"absolute\"",
+        "transducer.range_kpa",
+    ),
+    (
+        "[0, 400.0]",
+        "[70, 250.0]\nquantity = \"absolute\"",
+        "transducer.range_kpa",
+    ),
     (
         "\"ratiometric\"",
         "\"abp2\"\naddress = 0x80",

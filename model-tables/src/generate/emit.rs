@@ -14,7 +14,30 @@ use std::fmt::{self, Write as _};
 
 const NEVER: &str = "writing to a string does not fail";
 
-pub(super) fn rust_source(generated: &Generated) -> String {
+impl Generated {
+    /// Rust source of `TABLES` and `DESIGN`, for `include!`.
+    pub fn rust_source(&self) -> String {
+        rust_source(self)
+    }
+
+    /// The tables as bytes; little-endian: `FTIP`, `u32` table version, `u64` design hash, the fields of
+    /// [`crate::table::Layout`] (four bytes each), `u32` numbers of segments and of words in each, then the words.
+    pub fn binary(&self) -> Vec<u8> {
+        binary(self)
+    }
+
+    /// The tables as CSV: one row a word.
+    pub fn csv(&self) -> String {
+        csv(self)
+    }
+
+    /// The certificate as TOML.
+    pub fn certificate(&self) -> String {
+        certificate(self)
+    }
+}
+
+fn rust_source(generated: &Generated) -> String {
     let mut text = String::new();
     write_rust(generated, &mut text).expect(NEVER);
     text
@@ -49,6 +72,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
          \x20       range: {:?},\n\
          \x20       resolution: {},\n\
          \x20       noise: {},\n\
+         \x20       quantity: model_tables::constants::Quantity::{:?},\n\
          \x20       kind: model_tables::constants::TransducerKind::{:?},\n\
          \x20   }},\n\
          }};\n",
@@ -61,6 +85,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
         transducer.range,
         transducer.resolution,
         transducer.noise,
+        transducer.quantity,
         transducer.kind,
     )?;
     writeln!(
@@ -88,7 +113,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     writeln!(out, "    ],\n}};")
 }
 
-pub(super) fn binary(generated: &Generated) -> Vec<u8> {
+fn binary(generated: &Generated) -> Vec<u8> {
     let tables = &generated.certified.tables;
     let mut bytes = Vec::from(*b"FTIP");
     bytes.extend(TABLE_VERSION.to_le_bytes());
@@ -127,7 +152,7 @@ fn fields(layout: &Layout) -> [(&'static str, i64); 10] {
     ]
 }
 
-pub(super) fn csv(generated: &Generated) -> String {
+fn csv(generated: &Generated) -> String {
     let tables = &generated.certified.tables;
     let mut text = String::from("segment,from_count,word,value,upper_half,lower_half\n");
     for (index, from) in first_counts(tables).iter().enumerate() {
@@ -159,7 +184,7 @@ fn first_counts(tables: &OwnedTables) -> Vec<i32> {
         .collect()
 }
 
-pub(super) fn certificate(generated: &Generated) -> String {
+fn certificate(generated: &Generated) -> String {
     let mut text = String::new();
     write_certificate(generated, &mut text).expect(NEVER);
     text

@@ -4,7 +4,7 @@
 //! signs), so the best sum is the one whose error alternates between its extremes once more than it has coefficients.
 
 /// Coefficients of a sum at most.
-pub(crate) const MOST: usize = 5;
+pub const MOST: usize = 5;
 /// Exchanges at most; a handful is usual.
 const EXCHANGES: usize = 30;
 /// The largest error this close to that of the alternation is taken for it.
@@ -12,18 +12,18 @@ const CLOSE: f64 = 1.002;
 
 /// What a sum should be at one input: `middle`, give or take `half`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sample {
+pub struct Sample {
     /// What its coefficients are multiplied with.
-    pub(crate) factors: [f64; MOST],
+    pub factors: [f64; MOST],
     /// The middle of the window.
-    pub(crate) middle: f64,
+    pub middle: f64,
     /// Half its width, > 0.
-    pub(crate) half: f64,
+    pub half: f64,
 }
 
 impl Sample {
     /// How far a sum with these coefficients lies from the middle, in half widths.
-    pub(crate) fn error(&self, coefficients: &[f64; MOST]) -> f64 {
+    pub fn error(&self, coefficients: &[f64; MOST]) -> f64 {
         let mut sum = 0.0;
         for (coefficient, factor) in coefficients.iter().zip(self.factors) {
             sum += coefficient * factor;
@@ -34,13 +34,15 @@ impl Sample {
 
 /// A sum and its largest error over the samples, in half widths.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fit {
-    pub(crate) coefficients: [f64; MOST],
-    pub(crate) error: f64,
+pub struct Fit {
+    /// The coefficients.
+    pub coefficients: [f64; MOST],
+    /// The largest error.
+    pub error: f64,
 }
 
 /// The best sum whose coefficients from `free` on are those `given`. The samples are in the order of their inputs.
-pub(crate) fn fit(samples: &[Sample], free: usize, given: &[f64; MOST]) -> Fit {
+pub fn fit(samples: &[Sample], free: usize, given: &[f64; MOST]) -> Fit {
     let count = samples.len();
     let mut best = Fit {
         coefficients: *given,

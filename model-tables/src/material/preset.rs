@@ -126,7 +126,7 @@ impl Preset {
 mod tests {
     use super::*;
     use crate::material::Hyperelastic as _;
-    use crate::stability;
+    use crate::material::stability;
 
     #[test]
     fn names_are_unique_and_found() {

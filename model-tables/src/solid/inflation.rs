@@ -2,11 +2,8 @@
 
 use super::equilibrium::{Fluid, State, Wall};
 use super::section;
-use crate::adapt::Failure as AnyFailure;
-use crate::design::{Design, Membrane, RestBy};
-use crate::membrane::TensionField;
-use crate::press::{ModelError, Press};
-use crate::solid::Failure;
+use crate::design::Membrane;
+use crate::solid::{Failure, SolidError};
 use core::f64::consts::PI;
 
 /// A plate far above anything.
@@ -20,10 +17,8 @@ const STRETCH_STEP: f64 = 0.04;
 /// Accuracy of the pole stretch.
 const STRETCH_TOLERANCE: f64 = 1e-9;
 
-fn unsolved(failure: Failure) -> ModelError {
-    ModelError::RestUnsolved {
-        failure: AnyFailure::Solid(failure),
-    }
+fn unsolved(failure: Failure) -> SolidError {
+    SolidError::RestUnsolved { failure }
 }
 
 /// The equation of a given volume.
@@ -45,14 +40,33 @@ pub fn mid_surface(wall: &Membrane) -> Membrane {
     }
 }
 
+/// What a dome inflates to whose rim slides on the base: of the middle of its wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeRest {
+    /// Radius of the equator, metres.
+    pub edge_radius: f64,
+    /// Height of the pole, metres.
+    pub height: f64,
+    /// Volume inside, cubic metres.
+    pub volume: f64,
+    /// Thickness of the wall at the equator over the undeformed one.
+    pub thinning: f64,
+}
+
 /// Inflates the wall as a membrane is, its rim free to slide on the base, until the pole is stretched by so much, and bonds it
 /// there: the rim goes where the membrane in the middle of the wall has its equator, as thin as that is there.
 ///
+/// `length` is the outer radial semi-axis in metres; `free` gives what the middle of the wall inflates to, by the pole stretch.
+///
 /// # Errors
-/// [`ModelError`] of the membrane, and [`ModelError::RestUnsolved`].
-pub fn bonded(wall: &mut Wall, state: &mut State, design: &Design, stretch: f64) -> Result<(), ModelError> {
-    let outer = &design.membrane;
-    let length = outer.radial_semi_axis;
+/// Those of `free`, and [`SolidError::RestUnsolved`].
+pub fn bonded<E: From<SolidError>>(
+    wall: &mut Wall,
+    state: &mut State,
+    length: f64,
+    stretch: f64,
+    mut free: impl FnMut(f64) -> Result<FreeRest, E>,
+) -> Result<(), E> {
     let half_of_wall = {
         let (a, b, h) = (1.0, wall.mesh.height, wall.mesh.thickness);
         PI / 3.0 * (a * a * b - (a - h) * (a - h) * (b - h))
@@ -62,17 +76,7 @@ pub fn bonded(wall: &mut Wall, state: &mut State, design: &Design, stretch: f64)
     let (mut reached, mut step) = (1.0, STRETCH_STEP);
     while reached < stretch {
         let next = (reached + step).min(stretch);
-        let membrane = Design {
-            membrane: mid_surface(outer),
-            rest: RestBy::PoleStretch(next),
-            ..*design
-        };
-        let mut press = Press::new(&membrane, TensionField::Relaxed)?;
-        let rest = *press.rest();
-        let thinning = press
-            .profile(0.0, 3)?
-            .last()
-            .map_or(1.0, |edge| 1.0 / (edge.meridional_stretch * edge.hoop_stretch));
+        let rest = free(next)?;
         let mut trial = state.clone();
         grow(
             &mut trial,
@@ -83,7 +87,7 @@ pub fn bonded(wall: &mut Wall, state: &mut State, design: &Design, stretch: f64)
         for layer in 0..layers {
             let through = layer as f64 / (layers - 1) as f64 - 0.5;
             trial.nodes[rim + layer] = [
-                rest.edge_radius / length + through * thinning * wall.mesh.thickness,
+                rest.edge_radius / length + through * rest.thinning * wall.mesh.thickness,
                 0.0,
             ];
         }
@@ -96,7 +100,7 @@ pub fn bonded(wall: &mut Wall, state: &mut State, design: &Design, stretch: f64)
             Err(failure) => {
                 step *= 0.5;
                 if step < 1e-3 * STRETCH_STEP {
-                    return Err(unsolved(failure));
+                    return Err(unsolved(failure).into());
                 }
             }
         }
@@ -115,7 +119,7 @@ pub fn bonded(wall: &mut Wall, state: &mut State, design: &Design, stretch: f64)
         change *= -next / (next - excess);
         excess = next;
     }
-    Err(unsolved(Failure::Stalled { residual: excess }))
+    Err(unsolved(Failure::Stalled { residual: excess }).into())
 }
 
 /// A guess for a wall whose middle has grown to a radius and a height: as much thinner as it grew.
@@ -142,14 +146,14 @@ fn grow(state: &mut State, layers: usize, stride: usize, [radius, height]: [f64;
 /// volume, as the pressure may have a maximum on the way.
 ///
 /// # Errors
-/// [`ModelError::PressureOutOfReach`], [`ModelError::RestUnsolved`].
-pub fn held(wall: &mut Wall, state: &mut State, pascals: f64, unit: f64) -> Result<(), ModelError> {
+/// [`SolidError::PressureOutOfReach`], [`SolidError::RestUnsolved`].
+pub fn held(wall: &mut Wall, state: &mut State, pascals: f64, unit: f64) -> Result<(), SolidError> {
     let pressure = pascals / unit;
     let first = wall.volume(state);
     let mut volume = first;
     let mut step = INFLATION_STEP;
     let mut greatest = 0.0;
-    let none = |greatest: f64| ModelError::PressureOutOfReach {
+    let none = |greatest: f64| SolidError::PressureOutOfReach {
         asked: pressure * unit,
         greatest: greatest * unit,
     };

@@ -5,12 +5,11 @@ use super::inflation;
 use super::mesh::Elements;
 use super::section::{self, Station};
 use super::trail::Trail;
-use crate::adapt::Failure as AnyFailure;
-use crate::curve::{Contact, Curve};
+use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};
+use crate::limit::{EndsBy, Limit};
 use crate::material::{Hyperelastic as _, Law};
-use crate::press::{CurveFailure, EndsBy, Limit, ModelError};
-use crate::solid::Failure;
+use crate::solid::{Failure, SolidError};
 use core::f64::consts::PI;
 
 /// One element through the wall: pressure and force to about 2 % of a refined mesh.
@@ -104,12 +103,18 @@ impl PressedState {
 }
 
 impl Press {
-    /// Inflates a design to its rest state. The semi-axes of `design.membrane` are those of the outer surface here.
+    /// Inflates a design to its rest state. The semi-axes of `design.membrane` are those of the outer surface here. `free`
+    /// gives what it inflates to with its rim free, by the pole stretch: where a rest state given by that is looked for.
+    /// [`Press::new`] asks the membrane.
     ///
     /// # Errors
-    /// [`ModelError::PressureOutOfReach`], [`ModelError::RestUnsolved`], and [`ModelError::RestNotForSolid`] for a rest state given by
-    /// anything but pressure.
-    pub fn new(design: &Design, elements: Elements) -> Result<Self, ModelError> {
+    /// [`SolidError::PressureOutOfReach`], [`SolidError::RestUnsolved`], [`SolidError::RestNotForSolid`] for a rest state
+    /// given by the equator or the height, and those of `free`.
+    pub fn inflate<E: From<SolidError>>(
+        design: &Design,
+        elements: Elements,
+        free: impl FnMut(f64) -> Result<inflation::FreeRest, E>,
+    ) -> Result<Self, E> {
         let length = design.membrane.radial_semi_axis;
         let modulus = design.law.shear_modulus();
         let law = scaled(&design.law, 1.0 / modulus);
@@ -123,8 +128,8 @@ impl Press {
         match design.rest {
             RestBy::Unstretched => {}
             RestBy::Pressure(pascals) => inflation::held(&mut wall, &mut state, pascals, modulus)?,
-            RestBy::PoleStretch(stretch) => inflation::bonded(&mut wall, &mut state, design, stretch)?,
-            RestBy::EquatorRadius(_) | RestBy::Height(_) => return Err(ModelError::RestNotForSolid),
+            RestBy::PoleStretch(stretch) => inflation::bonded(&mut wall, &mut state, length, stretch, free)?,
+            RestBy::EquatorRadius(_) | RestBy::Height(_) => return Err(SolidError::RestNotForSolid.into()),
         }
         let volume = wall.volume(&state);
         let unit = length * length * length;
@@ -174,8 +179,8 @@ impl Press {
     /// The pressed state at an indentation in metres, 0 ..= limit.
     ///
     /// # Errors
-    /// [`ModelError::NotAnIndentation`], [`ModelError::BeyondLimit`], [`ModelError::PressUnsolved`].
-    pub fn at_indentation(&mut self, indentation: f64) -> Result<PressedState, ModelError> {
+    /// [`SolidError::NotAnIndentation`], [`SolidError::BeyondLimit`], [`SolidError::PressUnsolved`].
+    pub fn at_indentation(&mut self, indentation: f64) -> Result<PressedState, SolidError> {
         let contact = self.contact_at(indentation)?;
         let (length, modulus) = (self.length, self.modulus);
         let unit = length * length * length;
@@ -199,20 +204,20 @@ impl Press {
     ///
     /// # Errors
     /// As [`Press::at_indentation`].
-    pub fn contact_at(&mut self, indentation: f64) -> Result<Contact, ModelError> {
+    pub fn contact_at(&mut self, indentation: f64) -> Result<Contact, SolidError> {
         if !(indentation >= 0.0 && indentation.is_finite()) {
-            return Err(ModelError::NotAnIndentation { asked: indentation });
+            return Err(SolidError::NotAnIndentation { asked: indentation });
         }
         if let Err(stop) = self.reach(indentation / self.length) {
             return Err(match stop {
-                Stop::BeyondLimit(_) => ModelError::BeyondLimit {
+                Stop::BeyondLimit(_) => SolidError::BeyondLimit {
                     asked: indentation,
                     limit: self.limit()?,
                 },
-                Stop::Failed { reached, failure } => ModelError::PressUnsolved {
+                Stop::Failed { reached, failure } => SolidError::PressUnsolved {
                     asked: indentation,
                     reached: reached * self.length,
-                    failure: AnyFailure::Solid(failure),
+                    failure,
                 },
             });
         }
@@ -228,7 +233,7 @@ impl Press {
     ///
     /// # Errors
     /// As [`Press::at_indentation`].
-    pub fn largest_invariant(&mut self, indentation: f64) -> Result<f64, ModelError> {
+    pub fn largest_invariant(&mut self, indentation: f64) -> Result<f64, SolidError> {
         self.contact_at(indentation)?;
         let kept = self.trail.nearest(indentation / self.length);
         Ok(self.wall.largest_invariant(&kept.state))
@@ -237,8 +242,8 @@ impl Press {
     /// The end of the press.
     ///
     /// # Errors
-    /// [`ModelError::PressUnsolved`] if the way there fails.
-    pub fn limit(&mut self) -> Result<Limit, ModelError> {
+    /// [`SolidError::PressUnsolved`] if the way there fails.
+    pub fn limit(&mut self) -> Result<Limit, SolidError> {
         if let Some(limit) = self.limit {
             return Ok(limit);
         }
@@ -251,10 +256,10 @@ impl Press {
                 Ok(()) => low += step,
                 Err(Stop::BeyondLimit(reason)) => ends_by = Some(reason),
                 Err(Stop::Failed { reached, failure }) => {
-                    return Err(ModelError::PressUnsolved {
+                    return Err(SolidError::PressUnsolved {
                         asked: (low + step) * self.length,
                         reached: reached * self.length,
-                        failure: AnyFailure::Solid(failure),
+                        failure,
                     });
                 }
             }
@@ -278,7 +283,7 @@ impl Press {
     ///
     /// # Errors
     /// As [`Press::at_indentation`].
-    pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<Station>, ModelError> {
+    pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<Station>, SolidError> {
         let state = self.at_indentation(indentation)?;
         let kept = self.trail.nearest(indentation / self.length);
         let intervals = points.max(3) - 1;
@@ -295,7 +300,7 @@ impl Press {
     ///
     /// # Errors
     /// As [`Press::at_indentation`], and [`CurveFailure::Shape`] if pressure or force do not grow throughout.
-    pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure> {
+    pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure<SolidError>> {
         let mut points = Vec::with_capacity(CURVE_STATES + 1);
         for k in 0..=CURVE_STATES {
             let ratio = k as f64 / CURVE_STATES as f64;

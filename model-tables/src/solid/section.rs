@@ -3,7 +3,7 @@
 use super::element;
 use super::equilibrium::{State, Wall, edge, positions};
 use super::mesh::{CREASE, FUNCTIONS, PLACES, WEIGHTS, function, shape, slope};
-use crate::press::EndsBy;
+use crate::limit::EndsBy;
 use core::f64::consts::FRAC_PI_2;
 
 /// Samples of an edge where a crossing is looked for.

@@ -13,11 +13,11 @@ pub const BORDERS: usize = 3;
 /// Unknowns left when all nodes but the last are eliminated: the last node, then the parameters.
 pub const UNKNOWNS: usize = STATES + PARAMETERS;
 /// An equation `sum_i row[i] x_i + row[UNKNOWNS] = 0` on one node and the parameters.
-pub type Row = [f64; UNKNOWNS + 1];
+pub type BlockRow = [f64; UNKNOWNS + 1];
 const CONSTANT: usize = UNKNOWNS;
 
 /// A node that has been eliminated: its two states from the next node's and the parameters.
-type Eliminated = [Row; STATES];
+type Eliminated = [BlockRow; STATES];
 
 /// The elimination in progress.
 #[derive(Clone, Debug)]
@@ -25,9 +25,9 @@ pub struct Chain<const MAX: usize> {
     eliminated: [Eliminated; MAX],
     nodes: usize,
     /// Two equations on the present node.
-    link: [Row; STATES],
+    link: [BlockRow; STATES],
     /// Border rows, expressed on the present node.
-    pub borders: [Row; BORDERS],
+    pub borders: [BlockRow; BORDERS],
 }
 
 impl<const MAX: usize> Chain<MAX> {
@@ -60,7 +60,7 @@ impl<const MAX: usize> Chain<MAX> {
     }
 
     /// Adds a term in the present node, the parameters and a constant to a border row.
-    pub fn add_to_border(&mut self, border: usize, term: &Row) {
+    pub fn add_to_border(&mut self, border: usize, term: &BlockRow) {
         for (x, y) in self.borders[border].iter_mut().zip(term) {
             *x += y;
         }
@@ -71,7 +71,7 @@ impl<const MAX: usize> Chain<MAX> {
         // Columns: present node, next node, parameters, constant.
         const WIDE: usize = 2 * STATES + PARAMETERS + 1;
         let mut rows = [[0.0; WIDE]; 2 * STATES + BORDERS];
-        let widen = |narrow: &Row, wide: &mut [f64; WIDE]| {
+        let widen = |narrow: &BlockRow, wide: &mut [f64; WIDE]| {
             wide[..STATES].copy_from_slice(&narrow[..STATES]);
             wide[2 * STATES..].copy_from_slice(&narrow[STATES..]);
         };
@@ -108,7 +108,7 @@ impl<const MAX: usize> Chain<MAX> {
                 }
             }
         }
-        let narrow = |wide: &[f64; WIDE]| -> Row {
+        let narrow = |wide: &[f64; WIDE]| -> BlockRow {
             let mut row = [0.0; UNKNOWNS + 1];
             row.copy_from_slice(&wide[STATES..]);
             row
@@ -125,7 +125,7 @@ impl<const MAX: usize> Chain<MAX> {
     }
 
     /// The two equations that the chain leaves on the last node and the parameters.
-    pub fn link(&self) -> [Row; STATES] {
+    pub fn link(&self) -> [BlockRow; STATES] {
         self.link
     }
 
@@ -150,7 +150,7 @@ impl<const MAX: usize> Chain<MAX> {
 }
 
 /// Solves the equations on the last node and the parameters. `None` if they are singular.
-pub fn solve(mut rows: [Row; UNKNOWNS]) -> Option<[f64; UNKNOWNS]> {
+pub fn solve(mut rows: [BlockRow; UNKNOWNS]) -> Option<[f64; UNKNOWNS]> {
     // Rows of very different units: pivot on what is large within its row.
     for row in &mut rows {
         let scale = row[..CONSTANT].iter().fold(0.0_f64, |a, x| a.max(x.abs()));

@@ -1,5 +1,6 @@
 use super::*;
 use crate::transducer::script::{Script, Step, Stopwatch, fail_everywhere, play, read, write};
+use model_tables::constants::Quantity;
 use proptest::prelude::*;
 
 /// -1 to 1 psi by transfer function A, as the datasheet's example has it; 1 psi is 6894.757 Pa.
@@ -10,6 +11,7 @@ const fn transducer(range: [i32; 2], counts: [u32; 2]) -> constants::Transducer 
         range,
         resolution: 1000,
         noise: 1000,
+        quantity: Quantity::Gauge,
         kind: TransducerKind::Abp2 {
             address: 0x28,
             counts,

@@ -134,6 +134,42 @@ fn another_part_at_the_address_is_said_so() {
     }
 }
 
+/// It has no register 0x28 and acknowledges it all the same. What it reads there is known from reports alone: no bit 7.
+#[test]
+fn an_spl06_which_answers_with_the_same_identity_is_refused() {
+    let mut steps = start(PACKED);
+    steps.truncate(5);
+    for without_the_bit in [0x00, 0x7F] {
+        steps.push(read(&[0x28], [without_the_bit]));
+        assert_eq!(outcome(&steps), Err(Fault::WrongSensor));
+        steps.pop();
+    }
+}
+
+#[test]
+fn a_part_that_does_not_feel_the_air_at_its_start_is_another() {
+    let word_at = |pascals: f64| {
+        let mut word = PRESSURE;
+        while datasheet(C, word, TEMPERATURE).0 > pascals {
+            word += 100;
+        }
+        word
+    };
+    let sound = |word| steps(PACKED, word, TEMPERATURE, [0x02, 0x80]);
+    assert_eq!(outcome(&sound(word_at(56_900.0))), Err(Fault::WrongSensor));
+    assert!(outcome(&sound(word_at(57_100.0))).is_ok());
+    // What has felt the air is believed below it.
+    let script = [self::sound(), sound(word_at(40_000.0))[14..].to_vec()].concat();
+    let mut part = part(Script::new(0x77, &script), Stopwatch::default());
+    let below = block_on(async {
+        part.start().await?;
+        part.sample().await?;
+        part.sample().await
+    });
+    let below = below.expect("it is recognised").pressure.0;
+    assert!((39_900_000..=40_000_000).contains(&below), "{below}");
+}
+
 #[test]
 fn coefficients_that_are_blank_or_bent_are_refused() {
     for blank in [0x00, 0xFF] {
@@ -235,7 +271,7 @@ proptest! {
         temperature in -0x80_0000_i32..=0x7F_FFFF,
     ) {
         let (pascals, degrees) = datasheet(c, pressure, temperature);
-        let calibration = Calibration::of(packed(c), 0x80).expect("not blank");
+        let calibration = Calibration::of(packed(c)).expect("not blank");
         match calibration.sample(pressure, temperature) {
             Ok(sample) => {
                 // Rounding down at each of six products, the last one of them multiplied by up to 16 of Ts.

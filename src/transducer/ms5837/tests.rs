@@ -108,6 +108,67 @@ fn the_thirty_bar_part_is_another() {
     assert_eq!(outcome(prom(0x1A, COEFFICIENTS), D2, D1), Err(Fault::WrongSensor));
 }
 
+/// The datasheet's example of the MS5837-30BA: 399.98 kPa after the second order, 399.97 before it.
+const THIRTY_BAR: [u16; 6] = [34982, 36352, 20328, 22354, 26646, 26146];
+const THIRTY_BAR_D1: u32 = 4_958_179;
+const THIRTY_BAR_D2: u32 = 6_815_414;
+
+#[test]
+fn the_thirty_bar_part_with_this_parts_version_is_another() {
+    let (pascals, _) = datasheet(THIRTY_BAR, THIRTY_BAR_D1, THIRTY_BAR_D2);
+    // What this part's formula makes of it: a twentieth.
+    assert!((pascals - 399_980.0 / 20.0).abs() < 100.0, "{pascals}");
+    for version in [0, 0x15] {
+        assert_eq!(
+            outcome(prom(version, THIRTY_BAR), THIRTY_BAR_D2, THIRTY_BAR_D1),
+            Err(Fault::WrongSensor)
+        );
+    }
+}
+
+/// D1 at a pressure, pascals, with the example's coefficients and temperature: the slope of the example's formula, and
+/// then the nearest.
+fn d1_at(pascals: f64) -> u32 {
+    let at = |d1: u32| datasheet(COEFFICIENTS, d1, D2).0;
+    let slope = (at(D1 + 100_000) - at(D1)) / 1e5;
+    (f64::from(D1) + (pascals - at(D1)) / slope).round() as u32
+}
+
+#[test]
+fn a_part_that_does_not_feel_the_air_at_its_start_is_another() {
+    let prom = prom(0, COEFFICIENTS);
+    // The air as a 30 bar part reads here: a twentieth, even of 10 bar; and the thinnest, 3 kPa off.
+    for pascals in [3_000.0, 5_066.0, 50_000.0, 56_990.0] {
+        assert_eq!(
+            outcome(prom, D2, d1_at(pascals)),
+            Err(Fault::WrongSensor),
+            "{pascals}"
+        );
+    }
+    for pascals in [57_010.0, 60_000.0, 108_000.0, 190_000.0] {
+        assert!(outcome(prom, D2, d1_at(pascals)).is_ok(), "{pascals}");
+    }
+}
+
+#[test]
+fn a_part_that_felt_the_air_once_is_believed_below_it_until_it_is_started_again() {
+    let prom = prom(0, COEFFICIENTS);
+    let low = steps(prom, D2, d1_at(40_000.0));
+    let script = Script::new(0x76, &[steps(prom, D2, D1), low[8..].to_vec(), low].concat());
+    let mut part = part(script.clone(), Stopwatch::default());
+    let both = async {
+        part.start().await?;
+        part.sample().await?;
+        let below = part.sample().await;
+        part.start().await?;
+        assert_eq!(part.sample().await, Err(Fault::WrongSensor));
+        below
+    };
+    let below = embassy_futures::block_on(both).expect("it is recognised");
+    assert!((below.pressure.0 - 40_000_000).abs() < 10_000);
+    assert!(script.is_over());
+}
+
 #[test]
 fn a_word_of_zero_is_no_conversion_and_one_of_ones_no_part() {
     let prom = prom(0, COEFFICIENTS);
@@ -158,10 +219,13 @@ fn datasheet(coefficients: [u16; 6], d1: u32, d2: u32) -> (f64, f64) {
 proptest! {
     #[test]
     fn pressure_and_temperature_are_the_datasheets(
-        coefficients in prop::array::uniform6(20_000_u16..50_000),
+        sensitivity in 37_001_u16..50_000,
+        others in prop::array::uniform5(20_000_u16..50_000),
         d1 in 1_u32..0x00FF_FFFF,
         d2 in 1_u32..0x00FF_FFFF,
     ) {
+        let [c2, c3, c4, c5, c6] = others;
+        let coefficients = [sensitivity, c2, c3, c4, c5, c6];
         let (pascals, centidegrees) = datasheet(coefficients, d1, d2);
         match outcome(prom(0, coefficients), d2, d1) {
             Ok(sample) => {
@@ -169,8 +233,9 @@ proptest! {
                 prop_assert!((f64::from(sample.pressure.0) - pascals * 1e3).abs() < 4e3, "{sample:?} for {pascals}");
                 let temperature = sample.temperature.expect("measured").0;
                 prop_assert!((f64::from(temperature) - centidegrees).abs() <= 2.0);
-                prop_assert!((980.0..).contains(&pascals) && (-4002.0..=8502.0).contains(&centidegrees));
+                prop_assert!((56_990.0..).contains(&pascals) && (-4002.0..=8502.0).contains(&centidegrees));
             }
+            Err(Fault::WrongSensor) => prop_assert!(pascals < 57_010.0),
             Err(fault) => {
                 prop_assert_eq!(fault, Fault::SensorImplausible);
                 prop_assert!(pascals < 1010.0 || !(-3998.0..8500.0).contains(&centidegrees));

@@ -3,7 +3,7 @@
 use crate::run;
 use emulator::accuracy::is_wrong;
 use emulator::transducer::Wiring;
-use fingertip::report::{Fault, Status};
+use fingertip::status::{Fault, Status};
 
 /// A report is made of samples this long before and after its instant: half a block and the filter's two blocks,
 /// seconds, and a little for the instant itself.

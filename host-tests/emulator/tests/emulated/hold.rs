@@ -1,7 +1,7 @@
 //! A minute of one grasp on the running image.
 
 use crate::run;
-use fingertip::report::Status;
+use fingertip::status::Status;
 use host_tests::assert_faults_says;
 
 /// When the grasp stands still, seconds.

@@ -6,9 +6,9 @@ use emulator::image::Image;
 use emulator::plant::Plant;
 use emulator::scenario::Scenario;
 use fingertip::image::ImageDesign;
-use fingertip::lookup_sweep;
-use fingertip::report::Measurement;
-use fingertip::telemetry::{Decoder, Message};
+use fingertip::link::telemetry::{Decoder, Message};
+use fingertip::signal::report::Measurement;
+use probes::lookup_sweep;
 use std::ops::ControlFlow;
 
 /// More than the sweep takes, virtual seconds.

@@ -17,23 +17,62 @@ mod service;
 mod solver;
 mod stored;
 mod supply;
+mod transducers;
 
 use emulator::bench::{self, Outcome};
-use emulator::fingertip_design::{FingertipDesign, default_path};
+use emulator::fingertip_design::{FingertipDesign, FingertipDesignError, default_path};
 use emulator::image::Image;
 use emulator::plant::Plant;
 use emulator::record::{Record, Recorder, Row};
 use emulator::scenario::Scenario;
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::Path;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// The signal path from the averaged counts to both results, by owner and name: the conversion to pressure, and the
 /// stages after it.
 const SIGNAL_PATH: &[(&str, &str)] = &[("ratiometric", "pressure"), ("Pipeline", "step")];
 
-/// The firmware for the default design, built once.
+/// The firmware for the default design.
 fn firmware() -> &'static Image {
-    static IMAGE: OnceLock<Image> = OnceLock::new();
-    IMAGE.get_or_init(|| Image::firmware(Some(&design().path)).expect("the firmware builds"))
+    firmware_for(&design())
+}
+
+/// The firmware for a design, built once for all tests that ask for it.
+fn firmware_for(design: &FingertipDesign) -> &'static Image {
+    /// By the hash of the design.
+    static IMAGES: Mutex<BTreeMap<u64, &Image>> = Mutex::new(BTreeMap::new());
+    let mut images = IMAGES.lock().unwrap_or_else(PoisonError::into_inner);
+    images.entry(design.hash()).or_insert_with(|| {
+        let image = Image::firmware(Some(&design.path)).expect("the firmware builds");
+        Box::leak(Box::new(image))
+    })
+}
+
+/// The text of a shipped design, a part of it replaced.
+fn replaced(shipped: &str, from: &str, to: &str) -> String {
+    let text = std::fs::read_to_string(host_tests::design(shipped)).expect("it is shipped");
+    assert!(text.contains(from), "{shipped} has no {from}");
+    text.replace(from, to)
+}
+
+/// The design of a text, in a file that no other test writes at the same time.
+fn design_of(text: &str) -> Result<FingertipDesign, FingertipDesignError> {
+    static WRITING: Mutex<()> = Mutex::new(());
+    let _writing = WRITING.lock();
+    let mut hasher = DefaultHasher::new();
+    text.hash(&mut hasher);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{:016x}.toml", hasher.finish()));
+    if std::fs::read_to_string(&path).ok().as_deref() != Some(text) {
+        std::fs::write(&path, text).expect("the folder of tests can be written");
+    }
+    FingertipDesign::read(&path)
+}
+
+/// A shipped design, a part of its text replaced.
+fn design_with(shipped: &str, from: &str, to: &str) -> FingertipDesign {
+    design_of(&replaced(shipped, from, to)).expect("it is well formed")
 }
 
 /// The same for the smaller board: nothing emulates it, but it has a size.

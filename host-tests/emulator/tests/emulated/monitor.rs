@@ -4,10 +4,10 @@ use crate::{design, firmware};
 use emulator::bench;
 use emulator::scenario::Scenario;
 use emulator::serve::Server;
-use fingertip::command::Command;
-use fingertip::report::Status;
-use monitor::link::{Address, Event, Link};
-use monitor::readings::{Connection, Monitor, Reading};
+use fingertip::link::command::Command;
+use fingertip::status::Status;
+use monitor::link::{Address, Link, LinkEvent};
+use monitor::readings::{Connection, LiveReading, Monitor};
 use monitor::view::{self, Surroundings};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -25,7 +25,7 @@ struct Program {
     link: Link,
     monitor: Monitor,
     start: Instant,
-    readings: Vec<Reading>,
+    readings: Vec<LiveReading>,
 }
 
 impl Program {
@@ -38,9 +38,9 @@ impl Program {
                 self.screen()
             );
             match self.link.next(Duration::from_millis(50)) {
-                Some(Event::Connected) => self.monitor.connected(),
-                Some(Event::Lost(reason)) => self.monitor.lost(&reason),
-                Some(Event::Bytes(bytes)) => {
+                Some(LinkEvent::Connected) => self.monitor.connected(),
+                Some(LinkEvent::Lost(reason)) => self.monitor.lost(&reason),
+                Some(LinkEvent::Bytes(bytes)) => {
                     for byte in bytes {
                         let heard = self.monitor.hear(byte, self.start.elapsed());
                         self.readings.extend(heard);
@@ -81,7 +81,7 @@ fn the_monitor_shows_the_force_that_presses_and_a_refused_tare() {
         start: Instant::now(),
         readings: Vec::new(),
     };
-    let near = |reading: &Reading| {
+    let near = |reading: &LiveReading| {
         reading
             .ok()
             .is_some_and(|values| (values.force_n[0] / held.force - 1.0).abs() < CLOSE)

@@ -3,7 +3,7 @@
 use crate::{Run, design, press_hold_release, run};
 use emulator::accuracy::{Accuracy, is_wrong};
 use emulator::record::Row;
-use fingertip::report::Status;
+use fingertip::status::Status;
 
 /// Largest median error, share of reading, from 5 % of full scale up.
 const MEDIAN_ERROR: f64 = 0.005;

@@ -3,11 +3,9 @@
 use crate::{Run, run};
 use emulator::accuracy::is_wrong;
 use emulator::record::Row;
-use fingertip::command::{CommandKind, Outcome};
-use fingertip::report::{Status, Warnings};
-use fingertip::station::findings;
-use fingertip::telemetry::{LastFault, ResetCause, Stored};
-use fingertip::touch::Touch;
+use fingertip::device::station::findings;
+use fingertip::link::command::{CommandKind, Outcome};
+use fingertip::status::{LastFault, ResetCause, Status, Stored, Touch, Warnings};
 
 /// Readings are back this long after a reset, seconds.
 const RECOVERY: f64 = 0.05;

@@ -5,9 +5,9 @@ use emulator::bench::{self, Listener, Moment};
 use emulator::image::Image;
 use emulator::plant::Plant;
 use emulator::scenario::Scenario;
-use fingertip::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, State};
 use host_tests::assert_readme_figure;
 use model_tables::design_file::DesignFile;
+use probes::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, State};
 use std::ops::ControlFlow;
 use std::path::Path;
 

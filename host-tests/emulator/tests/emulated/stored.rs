@@ -3,15 +3,15 @@
 
 use crate::{design, firmware};
 use emulator::bench;
+use emulator::image::Image;
 use emulator::record::{Record, Recorder, Row};
 use emulator::scenario::Scenario;
-use fingertip::calibration::Calibration;
-use fingertip::design::Design;
 use fingertip::image::ImageDesign;
-use fingertip::report::{Status, Warnings};
-use fingertip::store::Identity;
-use fingertip::telemetry::Stored;
-use fingertip::transducer::Millipascals;
+use fingertip::signal::calibration::Calibration;
+use fingertip::signal::design::Design;
+use fingertip::status::{Status, Stored, Warnings};
+use fingertip::storage::store::Identity;
+use fingertip::units::Millipascals;
 use host_tests::nor_flash;
 
 /// The default board's slots, and where they lie.
@@ -20,22 +20,32 @@ const CALIBRATION: u64 = 0x0810_0000;
 /// The trim that is stored: 2 % more, parts in a million.
 const GAIN: i32 = 20_000;
 
+/// An image with a calibration in its flash, saved for the design of this hash and a transducer's range in pascals.
+pub(crate) fn with_stored(
+    image: &Image,
+    design_hash: u64,
+    range: [i32; 2],
+    calibration: Calibration,
+) -> Image {
+    let identity = Identity {
+        design_hash,
+        table_version: ImageDesign::CONSTANTS.table_version,
+        firmware: [0, 1, 0],
+        range,
+    };
+    let bytes = nor_flash::saved::<SLOT>(identity, calibration);
+    image.clone().with_flash(CALIBRATION, bytes)
+}
+
 /// Runs the default scenario with this hash in the stored record.
 fn run(design_hash: u64) -> Record {
     let constants = ImageDesign::CONSTANTS;
-    let identity = Identity {
-        design_hash,
-        table_version: constants.table_version,
-        firmware: [0, 1, 0],
-        range: constants.transducer.range,
-    };
     let calibration = Calibration {
         zero: Some(Millipascals(constants.rest_pressure * 1000)),
         gain: GAIN,
         ..Calibration::default()
     };
-    let bytes = nor_flash::saved::<SLOT>(identity, calibration);
-    let image = firmware().clone().with_flash(CALIBRATION, bytes);
+    let image = with_stored(firmware(), design_hash, constants.transducer.range, calibration);
     let scenario = Scenario::named("press-hold-release").expect("it is shipped");
     let plant = design()
         .plant(scenario)

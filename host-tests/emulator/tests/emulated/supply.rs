@@ -1,15 +1,13 @@
 //! A transducer whose supply is not the converter's reference: the image measures it beside the output.
 
 use crate::cost::INSTRUCTIONS_PER_MILLISECOND;
+use crate::{design_with, firmware_for};
 use emulator::accuracy::is_wrong;
 use emulator::bench;
-use emulator::fingertip_design::FingertipDesign;
-use emulator::image::Image;
 use emulator::record::{Recorder, Row};
 use emulator::scenario::Scenario;
 use emulator::transducer::Wiring;
-use fingertip::report::{Fault, Status};
-use std::path::Path;
+use fingertip::status::{Fault, Status};
 
 /// A report is made of samples this long before and after its instant, seconds.
 const REACH: f64 = 1.6e-3;
@@ -20,21 +18,17 @@ const START: f64 = 0.4;
 
 #[test]
 fn a_supply_that_sags_moves_nothing_and_one_that_fails_is_a_fault() {
-    let shipped = std::fs::read_to_string(host_tests::design("skin-analogue")).expect("it is shipped");
-    let text = shipped.replace(
+    let design = design_with(
+        "skin-analogue",
         "kind = \"ratiometric\"",
         "kind = \"ratiometric\"\nsupply = \"measured\"",
     );
-    assert_ne!(text, shipped);
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("supply.toml");
-    std::fs::write(&path, text).expect("the folder of tests can be written");
-    let design = FingertipDesign::read(&path).expect("it is well formed");
-    let image = Image::firmware(Some(&design.path)).expect("the firmware builds");
+    let image = firmware_for(&design);
     let scenario = Scenario::named("supply-sags").expect("it is shipped");
     let plant = design.plant(scenario.clone()).expect("it can be pressed");
     let recorder = Recorder::new(|_: &Row| {});
     let outcome =
-        bench::run(&image, plant.clone(), scenario.duration(), &[], recorder).expect("the image runs");
+        bench::run(image, plant.clone(), scenario.duration(), &[], recorder).expect("the image runs");
     let record = outcome.listener.into_record();
 
     assert_eq!(

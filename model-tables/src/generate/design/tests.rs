@@ -1,7 +1,8 @@
 use super::*;
+use crate::constants::Quantity;
 use crate::generate::{OwnedTables, tables as make_tables};
 use crate::membrane::TensionField;
-use crate::press::Press;
+use crate::membrane::press::Press;
 use crate::table::{Reading, Tables};
 use crate::units::PressureRise;
 
@@ -32,7 +33,7 @@ fn tables_of_the_shipped_designs_agree_with_fresh_states_of_the_model() {
             generated.certified.tables.layout.maximum as u64 + 1
         );
         let bits = generated.certified.tables.layout.pressure_fraction_bits;
-        let mut press = Rung::new(&generated.design).expect("the rest state");
+        let mut press = Fingertip::new(&generated.design).expect("the rest state");
         let end = press.contact_at(2.5e-3).expect("the end");
         for indentation in [2.0e-5, 7.7e-5, 3.1e-4, 9.3e-4, 1.61e-3, 2.4e-3] {
             let state = press.contact_at(indentation).expect("a state");
@@ -146,6 +147,46 @@ fn refuses_a_press_that_leaves_the_range() {
     assert!(error.contains("above transducer.range_kpa = [0, 200]"), "{error}");
 }
 
+/// 250 kPa absolute leave 142 kPa gauge in air of 108 kPa.
+#[test]
+fn refuses_what_an_absolute_part_cannot_read_in_the_densest_air() {
+    let mut design = shipped("paper-prestretched");
+    let transducer = design.transducer.as_mut().expect("there");
+    transducer.quantity = Quantity::Absolute;
+    transducer.range_kpa = [20.0, 250.0];
+    let error = from_design(design)
+        .expect_err("it rests at 179.06 kPa")
+        .to_string();
+    assert!(
+        error.contains(
+            "the rest pressure is 179.062 kPa, 37.062 kPa above the [-40, 142] kPa that transducer.range_kpa = [20, 250] \
+             absolute leaves in any air"
+        ),
+        "{error}"
+    );
+    assert_eq!(error.lines().count(), 1);
+}
+
+#[test]
+fn the_constants_of_an_absolute_part_are_in_its_own_quantity() {
+    let mut design = shipped("skin-analogue");
+    let generated = from_design(design.clone()).expect("tables").transducer();
+    assert_eq!(generated.quantity, Quantity::Gauge);
+    let transducer = design.transducer.as_mut().expect("there");
+    transducer.quantity = Quantity::Absolute;
+    transducer.range_kpa = [20.0, 250.0];
+    let generated = from_design(design).expect("8 to 16 kPa fit");
+    assert_eq!(generated.transducer().range, [20_000, 250_000]);
+    assert!(
+        generated
+            .rust_source()
+            .contains("quantity: model_tables::constants::Quantity::Absolute,")
+    );
+    let light = from_design(shipped("skin-light-touch")).expect("tables");
+    assert_eq!(light.transducer().range, [30_000, 120_000]);
+    assert_eq!(light.transducer().quantity, Quantity::Absolute);
+}
+
 #[test]
 fn refuses_a_press_beyond_the_limit() {
     let mut design = shipped("paper-prestretched");
@@ -198,7 +239,7 @@ fn a_coarse_accuracy_is_met_with_less() {
     accuracy.force_percent_of_reading = 1.0;
     accuracy.indentation_percent_of_reading = 1.0;
     let coarse = from_design(design).expect("tables");
-    let mut press = Rung::new(&coarse.design).expect("rest");
+    let mut press = Fingertip::new(&coarse.design).expect("rest");
     let curve = press.curve(2.5e-3).expect("curve");
     let fine = shipped("index-fingertip").accuracy.expect("there");
     let fine = make_tables(&curve, curve.end(), &fine, 10.0).expect("tables");
@@ -232,7 +273,7 @@ fn the_curve_is_far_finer_than_the_tables() {
 /// within few elements, all of it.
 #[test]
 fn the_curve_of_a_solid_is_finer_than_the_tables() {
-    let mut press = Rung::new(&shipped("index-fingertip")).expect("the rest state");
+    let mut press = Fingertip::new(&shipped("index-fingertip")).expect("the rest state");
     let curve = press.curve(2.5e-3).expect("a curve");
     let end = curve.end();
     for pair in curve

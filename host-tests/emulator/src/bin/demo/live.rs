@@ -1,9 +1,10 @@
 //! The table that grows while the image runs.
 
 use crate::say::say;
+use crate::summary::ZEROING;
 use emulator::record::Row;
 use emulator::scenario::Scenario;
-use fingertip::report::Status;
+use fingertip::status::Status;
 
 /// Virtual time between two lines, seconds.
 const EVERY: f64 = 0.05;
@@ -55,6 +56,11 @@ fn line(row: &Row, phase: &str) -> String {
         )
     };
     let reported = row.reported;
+    let status = if row.status == ZEROING {
+        "zeroing".to_owned()
+    } else {
+        row.status.to_string()
+    };
     format!(
         "{:>5.0}  {phase:<9} {:>8.1}   {}  {:>7.4}   {}  {:>8.4}   {}  {}",
         row.time * 1e3,
@@ -64,6 +70,6 @@ fn line(row: &Row, phase: &str) -> String {
         value(reported.map(|contact| contact.force), 7, 4),
         truth.indentation * 1e3,
         value(reported.map(|contact| contact.indentation * 1e3), 8, 4),
-        row.status
+        status
     )
 }

@@ -4,7 +4,10 @@ use crate::say::say;
 use emulator::accuracy::{Accuracy, is_wrong};
 use emulator::plant::Plant;
 use emulator::record::{Record, Row};
-use fingertip::report::Status;
+use fingertip::status::{Fault, Status, Warnings};
+
+/// No fault of anything: the zero is being measured.
+pub(crate) const ZEROING: Status = Status::Fault(Fault::Zeroing);
 
 /// Prints accuracy phase by phase and over all, then what else came over the wire.
 pub(crate) fn print(record: &Record, plant: &Plant, accuracy: &Accuracy) {
@@ -20,16 +23,24 @@ pub(crate) fn print(record: &Record, plant: &Plant, accuracy: &Accuracy) {
     print_line("all", accuracy);
     say!("(median errors: percent of reading, from 5 % of full scale up)");
     let count = |wanted: fn(&Status) -> bool| record.rows.iter().filter(|row| wanted(&row.status)).count();
+    let ok = count(|status| *status == Status::Ok);
     say!(
-        "\n{} reports: {} ok, of them {} wrong; {} with a warning, {} faults without values; {} frames lost, {} broken",
+        "\n{} reports: {ok} ok, of them {} wrong; {} with a warning, {} before there was a zero, {} faults without values; \
+         {} frames lost, {} broken",
         record.rows.len(),
-        count(|status| *status == Status::Ok),
         record.rows.iter().filter(|row| is_wrong(row, plant)).count(),
         count(|status| matches!(status, Status::Warning(_))),
-        count(|status| matches!(status, Status::Fault(_))),
+        count(|status| *status == ZEROING),
+        count(|status| matches!(status, Status::Fault(_)) && *status != ZEROING),
         record.lost,
         record.broken.len()
     );
+    let unverified = |status: &Status| matches!(status, Status::Warning(warnings) if warnings.contains(Warnings::ZERO_UNVERIFIED));
+    if ok == 0 && record.rows.iter().any(|row| unverified(&row.status)) {
+        say!(
+            "note: nobody has said that nothing presses: this zero needs a tare (cargo demo --scenario long-rest)"
+        );
+    }
 }
 
 fn print_line(name: &str, accuracy: &Accuracy) {

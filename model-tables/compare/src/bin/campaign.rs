@@ -1,0 +1,231 @@
+//! `cargo campaign NAME`: long seeded campaigns, of which the tests run a small part.
+
+use clap::{Args, Parser, Subcommand};
+use compare::campaign::draw::Case;
+use compare::campaign::judge::{Judged, Verdict};
+use compare::campaign::{self, Tally, walls};
+use model_tables::material::Law;
+use model_tables::membrane::TensionField;
+use output::{Refusal, files};
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Long seeded campaigns.
+#[derive(Debug, Parser)]
+#[command(name = "campaign")]
+struct Arguments {
+    #[command(subcommand)]
+    campaign: Campaign,
+}
+
+#[derive(Debug, Subcommand)]
+enum Campaign {
+    /// Judges the states of random membranes by virtual work and a second discretisation
+    #[command(after_help = "Example:\n  cargo campaign designs --designs 10000 --seed 2026")]
+    Designs(MembraneArguments),
+    /// Holds the model that `kind = "auto"` takes for random walls to the refined solid
+    #[command(after_help = "Example:\n  cargo campaign walls --designs 200 --seed 0")]
+    Walls(WallArguments),
+}
+
+#[derive(Debug, Args)]
+struct WallArguments {
+    /// Walls to draw
+    #[arg(long, default_value_t = 200)]
+    designs: u64,
+    /// The number of the first wall, which is all that a draw depends on
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+#[derive(Debug, Args)]
+struct MembraneArguments {
+    /// Designs to draw; each is pressed to 8 indentations
+    #[arg(long, default_value_t = 10_000)]
+    designs: u64,
+    /// What the draw depends on
+    #[arg(long, default_value_t = 2026)]
+    seed: u64,
+    /// Only this design of the draw, with a line for each of its states; repeatable
+    #[arg(long, value_name = "N")]
+    design: Vec<u64>,
+    /// A row a state
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+}
+
+const COLUMNS: [&str; 23] = [
+    "design",
+    "aspect",
+    "pole_stretch",
+    "law",
+    "c2_over_c1",
+    "c3_over_c1",
+    "radial_semi_axis_mm",
+    "thickness_mm",
+    "c1_pa",
+    "compliance",
+    "tension_field",
+    "part_of_limit",
+    "verdict",
+    "reason",
+    "work_error",
+    "work_rounding",
+    "second_error",
+    "margin",
+    "indentation_mm",
+    "pressure_kpa",
+    "force_n",
+    "wrinkled",
+    "message",
+];
+
+fn row(case: &Case, judged: &Judged) -> Vec<String> {
+    let membrane = &case.design.membrane;
+    let (law, c1, c2, c3) = match case.design.law {
+        Law::NeoHookean { c1 } => ("neo-hookean", c1, 0.0, 0.0),
+        Law::MooneyRivlin { c1, c2 } => ("mooney-rivlin", c1, c2, 0.0),
+        Law::Yeoh { c1, c2, c3 } => ("yeoh", c1, c2, c3),
+    };
+    let field = match case.tension_field {
+        TensionField::Relaxed => "relaxed",
+        TensionField::Plain => "plain",
+    };
+    let (verdict, reason) = match judged.verdict {
+        Verdict::Converged => ("converged", ""),
+        Verdict::Warned(judge) => ("warned", judge.unwrap_or_default()),
+        Verdict::Refused(reason) => ("refused", reason),
+        Verdict::Wrong(judge) => ("wrong", judge),
+    };
+    let of = |value: Option<f64>| value.map_or(String::new(), |v| v.to_string());
+    let state = judged.state.as_ref();
+    vec![
+        case.index.to_string(),
+        (membrane.axial_semi_axis / membrane.radial_semi_axis).to_string(),
+        case.pole_stretch.to_string(),
+        law.to_owned(),
+        (c2 / c1).to_string(),
+        (c3 / c1).to_string(),
+        (membrane.radial_semi_axis * 1e3).to_string(),
+        (membrane.thickness * 1e3).to_string(),
+        c1.to_string(),
+        case.compliance.to_string(),
+        field.to_owned(),
+        judged.part.to_string(),
+        verdict.to_owned(),
+        reason.to_owned(),
+        format!("{:e}", judged.work_error),
+        format!("{:e}", judged.work_rounding),
+        format!("{:e}", judged.second_error),
+        judged.margin.to_string(),
+        of(state.map(|s| s.indentation * 1e3)),
+        of(state.map(|s| s.shape.pressure * 1e-3)),
+        of(state.map(|s| s.force)),
+        state.map_or("", |s| s.shape.wrinkling.word()).to_owned(),
+        judged.message.clone(),
+    ]
+}
+
+fn main() -> ExitCode {
+    let kept = match Arguments::parse().campaign {
+        Campaign::Designs(arguments) => designs(&arguments),
+        Campaign::Walls(arguments) => Ok(judge_walls(&arguments)),
+    };
+    match kept {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Whether no error was let through that is larger than allowed.
+fn judge_walls(arguments: &WallArguments) -> bool {
+    let mut worst = [0.0_f64; walls::ASKED.len()];
+    let mut without = 0;
+    for done in 0..arguments.designs {
+        let wall = walls::draw(arguments.seed + done).measure();
+        if wall.has_truth() {
+            for (worst, asked) in worst.iter_mut().zip(walls::ASKED) {
+                *worst = worst.max(wall.take(asked).error);
+            }
+        } else {
+            without += 1;
+        }
+        eprint!("\r{} of {} walls", done + 1, arguments.designs);
+    }
+    eprintln!();
+    println!(
+        "walls      {}, {without} of them without a refined state",
+        arguments.designs
+    );
+    let mut kept = true;
+    for (worst, asked) in worst.iter().zip(walls::ASKED) {
+        println!(
+            "allowed    {:.3} %: {:.3} % let through",
+            100.0 * asked,
+            100.0 * worst
+        );
+        kept &= *worst <= asked;
+    }
+    kept
+}
+
+/// Whether no state was wrong.
+fn designs(arguments: &MembraneArguments) -> Result<bool, Box<dyn Error>> {
+    if let Some(file) = &arguments.csv {
+        files::clear_away_on_interrupt();
+        files::expect_room(file).map_err(|Refusal(reason)| reason)?;
+    }
+    let started = Instant::now();
+    let chosen = |index: &u64| {
+        let case = campaign::draw::case(arguments.seed, *index);
+        eprintln!("{case:#?}");
+        let judged = campaign::judge::judge(&case);
+        for one in &judged {
+            eprintln!(
+                "{:.6} {:?} work {:.1e} ({:.1e}) second {:.1e} margin {:.3} {}",
+                one.part,
+                one.verdict,
+                one.work_error,
+                one.work_rounding,
+                one.second_error,
+                one.margin,
+                one.message
+            );
+        }
+        (case, judged)
+    };
+    let results = if arguments.design.is_empty() {
+        campaign::run(arguments.seed, arguments.designs, |done| {
+            if done % 200 == 0 || done == arguments.designs {
+                eprint!("\r{done} of {} designs", arguments.designs);
+            }
+        })
+    } else {
+        arguments.design.iter().map(chosen).collect()
+    };
+    eprintln!();
+    if let Some(file) = &arguments.csv {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(COLUMNS)?;
+        for (case, judged) in &results {
+            for judged in judged {
+                writer.write_record(row(case, judged))?;
+            }
+        }
+        files::write_one(file, writer.into_inner()?).map_err(|Refusal(reason)| reason)?;
+    }
+    let tally = Tally::of(results.iter().flat_map(|(_, judged)| judged));
+    println!(
+        "designs    {} in {:.1} s",
+        results.len(),
+        started.elapsed().as_secs_f64()
+    );
+    print!("{tally}");
+    Ok(tally.wrong.is_empty())
+}

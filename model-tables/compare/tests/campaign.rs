@@ -1,0 +1,32 @@
+//! A small campaign of random designs: no state may be wrong, and every refusal has a reason that holds.
+
+use compare::campaign::{self, Tally};
+
+/// Reasons that are physics: the law unstable, a pole that inflation does not stretch so far, a plain membrane that
+/// would have to push where it leaves the plate, a compliance on which a softening dome inflates by itself.
+const TRUE_REASONS: [&str; 5] = [
+    "law-unstable",
+    "press-law-unstable",
+    "pole-stretch-turns",
+    "plain-edge-pushes",
+    "inflates-by-itself",
+];
+
+#[test]
+fn random_designs_are_solved_or_refused_for_a_true_reason() {
+    let results = campaign::run(7, 160, |_| {});
+    for (case, judged) in &results {
+        for one in judged {
+            assert!(
+                match one.verdict {
+                    campaign::judge::Verdict::Wrong(_) => false,
+                    campaign::judge::Verdict::Refused(reason) => TRUE_REASONS.contains(&reason),
+                    _ => true,
+                },
+                "{case:?}: {one:?}"
+            );
+        }
+    }
+    let tally = Tally::of(results.iter().flat_map(|(_, judged)| judged));
+    assert!(tally.converged > 1050, "{tally}");
+}

@@ -1,0 +1,81 @@
+//! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
+
+use super::finite;
+use fingertip::status::{Status, Warnings};
+use model_tables::design_file::DesignFile;
+use model_tables::generate::{GenerateError, Generated, from_design, from_design_or_worse};
+use model_tables::units::PressureRise;
+use output::rows::{Cell, Rows};
+use output::{CommandAnswer, Refusal};
+use std::path::{Path, PathBuf};
+
+const COLUMNS: &[&str] = &["pressure_rise_pa", "force_n", "indentation_mm", "status"];
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The design file
+    design: PathBuf,
+    /// Pressure rises over the rest pressure in pascals, separated by commas
+    #[arg(long, value_name = "LIST", required = true, value_delimiter = ',',
+          value_parser = finite, allow_hyphen_values = true)]
+    pressure_rise_pa: Vec<f64>,
+    /// Answer also where the tables do not reach the accuracy that the design asks
+    #[arg(long)]
+    allow_worse: bool,
+}
+
+/// The tables of a design; those that do not reach the accuracy asked for only where worse is allowed.
+pub(super) fn generated(file: &Path, allow_worse: bool) -> Result<Generated, Refusal> {
+    let design = DesignFile::read(file).map_err(Refusal::of)?;
+    let made = if allow_worse {
+        from_design_or_worse(design)
+    } else {
+        from_design(design)
+    };
+    let generated = made.map_err(|error| refusal(file, error))?;
+    match generated.shortfall() {
+        Some(shortfall) if !allow_worse => Err(Refusal::about(
+            file,
+            &format!("{shortfall}; or take these with --allow-worse"),
+        )),
+        _ => Ok(generated),
+    }
+}
+
+/// A refusal of the generator; errors of the file name it themselves.
+pub(super) fn refusal(file: &Path, error: GenerateError) -> Refusal {
+    match error {
+        GenerateError::File(error) => Refusal::of(error),
+        error => Refusal::about(file, &error),
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
+    let file = &arguments.design;
+    let generated = generated(file, arguments.allow_worse)?;
+    let tables = &generated.certified.tables;
+    let bits = tables.layout.pressure_fraction_bits;
+    let lowest_rest = generated.transducer().lowest_rest(bits);
+    let mut rows = Rows::new(COLUMNS);
+    for &pascals in &arguments.pressure_rise_pa {
+        let rise = PressureRise::from_pascals(pascals, bits);
+        let reading = tables.lookup(rise);
+        let status = if reading.saturated {
+            Status::Warning(Warnings::SATURATED)
+        } else if rise < lowest_rest {
+            Status::Warning(Warnings::BELOW_ZERO)
+        } else {
+            Status::Ok
+        };
+        rows.push(vec![
+            Cell::Number(pascals),
+            Cell::Number(reading.force.newtons()),
+            Cell::Number(reading.indentation.metres() * 1e3),
+            Cell::Text(status.to_string()),
+        ]);
+    }
+    Ok(CommandAnswer {
+        rows,
+        notes: Vec::new(),
+    })
+}

@@ -1,0 +1,162 @@
+//! `designer fit`: calibrates a design to bench data.
+
+mod chart;
+mod from_data;
+mod report;
+mod write;
+
+use super::{bench, finite, read};
+use crate::fit::data::{Data, DataChoice, Direction};
+use crate::fit::parameter::Parameter;
+use crate::fit::{self, Fit, Held};
+use output::files;
+use output::rows::{Cell, Rows};
+use output::{CommandAnswer, Refusal};
+use std::path::PathBuf;
+use std::time::Instant;
+
+const COLUMNS: &[&str] = &["parameter", "key", "start", "value", "standard_error", "state"];
+
+/// What `--help` says after the options.
+pub(super) const HELP: &str = "\
+DATA.csv has the columns indentation_mm, force_n and pressure_rise_kpa, of which any two suffice, and may have
+trial and direction (loading, unloading). Lines that begin with # are comments. Indentation is taken as exact.
+
+Parameters: material and thickness (factors), pole-stretch, compliance, pressure-gain, pressure-offset,
+indentation-offset. What the data cannot tell apart is held at the design's value, and said.
+
+Examples:
+  cargo designer fit index-fingertip.toml bench.csv --out calibrated/
+  cargo designer fit index-fingertip.toml bench.csv --fit material,compliance,pressure-gain
+  cargo designer fit tip.toml bench.csv --from-data --rest-pressure-kpa 0 --out calibrated/
+  cargo designer fit tip.toml bench.csv --pressure-column pressure_kpa --only position_mm=50";
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The design file
+    design: PathBuf,
+    /// The bench data (CSV)
+    data: PathBuf,
+    /// Parameters to fit, separated by commas
+    #[arg(long = "fit", value_name = "LIST", value_delimiter = ',', value_parser = parameter,
+          default_values_t = Parameter::USUAL)]
+    parameters: Vec<Parameter>,
+    /// Folder to write the calibrated design, the report, a chart and the residuals to; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Leave the model out: tables from a monotone curve through the data alone
+    #[arg(long, conflicts_with = "parameters")]
+    from_data: bool,
+    /// Let the curve of --from-data run to the origin even if the data begin late
+    #[arg(long, requires = "from_data")]
+    to_zero: bool,
+    /// What the transducer reads at rest, kilopascals, for --from-data [default: the model's]
+    #[arg(long, value_name = "P", requires = "from_data", value_parser = finite, allow_hyphen_values = true)]
+    rest_pressure_kpa: Option<f64>,
+    /// Column with the pressure rise, in kilopascals
+    #[arg(long, value_name = "NAME", default_value = "pressure_rise_kpa")]
+    pressure_column: String,
+    /// Only rows whose column has this value; may be given several times
+    #[arg(long, value_name = "COLUMN=VALUE", value_parser = pair)]
+    only: Vec<(String, String)>,
+    /// Only rows of this direction
+    #[arg(long, value_enum)]
+    direction: Option<Way>,
+}
+
+/// A direction by name.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Way {
+    Loading,
+    Unloading,
+}
+
+fn parameter(name: &str) -> Result<Parameter, String> {
+    Parameter::named(name).ok_or_else(|| {
+        let names: Vec<&str> = Parameter::ALL.iter().map(|parameter| parameter.name()).collect();
+        format!("must be of {}", names.join(", "))
+    })
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    text.split_once('=')
+        .map(|(column, value)| (column.trim().to_owned(), value.trim().to_owned()))
+        .ok_or_else(|| "must be COLUMN=VALUE".to_owned())
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
+    let file = read(&arguments.design)?;
+    let choice = DataChoice {
+        pressure_column: arguments.pressure_column.clone(),
+        only: arguments.only.clone(),
+        direction: arguments.direction.map(|way| match way {
+            Way::Loading => Direction::Loading,
+            Way::Unloading => Direction::Unloading,
+        }),
+    };
+    let text = std::fs::read_to_string(&arguments.data)
+        .map_err(|error| Refusal::about(&arguments.data, &format!("the data cannot be read: {error}")))?;
+    let name = arguments
+        .data
+        .file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let data = Data::parse(&text, &name, &choice).map_err(|error| Refusal::about(&arguments.data, &error))?;
+    if arguments.from_data {
+        return from_data::run(arguments, &file, &data);
+    }
+    let start = Instant::now();
+    let fit = fit::fit(&file, &data, &arguments.parameters)
+        .map_err(|error| Refusal::about(&arguments.data, &error))?;
+    let seconds = start.elapsed().as_secs_f64();
+    let mut notes = report::findings(&file, &data, &fit);
+    notes.extend(bench::caution(&file));
+    if let Some(out) = &arguments.out {
+        let design_text = std::fs::read_to_string(&arguments.design)
+            .map_err(|error| Refusal::about(&arguments.design, &error))?;
+        let calibrated = write::calibrated(&design_text, &file, &data, &fit)
+            .map_err(|reason| Refusal::about(&arguments.design, &reason))?;
+        let stem = format!("{}-calibrated.toml", file.name);
+        let contents = [
+            (stem.as_str(), calibrated.into_bytes()),
+            ("fit.md", report::markdown(&file, &data, &fit).into_bytes()),
+            ("fit.svg", chart::draw(&file, &data, &fit).into_bytes()),
+            ("residuals.csv", write::residuals(&data, &fit).into_bytes()),
+        ];
+        files::write_all(out, &contents)?;
+        notes.push(format!(
+            "wrote {}, fit.md, fit.svg and residuals.csv to {}",
+            stem,
+            out.display()
+        ));
+    }
+    notes.push(format!("fitted and checked in {seconds:.2} s"));
+    Ok(CommandAnswer {
+        rows: rows(&fit),
+        notes,
+    })
+}
+
+/// Why a parameter stands where it does.
+pub(super) fn state(held: Option<Held>) -> &'static str {
+    match held {
+        None => "fitted",
+        Some(Held::Unidentified) => "held: the data do not tell it",
+        Some(Held::AtBound) => "held: the data want it below zero",
+        Some(Held::NotOfModel) => "held: the design does not rest by a stretch",
+    }
+}
+
+fn rows(fit: &Fit) -> Rows {
+    let mut rows = Rows::new(COLUMNS);
+    for estimate in &fit.estimates {
+        rows.push(vec![
+            Cell::word(estimate.parameter.name()),
+            Cell::word(estimate.parameter.key()),
+            Cell::Number(estimate.start),
+            Cell::Number(estimate.value),
+            estimate.standard_error.map_or(Cell::word(""), Cell::Number),
+            Cell::word(state(estimate.held)),
+        ]);
+    }
+    rows
+}

@@ -1,0 +1,272 @@
+//! The `designer` command line: one module a subcommand.
+//!
+//! Exit status 0 only if everything asked for was given. Otherwise one line on standard error that names what
+//! was asked, the limit or the key, and the remedy; nothing on standard output, nothing half-written left behind.
+
+mod actuator;
+mod bench;
+mod calibration;
+mod estimate;
+mod fit;
+mod materials;
+mod model;
+mod monitor;
+mod profile;
+mod published;
+mod report;
+mod rest;
+mod size;
+mod solve;
+mod table;
+
+use clap::builder::PossibleValue;
+use clap::error::ErrorKind;
+use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
+use model_tables::design_file::DesignFile;
+use model_tables::material::stability::Margin;
+use model_tables::membrane::TensionField;
+use output::rows::Format;
+use output::{CommandAnswer, Refusal, files};
+use std::fmt::Display;
+use std::io::{IsTerminal as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Solves fingertip designs and makes their tables.
+#[derive(Debug, Parser)]
+#[command(name = "designer", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// How rows are printed [default: table on a terminal, csv otherwise]
+    #[arg(long, global = true)]
+    format: Option<Format>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// The rest state and the limits of a design
+    #[command(after_help = "Example:\n  cargo designer rest model-tables/designs/index-fingertip.toml")]
+    Rest {
+        /// The design file
+        design: PathBuf,
+    },
+    /// Pressed states of a design, one row each, in the order asked
+    #[command(
+        after_help = "Example:\n  cargo designer solve model-tables/designs/index-fingertip.toml --indentation-mm 0.2,0.5,1.0 --format csv"
+    )]
+    Solve(solve::Arguments),
+    /// Shape, stretches and tensions along the meridian of one state, sorted from the pole to the equator
+    #[command(after_long_help = profile::COLUMN_HELP)]
+    Profile(profile::Arguments),
+    /// The tables of a design: Rust source, binary, CSV, and the certificate
+    #[command(
+        after_help = "Example:\n  cargo designer table model-tables/designs/index-fingertip.toml --out target/tables"
+    )]
+    Table(table::Arguments),
+    /// Everything about a design on one page: HTML that needs no network
+    #[command(
+        after_help = "Example:\n  cargo designer report model-tables/designs/index-fingertip.toml --out target/report"
+    )]
+    Report(report::Arguments),
+    /// Speed against accuracy of every method, and the ladder of models: SVG and CSV
+    #[command(after_help = "Example:\n  cargo designer chart paper --out target/chart")]
+    Chart(compare::chart::ChartArguments),
+    /// Where each method answers, refuses or is silently wrong, over designs; and what a state costs
+    #[command(after_help = "Example:\n  cargo designer atlas --stride 4 --out target/atlas")]
+    Atlas(compare::atlas::AtlasArguments),
+    /// The models over random walls: error against time, and what `model.kind = "auto"` takes: SVG and CSV
+    #[command(after_help = "Example:\n  cargo designer ladder --designs 50 --out target/ladder")]
+    Ladder(compare::ladder::LadderArguments),
+    /// What the chip would say at pressure rises, bit for bit
+    #[command(
+        after_help = "Example:\n  cargo designer estimate model-tables/designs/index-fingertip.toml --pressure-rise-pa 642,2571"
+    )]
+    Estimate(estimate::Arguments),
+    /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
+    #[command(after_help = "Example:\n  cargo designer actuator my.toml --pressure-kpa 5,17.9")]
+    Actuator(actuator::Arguments),
+    /// Calibrates a design to bench data
+    #[command(after_help = fit::HELP)]
+    Fit(fit::Arguments),
+    /// What a calibration gains, on stand-ins for a device
+    #[command(after_help = "Example:\n  cargo designer calibration --out model-tables/CALIBRATION.md")]
+    Calibration(calibration::Arguments),
+    /// Finds membranes for a wanted force over the indentation
+    #[command(after_help = size::HELP)]
+    Size(size::Arguments),
+    /// The materials that a design can name, with where their constants come from
+    #[command(
+        after_help = "Example:\n  cargo designer materials --format json\n\nIn a design: [material] preset = \"ecoflex-00-30\""
+    )]
+    Materials,
+    /// Completions for a shell, on standard output
+    ///
+    /// For example: cargo designer completions bash > ~/.local/share/bash-completion/completions/designer
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Live readings of a board, from its serial port or the emulated board's socket
+    Monitor(monitor::Arguments),
+    /// The source paper's numbers beside what its stated inputs give
+    #[command(after_help = "Example:\n  cargo designer published --out model-tables/PUBLISHED.md")]
+    Published(published::Arguments),
+}
+
+/// What the membrane does where it would have to push.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Field {
+    /// It wrinkles or goes slack
+    Relaxed,
+    /// It pushes, as in the paper
+    Plain,
+}
+
+impl From<Field> for TensionField {
+    fn from(field: Field) -> Self {
+        match field {
+            Field::Relaxed => Self::Relaxed,
+            Field::Plain => Self::Plain,
+        }
+    }
+}
+
+/// Reads the arguments, runs the subcommand, prints its answer.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
+            // A closed pipe is no reason to complain.
+            let _ = error.print();
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => return refuse(&usage(&error)),
+    };
+    if let Command::Monitor(monitor) = &arguments.command {
+        let format = arguments.format.as_ref().and_then(ValueEnum::to_possible_value);
+        return monitor::run(monitor, format.as_ref().map(PossibleValue::get_name));
+    }
+    files::clear_away_on_interrupt();
+    let format = arguments.format.unwrap_or(if std::io::stdout().is_terminal() {
+        Format::Table
+    } else {
+        Format::Csv
+    });
+    match run(&arguments.command, format) {
+        Ok(notes) => {
+            for note in notes {
+                eprintln!("note: {note}");
+            }
+            ExitCode::SUCCESS
+        }
+        Err(Refusal(reason)) => refuse(&reason),
+    }
+}
+
+/// Runs the subcommand and prints its answer; gives its notes.
+fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
+    let CommandAnswer { rows, notes } = match command {
+        Command::Rest { design } => rest::run(design),
+        Command::Solve(arguments) => solve::run(arguments),
+        Command::Profile(arguments) => profile::run(arguments),
+        Command::Table(arguments) => table::run(arguments),
+        Command::Report(arguments) => report::run(arguments),
+        Command::Chart(arguments) => compare::chart::run(arguments),
+        Command::Atlas(arguments) => compare::atlas::run(arguments),
+        Command::Ladder(arguments) => compare::ladder::run(arguments),
+        Command::Estimate(arguments) => estimate::run(arguments),
+        Command::Actuator(arguments) => actuator::run(arguments),
+        Command::Fit(arguments) => fit::run(arguments),
+        Command::Calibration(arguments) => calibration::run(arguments),
+        Command::Size(arguments) => size::run(arguments),
+        Command::Materials => Ok(materials::run()),
+        Command::Published(arguments) => published::run(arguments),
+        Command::Completions { shell } => return completions(*shell),
+        // Handed over before.
+        Command::Monitor(_) => return Ok(Vec::new()),
+    }?;
+    print(&rows.print(format).map_err(Refusal)?)?;
+    Ok(notes)
+}
+
+/// Prints a shell's completions; they are no rows.
+fn completions(shell: clap_complete::Shell) -> Result<Vec<String>, Refusal> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "designer", &mut text);
+    print(&String::from_utf8_lossy(&text))?;
+    Ok(Vec::new())
+}
+
+fn print(text: &str) -> Result<(), Refusal> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        // Whoever read it has seen enough.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        written => written.map_err(|error| Refusal(format!("standard output: {error}"))),
+    }
+}
+
+/// One line of warning on standard error, about an answer that is given.
+fn warn(file: &Path, warning: &dyn Display) {
+    eprintln!("warning: {}: {warning}", file.display());
+}
+
+/// Warns where the law is not stable over a state, `which` of them in words.
+fn warn_of_instability(file: &Path, which: &str, margin: Margin) {
+    if !margin.is_stable() {
+        warn(
+            file,
+            &format_args!(
+                "{which} the law is not stable at stretches of {:.4} along and {:.4} around ({}): the state is at best \
+                 one of several; fit the law up to such stretches",
+                margin.meridional_stretch, margin.hoop_stretch, margin.mode
+            ),
+        );
+    }
+}
+
+fn refuse(reason: &str) -> ExitCode {
+    eprintln!("error: {reason}");
+    ExitCode::FAILURE
+}
+
+/// What is wrong with the arguments, on one line.
+fn usage(error: &clap::Error) -> String {
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        let names: Vec<String> = Arguments::command()
+            .get_subcommands()
+            .map(|subcommand| subcommand.get_name().to_owned())
+            .collect();
+        return format!(
+            "a subcommand is needed: {} (see `designer --help`)",
+            names.join(", ")
+        );
+    }
+    let text = error.to_string();
+    let first = text.split("\n\n").next().unwrap_or_default();
+    let first: Vec<&str> = first.trim_start_matches("error: ").split_whitespace().collect();
+    format!("{} (see `designer --help`)", first.join(" "))
+}
+
+/// A solid has no tension field.
+fn refuse_plain(file: &Path, field: Field) -> Result<(), Refusal> {
+    match field {
+        Field::Relaxed => Ok(()),
+        Field::Plain => Err(Refusal::about(
+            file,
+            &"--tension-field plain is for membranes, model.kind is \"solid\": leave the option out",
+        )),
+    }
+}
+
+fn read(design: &Path) -> Result<DesignFile, Refusal> {
+    DesignFile::read(design).map_err(Refusal::of)
+}
+
+/// A finite number; `inf` and `nan` are words that a float would take.
+fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("not a finite number".to_owned()),
+    }
+}

@@ -1,0 +1,390 @@
+//! The charts of a report: lines over linear axes, and speed against accuracy.
+
+use super::cost::Cost;
+use super::findings::{Findings, Meridian, Said};
+use super::words::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit};
+use model_tables::model::state::{MeridianStation, Pressed};
+use output::drawing::{
+    self, Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION, power, spread,
+};
+use output::linear::{LinearAxis, LinearPanel};
+use output::rows::plain;
+
+const SIZE: [f64; 2] = [420.0, 330.0];
+const LEFT: f64 = 64.0;
+const RIGHT: f64 = 404.0;
+const BOTTOM: f64 = 276.0;
+const TOP: f64 = 16.0;
+/// Height of a line of the key.
+const LINE: f64 = 18.0;
+/// One colour and marker a line.
+const COLORS: [&str; 4] = [BLACK, BLUE, ORANGE, GREEN];
+const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Triangle];
+/// Markers along a line.
+const MARKED: usize = 6;
+
+/// A line of a chart.
+struct Series {
+    label: String,
+    color: &'static str,
+    /// Markers on the line, so that it is told from others without its colour; or alone.
+    marker: Option<Marker>,
+    line: bool,
+    points: Vec<[f64; 2]>,
+}
+
+/// An axis in words: what, and its unit.
+struct Named(&'static str, Unit);
+
+impl Named {
+    fn label(&self) -> String {
+        format!("{} / {}", self.0, self.1.name)
+    }
+}
+
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let [least, largest] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], value| {
+        [a.min(value), b.max(value)]
+    });
+    if largest > least {
+        [least, largest]
+    } else {
+        [least.min(0.0), largest.max(1.0)]
+    }
+}
+
+/// Lines over two axes in their units; the upward axis begins at zero if it is told to.
+fn lines(title: &str, [x, y]: [Named; 2], from_zero: bool, series: &[Series]) -> String {
+    let keyed: Vec<&Series> = series.iter().filter(|series| !series.label.is_empty()).collect();
+    let top = TOP + LINE * keyed.len() as f64;
+    let all = |place: usize| {
+        series
+            .iter()
+            .flat_map(move |series| series.points.iter().map(move |p| p[place]))
+    };
+    let [low, high] = range(all(1).map(|value| y.1.per_si * value));
+    let panel = LinearPanel {
+        x: if x.1.name == DEGREES.name {
+            LinearAxis::quarter_turn([LEFT, RIGHT])
+        } else {
+            LinearAxis::from_zero(range(all(0).map(|value| x.1.per_si * value))[1], [LEFT, RIGHT])
+        },
+        y: if from_zero {
+            LinearAxis::from_zero(high, [BOTTOM, top])
+        } else {
+            LinearAxis::over([low, high], [BOTTOM, top])
+        },
+    };
+    let described: Vec<String> = series
+        .iter()
+        .filter_map(|series| {
+            let ([x0, y0], [x1, y1]) = (*series.points.first()?, *series.points.last()?);
+            let label = if series.label.is_empty() {
+                y.0
+            } else {
+                &series.label
+            };
+            Some(format!(
+                "{label}: from {} at {} to {} at {}",
+                y.1.text(y0),
+                x.1.text(x0),
+                y.1.text(y1),
+                x.1.text(x1)
+            ))
+        })
+        .collect();
+    let mut drawing = Drawing::inline(SIZE, title, &described.join("; "));
+    panel.draw(&mut drawing);
+    drawing.text(
+        [0.5 * (LEFT + RIGHT), 316.0],
+        Anchor::Middle,
+        13.0,
+        BLACK,
+        &x.label(),
+    );
+    drawing.upward([16.0, 0.5 * (BOTTOM + top)], 13.0, &y.label());
+    for series in series {
+        let points: Vec<[f64; 2]> = series
+            .points
+            .iter()
+            .map(|[a, b]| panel.at([x.1.per_si * a, y.1.per_si * b]))
+            .collect();
+        if series.line {
+            drawing.path(&points, series.color, 2.2);
+        }
+        if let Some(marker) = series.marker {
+            let every = if series.line {
+                points.len().div_ceil(MARKED)
+            } else {
+                1
+            };
+            for at in points.iter().step_by(every.max(1)) {
+                drawing.marker(marker, *at, series.color, true);
+            }
+        }
+    }
+    for (i, series) in keyed.iter().enumerate() {
+        let y = TOP + LINE * i as f64 - 2.0;
+        if series.line {
+            drawing.line([LEFT + 4.0, y], [LEFT + 32.0, y], series.color, 2.2);
+        }
+        if let Some(marker) = series.marker {
+            drawing.marker(marker, [LEFT + 18.0, y], series.color, true);
+        }
+        drawing.text([LEFT + 42.0, y + 4.5], Anchor::Start, 13.0, BLACK, &series.label);
+    }
+    drawing.finish()
+}
+
+fn model(found: &Findings, points: impl Fn(&Pressed) -> [f64; 2]) -> Series {
+    Series {
+        label: String::new(),
+        color: BLUE,
+        marker: None,
+        line: true,
+        points: found.states.iter().map(points).collect(),
+    }
+}
+
+/// What the transducer reads of a rise.
+fn rise(found: &Findings, state: &Pressed) -> f64 {
+    found.file.calibration.pressure_gain * state.pressure_rise
+}
+
+/// Force over the indentation.
+pub(super) fn force(found: &Findings) -> String {
+    let axes = [Named("indentation", MM), Named("force", NEWTON)];
+    let series = model(found, |state| [state.indentation, state.force]);
+    lines("Force against indentation", axes, true, &[series])
+}
+
+/// Pressure rise over the indentation.
+pub(super) fn pressure(found: &Findings) -> String {
+    let axes = [Named("indentation", MM), Named("pressure rise", KPA)];
+    let series = model(found, |state| [state.indentation, rise(found, state)]);
+    lines("Pressure rise against indentation", axes, true, &[series])
+}
+
+/// Contact radius over the indentation.
+pub(super) fn contact(found: &Findings) -> String {
+    let axes = [Named("indentation", MM), Named("contact radius", MM)];
+    let series = model(found, |state| [state.indentation, state.contact_radius]);
+    lines("Contact radius against indentation", axes, true, &[series])
+}
+
+/// What the model gives over the pressure rise and, where there are tables, what they say.
+fn known(found: &Findings, of_model: fn(&Pressed) -> f64, of_tables: fn(&Said) -> f64) -> Vec<Series> {
+    let mut series = model(found, |state| [rise(found, state), of_model(state)]);
+    if found.said.is_empty() {
+        return vec![series];
+    }
+    "model".clone_into(&mut series.label);
+    let said = found.said.iter().step_by(3);
+    let tables = Series {
+        label: "tables on the chip".to_owned(),
+        color: VERMILION,
+        marker: Some(Marker::Circle),
+        line: false,
+        points: said.map(|said| [said.pressure_rise, of_tables(said)]).collect(),
+    };
+    vec![series, tables]
+}
+
+/// Force over the pressure rise.
+pub(super) fn readout(found: &Findings) -> String {
+    let axes = [Named("pressure rise", KPA), Named("force", NEWTON)];
+    let series = known(found, |state| state.force, |said| said.force);
+    lines("Force against pressure rise", axes, true, &series)
+}
+
+/// Indentation over the pressure rise: the other table.
+pub(super) fn depth(found: &Findings) -> String {
+    let axes = [Named("pressure rise", KPA), Named("indentation", MM)];
+    let series = known(found, |state| state.indentation, |said| said.indentation);
+    lines("Indentation against pressure rise", axes, true, &series)
+}
+
+/// Errors of the tables against the model over the pressure rise.
+pub(super) fn errors(found: &Findings) -> Option<String> {
+    let of = |output: usize| -> Vec<[f64; 2]> {
+        found
+            .said
+            .iter()
+            .filter_map(|said| Some([said.pressure_rise, said.errors?[output]]))
+            .collect()
+    };
+    if of(0).is_empty() {
+        return None;
+    }
+    let series = [
+        ("force", BLUE, Marker::Square, 0),
+        ("indentation", VERMILION, Marker::Diamond, 1),
+    ]
+    .map(|(label, color, marker, output)| Series {
+        label: label.to_owned(),
+        color,
+        marker: Some(marker),
+        line: true,
+        points: of(output),
+    });
+    let axes = [
+        Named("pressure rise", KPA),
+        Named("error of reading", super::words::PERCENT),
+    ];
+    Some(lines(
+        "Error of the tables against the model",
+        axes,
+        false,
+        &series,
+    ))
+}
+
+/// A quantity along the meridian, a line a state.
+fn along(found: &Findings, title: &str, upward: Named, of: fn(&MeridianStation) -> f64) -> String {
+    let series: Vec<Series> = found
+        .meridians
+        .iter()
+        .zip(COLORS.into_iter().zip(MARKERS))
+        .map(
+            |(
+                Meridian {
+                    indentation, points, ..
+                },
+                (color, marker),
+            )| Series {
+                label: if *indentation > 0.0 {
+                    format!("indentation {}", MM.text(*indentation))
+                } else {
+                    "at rest".to_owned()
+                },
+                color,
+                marker: Some(marker),
+                line: true,
+                points: points.iter().map(|point| [point.parameter, of(point)]).collect(),
+            },
+        )
+        .collect();
+    lines(title, [Named("from the pole", DEGREES), upward], false, &series)
+}
+
+/// Stretches and tensions along the meridian.
+pub(super) fn meridians(found: &Findings) -> [String; 4] {
+    [
+        along(
+            found,
+            "Stretch along the meridian",
+            Named("meridional stretch", STRETCH),
+            |p| p.stretches[0],
+        ),
+        along(found, "Stretch around", Named("hoop stretch", STRETCH), |p| {
+            p.stretches[1]
+        }),
+        along(
+            found,
+            "Tension along the meridian",
+            Named("meridional tension", TENSION),
+            |p| p.tensions[0],
+        ),
+        along(found, "Tension around", Named("hoop tension", TENSION), |p| {
+            p.tensions[1]
+        }),
+    ]
+}
+
+/// Blocked force of the actuator over its pressure.
+pub(super) fn actuator(found: &Findings) -> String {
+    let series = Series {
+        label: String::new(),
+        color: PURPLE,
+        marker: None,
+        line: true,
+        points: found
+            .actuator
+            .iter()
+            .map(|(pressure, blocked)| [*pressure, blocked.blocked_force])
+            .collect(),
+    };
+    let axes = [Named("pressure", KPA), Named("blocked force", NEWTON)];
+    lines("Blocked force of the actuator", axes, true, &[series])
+}
+
+/// Least error that the chart shows, percent.
+const LEAST_ERROR: f64 = 1e-10;
+
+/// Speed against accuracy of the models.
+pub(super) fn speed(costs: &[Cost]) -> Option<String> {
+    let shown: Vec<(&Cost, [f64; 2])> = costs
+        .iter()
+        .filter_map(|cost| {
+            let percent = (100.0 * cost.distance?).max(LEAST_ERROR);
+            Some((cost, [percent, 1e3 * cost.seconds]))
+        })
+        .collect();
+    let decades = |place: usize| -> Option<[i32; 2]> {
+        let [least, largest] = shown
+            .iter()
+            .map(|(_, at)| libm::log10(at[place]))
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], value| {
+                [a.min(value), b.max(value)]
+            });
+        let first = libm::floor(least - 0.2);
+        (least.is_finite() && largest.is_finite())
+            .then(|| [first as i32, libm::ceil(largest + 0.2).max(first + 1.0) as i32])
+    };
+    let panel = drawing::Panel {
+        x: drawing::Axis {
+            decades: decades(0)?.map(f64::from),
+            pixels: [LEFT, RIGHT],
+        },
+        y: drawing::Axis {
+            decades: decades(1)?.map(f64::from),
+            pixels: [BOTTOM, TOP],
+        },
+    };
+    let words: Vec<String> = shown
+        .iter()
+        .map(|(cost, [error, time])| {
+            format!(
+                "{}: {} %, {} ms a state",
+                cost.model,
+                plain(*error, 2),
+                plain(*time, 2)
+            )
+        })
+        .collect();
+    let mut drawing = Drawing::inline(
+        SIZE,
+        "Time of a state against the error of the model",
+        &words.join("; "),
+    );
+    let step = |[first, last]: [f64; 2]| 1 + (last - first) as usize / 6;
+    let steps = [step(panel.x.decades), step(panel.y.decades)];
+    panel.draw(&mut drawing, steps, [&power, &power]);
+    let mut heights: Vec<f64> = shown.iter().map(|(_, at)| panel.at(*at)[1] - 10.0).collect();
+    spread(&mut heights, 15.0, [TOP + 12.0, BOTTOM - 6.0]);
+    for ((cost, at), height) in shown.iter().zip(heights) {
+        let [x, y] = panel.at(*at);
+        let color = if cost.used { BLUE } else { GREY };
+        drawing.marker(Marker::Circle, [x, y], color, !cost.used);
+        let label = if cost.used {
+            format!("{} (here)", cost.model)
+        } else {
+            cost.model.clone()
+        };
+        let (anchor, shift) = if x > 0.5 * (LEFT + RIGHT) {
+            (Anchor::End, -8.0)
+        } else {
+            (Anchor::Start, 8.0)
+        };
+        drawing.text([x + shift, height], anchor, 12.0, BLACK, &label);
+    }
+    drawing.text(
+        [0.5 * (LEFT + RIGHT), 316.0],
+        Anchor::Middle,
+        13.0,
+        BLACK,
+        "largest error / %",
+    );
+    drawing.upward([16.0, 0.5 * (BOTTOM + TOP)], 13.0, "time of a state / ms");
+    Some(drawing.finish())
+}

@@ -1,0 +1,320 @@
+//! What a report is made of: the design solved, in SI units.
+
+use super::super::estimate::refusal;
+use super::super::model::{self, Model};
+use super::super::{bench, read};
+use super::cost::{self, Cost};
+use model_tables::actuator::{Actuator, Blocked};
+use model_tables::design::{Design, RestBy};
+use model_tables::design_file::{Calibration, DesignFile};
+use model_tables::generate::{Generated, from_design};
+use model_tables::limit::Limit;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::press::Press;
+use model_tables::membrane::rest::Branch;
+use model_tables::membrane::state::Wrinkling;
+use model_tables::model::ModelError;
+use model_tables::model::choice::FINE;
+use model_tables::model::state::{MeridianStation, Pressed, RestState};
+use model_tables::model::{Fingertip, Kind};
+use model_tables::units::PressureRise;
+use output::Refusal;
+use output::progress::Progress;
+use std::path::Path;
+
+/// States of the curves.
+const STATES: usize = 48;
+/// Indentations of the shapes, over the deepest.
+const SHAPES: [f64; 4] = [0.0, 0.2, 0.6, 1.0];
+/// Points of a meridian.
+const POINTS: usize = 121;
+/// How deep a design is pressed that does not say, over the limit.
+const DEPTH: f64 = 0.9;
+/// Indentations at which membrane and solid are compared, over the deepest.
+const BENDING: [f64; 3] = [0.1, 0.4, 1.0];
+
+/// Everything a report says.
+pub(super) struct Findings {
+    pub(super) file: DesignFile,
+    pub(super) model: Kind,
+    /// How `auto` came to it.
+    pub(super) note: Option<String>,
+    pub(super) rest: RestState,
+    pub(super) limit: Limit,
+    /// How deep it is pressed here, metres.
+    pub(super) deepest: f64,
+    /// States from first touch to the deepest.
+    pub(super) states: Vec<Pressed>,
+    pub(super) meridians: Vec<Meridian>,
+    /// The tables, or the section that they would need.
+    pub(super) tables: Result<Generated, &'static str>,
+    /// What the tables say of the states.
+    pub(super) said: Vec<Said>,
+    pub(super) costs: Vec<Cost>,
+    /// The same wall as a solid, where the model is a membrane.
+    pub(super) bending: Vec<Bending>,
+    /// The actuator over its pressure.
+    pub(super) actuator: Vec<(f64, Blocked)>,
+    /// What a reader has to know, a line each.
+    pub(super) warnings: Vec<String>,
+}
+
+/// The meridian of a state.
+pub(super) struct Meridian {
+    pub(super) indentation: f64,
+    pub(super) force: f64,
+    /// Thickness of the undeformed wall, metres.
+    pub(super) wall: f64,
+    pub(super) points: Vec<MeridianStation>,
+}
+
+/// What the tables say of a state.
+pub(super) struct Said {
+    pub(super) pressure_rise: f64,
+    pub(super) force: f64,
+    pub(super) indentation: f64,
+    /// Errors of force and indentation against the model, percent of reading; `None` of tables from data.
+    pub(super) errors: Option<[f64; 2]>,
+}
+
+/// Membrane and solid at one indentation.
+pub(super) struct Bending {
+    pub(super) indentation: f64,
+    pub(super) membrane: f64,
+    pub(super) solid: f64,
+}
+
+/// Solves everything.
+pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refusal> {
+    let file = read(path)?;
+    let refuse = |error: ModelError| Refusal::about(path, &bench::as_read(&file.calibration, error));
+    let Model { kind, design, note } = model::of(path, &file)?;
+    progress.set(0.1);
+    let mut rung = match kind {
+        Kind::Membrane => Fingertip::Membrane(Box::new(
+            Press::new(&design, TensionField::Relaxed).map_err(|error| refuse(error.into()))?,
+        )),
+        Kind::Solid(_) => Fingertip::of(kind, &design).map_err(refuse)?,
+    };
+    let limit = rung.limit().map_err(refuse)?;
+    let deepest = file
+        .max_indentation_mm
+        .map_or(DEPTH * limit.indentation, |depth| depth / 1e3);
+    progress.set(0.2);
+    let states = (0..=STATES)
+        .map(|k| {
+            let part = k as f64 / STATES as f64;
+            rung.at_indentation(deepest * part * libm::sqrt(part))
+        })
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(refuse)?;
+    let meridians = SHAPES
+        .iter()
+        .map(|part| meridian(&mut rung, &design, part * deepest))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(refuse)?;
+    progress.set(0.4);
+    let tables = tables(&file).map_err(|error| refusal(path, error))?;
+    progress.set(0.6);
+    let said = tables
+        .as_ref()
+        .map_or_else(|_| Vec::new(), |generated| said(generated, &file, &states));
+    let costs = cost::costs(&file, kind, &design, deepest);
+    progress.set(0.9);
+    let bending = if kind == Kind::Membrane {
+        bending(&design, &mut rung, deepest)
+    } else {
+        Vec::new()
+    };
+    let mut warnings = warnings(&file, &mut rung, limit, deepest);
+    warnings.extend(bench::caution(&file));
+    Ok(Findings {
+        actuator: actuator(&file, &design),
+        rest: rung.rest(),
+        model: kind,
+        note,
+        limit,
+        deepest,
+        states,
+        meridians,
+        tables,
+        said,
+        costs,
+        bending,
+        warnings,
+        file,
+    })
+}
+
+fn meridian(rung: &mut Fingertip, design: &Design, indentation: f64) -> Result<Meridian, ModelError> {
+    Ok(Meridian {
+        indentation,
+        force: rung.contact_at(indentation)?.force,
+        wall: design.membrane.thickness,
+        points: rung.profile(indentation, POINTS)?,
+    })
+}
+
+/// The tables of a design that has everything they need; otherwise the first section that is missing.
+fn tables(
+    file: &DesignFile,
+) -> Result<Result<Generated, &'static str>, model_tables::generate::GenerateError> {
+    let missing = [
+        (file.max_indentation_mm.is_none(), "press"),
+        (file.transducer.is_none(), "transducer"),
+        (file.accuracy.is_none(), "accuracy"),
+    ]
+    .into_iter()
+    .find_map(|(missing, section)| missing.then_some(section));
+    match missing {
+        Some(section) => Ok(Err(section)),
+        None => Ok(Ok(from_design(file.clone())?)),
+    }
+}
+
+fn said(generated: &Generated, file: &DesignFile, states: &[Pressed]) -> Vec<Said> {
+    let tables = &generated.certified.tables;
+    let bits = tables.layout.pressure_fraction_bits;
+    let from = file
+        .accuracy
+        .map_or(0.0, |accuracy| accuracy.from_percent_of_full_scale / 100.0);
+    let error = |found: f64, truth: f64, full: f64| 100.0 * (found - truth) / truth.max(from * full);
+    let deepest = states.last().map_or(0.0, |state| state.indentation);
+    states
+        .iter()
+        .filter(|state| state.indentation > 0.0 || file.calibration.curve.is_some())
+        .map(|state| {
+            // The transducer's own zero takes its offset away.
+            let pressure_rise = match &file.calibration.curve {
+                None => file.calibration.pressure_gain * state.pressure_rise,
+                // Over the rises of the data, which need not be the model's.
+                Some(_) => generated.end.pressure_rise * state.indentation / deepest,
+            };
+            let reading = tables.lookup(PressureRise::from_pascals(pressure_rise, bits));
+            let (force, indentation) = (reading.force.newtons(), reading.indentation.metres());
+            Said {
+                pressure_rise,
+                force,
+                indentation,
+                errors: file.calibration.curve.is_none().then(|| {
+                    [
+                        error(force, state.force, generated.end.force),
+                        error(indentation, state.indentation, generated.end.indentation),
+                    ]
+                }),
+            }
+        })
+        .collect()
+}
+
+/// Forces of the membrane and of a solid of the same wall; nothing where the solid has no such rest state.
+fn bending(design: &Design, membrane: &mut Fingertip, deepest: f64) -> Vec<Bending> {
+    if !matches!(design.rest, RestBy::PoleStretch(_)) {
+        return Vec::new();
+    }
+    let mut outer = *design;
+    outer.membrane.radial_semi_axis += 0.5 * design.membrane.thickness;
+    outer.membrane.axial_semi_axis += 0.5 * design.membrane.thickness;
+    let Ok(mut solid) = Fingertip::of(Kind::Solid(FINE), &outer) else {
+        return Vec::new();
+    };
+    let mut both = |part: f64| -> Result<Bending, ModelError> {
+        let indentation = part * deepest;
+        Ok(Bending {
+            indentation,
+            membrane: membrane.contact_at(indentation)?.force,
+            solid: solid.contact_at(indentation)?.force,
+        })
+    };
+    BENDING.into_iter().map_while(|part| both(part).ok()).collect()
+}
+
+/// The feedback membrane over the pressures that it meets, where the design has one.
+fn actuator(file: &DesignFile, design: &Design) -> Vec<(f64, Blocked)> {
+    const PARTS: usize = 24;
+    let Some(diameter) = file.actuator_diameter_mm else {
+        return Vec::new();
+    };
+    let actuator = Actuator::new(diameter / 1e3, design.membrane.thickness, &design.law);
+    let largest = 0.25 * actuator.youngs_modulus;
+    let largest = file.transducer.map_or(largest, |transducer| {
+        largest.min(1e3 * transducer.gauge_range_kpa()[1])
+    });
+    (0..=PARTS)
+        .filter_map(|k| {
+            let pressure = largest * k as f64 / PARTS as f64;
+            Some((pressure, actuator.at_pressure(pressure).ok()?))
+        })
+        .collect()
+}
+
+fn warnings(file: &DesignFile, rung: &mut Fingertip, limit: Limit, deepest: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Fingertip::Membrane(press) = rung {
+        match press.branch() {
+            Branch::Only => {}
+            Branch::Lower { other } => lines.push(format!(
+                "Two rest states: this is the less stretched, the other has a pole stretch of {other:.4} mm/mm."
+            )),
+            Branch::Upper { other } => lines.push(format!(
+                "Two rest states: this is the more stretched, the other has a pole stretch of {other:.4} mm/mm."
+            )),
+        }
+        for (which, margin) in [
+            ("At rest", press.rest_stability()),
+            ("Pressed deepest", press.stability()),
+        ] {
+            if !margin.is_stable() {
+                lines.push(format!(
+                    "{which} the law is not stable at stretches of {:.4} mm/mm along and {:.4} mm/mm around ({}): the state is at \
+                     best one of several.",
+                    margin.meridional_stretch, margin.hoop_stretch, margin.mode
+                ));
+            }
+        }
+        let worst = [0.02, 0.1, 0.3, 0.6, 1.0]
+            .iter()
+            .filter_map(|part| press.at_indentation(part * deepest).ok())
+            .map(|state| state.shape.wrinkling)
+            .max();
+        match worst {
+            Some(Wrinkling::Wrinkled) => lines.push(
+                "Somewhere in the press the membrane wrinkles around: it is relaxed there, as a membrane cannot push."
+                    .to_owned(),
+            ),
+            Some(Wrinkling::Slack) => lines.push(
+                "Somewhere in the press the membrane is slack under the plate: it is relaxed there, as a membrane cannot push."
+                    .to_owned(),
+            ),
+            _ => {}
+        }
+    }
+    lines.extend(bench::beyond_strain(file, rung, deepest));
+    let share = deepest / limit.indentation;
+    if share > 0.9 && file.max_indentation_mm.is_some() {
+        lines.push(format!(
+            "The press goes to {:.1} % of its limit, where the model ends ({}).",
+            100.0 * share,
+            limit.ends_by.word()
+        ));
+    }
+    if file.calibration == Calibration::default() {
+        lines.push(
+            "Not calibrated: every number is the model's at the stated inputs. Printed and cast parts differ from them; calibrate \
+             with designer fit before you trust a force."
+                .to_owned(),
+        );
+    }
+    if file.calibration.curve.is_some() {
+        lines.push(
+            "The tables come from the data in [calibration]; curves, shapes and tensions are the model's and may differ."
+                .to_owned(),
+        );
+    }
+    lines.push(
+        "Static and without friction: rate, temperature, hysteresis and creep of the material are not in these numbers. Research \
+         software, not a medical device."
+            .to_owned(),
+    );
+    lines
+}

@@ -1,0 +1,142 @@
+//! `designer solve`: pressed states.
+
+use super::model::{self, Model};
+use super::{Field, bench, finite, read, refuse_plain, warn, warn_of_instability};
+use model_tables::design_file::DesignFile;
+use model_tables::material::stability::Margin;
+use model_tables::membrane::press::Press;
+use model_tables::membrane::state::PressedState;
+use model_tables::model::ModelError;
+use model_tables::model::{Fingertip, Kind};
+use model_tables::solid;
+use model_tables::solid::mesh::Elements;
+use output::rows::{Cell, Rows};
+use output::{CommandAnswer, Refusal};
+use std::path::PathBuf;
+
+const COLUMNS: &[&str] = &[
+    "indentation_mm",
+    "pressure_kpa",
+    "pressure_rise_kpa",
+    "force_n",
+    "contact_radius_mm",
+    "contact_area_mm2",
+    "pole_stretch",
+    "edge_angle_deg",
+    "min_tension_n_per_m",
+    "wrinkled",
+];
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The design file
+    design: PathBuf,
+    /// Indentations in millimetres, separated by commas; of a calibrated design, as its bench reads them
+    #[arg(long, value_name = "LIST", required = true, value_delimiter = ',',
+          value_parser = finite, allow_hyphen_values = true)]
+    indentation_mm: Vec<f64>,
+    /// What the membrane does where it would have to push
+    #[arg(long, value_name = "FIELD", value_enum, default_value_t = Field::Relaxed)]
+    tension_field: Field,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
+    let file = &arguments.design;
+    let design_file = read(file)?;
+    let calibration = &design_file.calibration;
+    if calibration.curve.is_some() {
+        warn(
+            file,
+            &"its tables come from the data in [calibration]; these states are the model's",
+        );
+    }
+    let model = model::of(file, &design_file)?;
+    if let Kind::Solid(elements) = model.kind {
+        refuse_plain(file, arguments.tension_field)?;
+        return solid(arguments, &design_file, &model, elements);
+    }
+    let mut press = Press::new(&model.design, arguments.tension_field.into())
+        .map_err(|error| Refusal::about(file, &error))?;
+    // Solved from shallow to deep, given in the order asked.
+    let mut order: Vec<usize> = (0..arguments.indentation_mm.len()).collect();
+    order.sort_by(|&a, &b| arguments.indentation_mm[a].total_cmp(&arguments.indentation_mm[b]));
+    let mut states: Vec<Option<PressedState>> = vec![None; order.len()];
+    let (mut worst, mut deepest) = (None, 0.0_f64);
+    for i in order {
+        let depth = bench::depth(calibration, arguments.indentation_mm[i]);
+        let state = press
+            .at_indentation(depth)
+            .map_err(|error| Refusal::about(file, &bench::as_read(calibration, error)))?;
+        deepest = deepest.max(depth);
+        states[i] = Some(state);
+        let margin = press.stability();
+        if worst.is_none_or(|(_, least): (f64, Margin)| margin.value < least.value) {
+            worst = Some((arguments.indentation_mm[i], margin));
+        }
+    }
+    if let Some((indentation, margin)) = worst {
+        warn_of_instability(file, &format!("at indentation {indentation} mm"), margin);
+    }
+    let mut rung = Fingertip::Membrane(Box::new(press));
+    bench::warn_of_strain(file, &design_file, &mut rung, deepest);
+    let mut rows = Rows::new(COLUMNS);
+    for (state, &asked) in states.iter().flatten().zip(&arguments.indentation_mm) {
+        rows.push(vec![
+            Cell::Number(asked),
+            Cell::Number(calibration.pressure_read(state.shape.pressure) * 1e-3),
+            Cell::Number(calibration.pressure_read(state.pressure_rise) * 1e-3),
+            Cell::Number(state.force),
+            Cell::Number(state.contact_radius * 1e3),
+            Cell::Number(state.contact_area() * 1e6),
+            Cell::Number(state.shape.pole_stretch),
+            Cell::Number(state.shape.edge_angle.to_degrees()),
+            Cell::Number(state.shape.least_tension()),
+            Cell::word(state.shape.wrinkling.word()),
+        ]);
+    }
+    Ok(CommandAnswer {
+        rows,
+        notes: model.note.into_iter().collect(),
+    })
+}
+
+/// The states of a solid.
+fn solid(
+    arguments: &Arguments,
+    design_file: &DesignFile,
+    model: &Model,
+    elements: Elements,
+) -> Result<CommandAnswer, Refusal> {
+    let calibration = &design_file.calibration;
+    let refuse = |error: ModelError| Refusal::about(&arguments.design, &bench::as_read(calibration, error));
+    let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
+    let mut rows = Rows::new(COLUMNS);
+    let mut deepest = 0.0_f64;
+    // States on the way serve all that follow, in whatever order.
+    for &asked in &arguments.indentation_mm {
+        let depth = bench::depth(calibration, asked);
+        let state = press
+            .at_indentation(depth)
+            .map_err(|error| refuse(error.into()))?;
+        deepest = deepest.max(depth);
+        rows.push(vec![
+            Cell::Number(asked),
+            Cell::Number(calibration.pressure_read(state.pressure) * 1e-3),
+            Cell::Number(calibration.pressure_read(state.pressure_rise) * 1e-3),
+            Cell::Number(state.force),
+            Cell::Number(state.contact_radius * 1e3),
+            Cell::Number(state.contact_area() * 1e6),
+            Cell::Number(state.pole_stretch),
+            // The rim is held over the whole wall, and a wall may push.
+            Cell::Empty,
+            Cell::Empty,
+            Cell::Empty,
+        ]);
+    }
+    let mut rung = Fingertip::Solid(Box::new(press));
+    bench::warn_of_strain(&arguments.design, design_file, &mut rung, deepest);
+    Ok(CommandAnswer {
+        rows,
+        notes: model.note.iter().cloned().collect(),
+    })
+}

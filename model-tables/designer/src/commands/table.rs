@@ -1,0 +1,58 @@
+//! `designer table`: writes the tables of a design.
+
+use super::estimate;
+use output::files::write_all;
+use output::rows::{Cell, Rows};
+use output::{CommandAnswer, Refusal};
+use std::path::PathBuf;
+use std::time::Instant;
+
+const COLUMNS: &[&str] = &["file", "size_bytes"];
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The design file
+    design: PathBuf,
+    /// The folder to write to; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Write the tables also where they do not reach the accuracy that the design asks
+    #[arg(long)]
+    allow_worse: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
+    let file = &arguments.design;
+    let begun = Instant::now();
+    let generated = estimate::generated(file, arguments.allow_worse)?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let contents: [(&str, Vec<u8>); 4] = [
+        ("tables.rs", generated.rust_source().into_bytes()),
+        ("tables.bin", generated.binary()),
+        ("tables.csv", generated.csv().into_bytes()),
+        ("certificate.toml", generated.certificate().into_bytes()),
+    ];
+    write_all(&arguments.out, &contents)?;
+    let mut rows = Rows::new(COLUMNS);
+    for (name, content) in &contents {
+        rows.push(vec![
+            Cell::Text(arguments.out.join(name).display().to_string()),
+            Cell::Count(content.len()),
+        ]);
+    }
+    let certificate = &generated.certified.certificate;
+    let name = &generated.design.name;
+    let notes = vec![
+        format!(
+            "{name}: {} bytes of tables; over all {} inputs the errors stay within {:.4} % (force) and {:.4} % \
+             (indentation) of reading",
+            generated.certified.tables.bytes(),
+            certificate.inputs,
+            certificate.force.of_reading.max,
+            certificate.indentation.of_reading.max,
+        ),
+        format!("{name}: {}", generated.choice()),
+        format!("{name}: solved, fitted and certified in {seconds:.1} s"),
+    ];
+    Ok(CommandAnswer { rows, notes })
+}

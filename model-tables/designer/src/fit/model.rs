@@ -1,0 +1,403 @@
+//! The design's model as a fit sees it: what the bench would read, for any values of the parameters.
+//!
+//! A membrane's pressure and force are proportional to modulus times wall, a solid's to its modulus, so a curve is
+//! solved once for a rest state and a compliance (of a solid: and a wall), and scaled for the rest.
+
+use super::data::{Data, DataRow};
+use super::parameter::{Parameter, ParameterValues};
+use model_tables::curve::{Contact, Curve};
+use model_tables::design::{Design, RestBy};
+use model_tables::design_file::{DesignFile, ModelSection};
+use model_tables::material::Law;
+use model_tables::membrane::TensionField;
+use model_tables::membrane::adapt::Resolution;
+use model_tables::membrane::press::{MembraneError, Press};
+use model_tables::model::ModelError;
+use model_tables::model::{self, choice};
+use model_tables::solid;
+use model_tables::solid::inflation::mid_surface;
+use model_tables::solid::mesh::Elements;
+use std::cell::RefCell;
+use std::fmt;
+use std::rc::Rc;
+
+/// Gauss points an element.
+const STAGES: usize = 4;
+/// A mesh for fits: far finer than any bench, and no finer than differences of it need.
+const MESH: Resolution = Resolution {
+    density: 1.0,
+    contact_elements: 1,
+    tolerance: 1e-10,
+    last_term: f64::INFINITY,
+};
+/// Shallowest indentation of a curve over the shallowest of the data, and over the deepest at least; the asymptotes
+/// carry on from there.
+const SHALLOWEST: [f64; 2] = [0.8, 5e-3];
+/// Factor between the indentations of a curve.
+const STEP: f64 = 1.3;
+/// The last state of a press that ends, over its limit.
+const NEARLY: f64 = 0.9995;
+/// States of a curve at most: a press of any depth from a thousandth of it on.
+const MOST_STATES: usize = 64;
+/// Curves that are kept.
+const KEPT: usize = 512;
+
+/// A quantity that is measured and predicted.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum DataQuantity {
+    /// Force, newtons.
+    Force,
+    /// Pressure rise, pascals.
+    Rise,
+}
+
+impl fmt::Display for DataQuantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Force => "force",
+            Self::Rise => "pressure rise",
+        })
+    }
+}
+
+/// One number to explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Target {
+    /// Index of the row.
+    pub(super) row: usize,
+    /// What is measured.
+    pub(super) quantity: DataQuantity,
+    /// Its value, SI.
+    pub(super) measured: f64,
+}
+
+/// What there is to explain: of a row with an indentation its force and its rise, of one without its force.
+pub(super) fn targets(data: &Data) -> Vec<Target> {
+    let mut targets = Vec::new();
+    for (row, measured) in data.rows.iter().enumerate() {
+        let mut push = |quantity, measured: Option<f64>| {
+            targets.extend(measured.map(|measured| Target {
+                row,
+                quantity,
+                measured,
+            }));
+        };
+        push(DataQuantity::Force, measured.force);
+        if measured.indentation.is_some() {
+            push(DataQuantity::Rise, measured.rise);
+        }
+    }
+    targets
+}
+
+/// A press of unit factors, and its way on beyond the last state.
+#[derive(Debug)]
+pub(super) struct Shape {
+    curve: Curve,
+    /// `d ln / d ln H` of rise and force at the end.
+    end_slopes: [f64; 2],
+    /// Whether the press ended before all of the data was covered.
+    pub(super) ends: bool,
+}
+
+impl Shape {
+    fn at_indentation(&self, indentation: f64) -> Contact {
+        let end = self.curve.end();
+        if indentation <= end.indentation {
+            return self.curve.at_indentation(indentation);
+        }
+        // Smooth, so that a fit finds its way back; whoever ends here is told.
+        let ratio = indentation / end.indentation;
+        Contact {
+            indentation,
+            pressure_rise: end.pressure_rise * libm::pow(ratio, self.end_slopes[0]),
+            force: end.force * libm::pow(ratio, self.end_slopes[1]),
+        }
+    }
+
+    fn force_at_rise(&self, rise: f64) -> f64 {
+        let end = self.curve.end();
+        if rise <= end.pressure_rise {
+            return self.curve.at_pressure_rise(rise).force;
+        }
+        end.force * libm::pow(rise / end.pressure_rise, self.end_slopes[1] / self.end_slopes[0])
+    }
+
+    /// Deepest solved indentation, metres.
+    pub(super) fn deepest(&self) -> f64 {
+        self.curve.end().indentation
+    }
+}
+
+/// Rest state, compliance and wall of unit factors, as the leading 52 bits.
+type Key = [u64; 3];
+
+/// What solving gave.
+type Solved = Result<Rc<Shape>, ModelError>;
+
+/// The model of a design, settled once for a whole fit.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    /// A membrane of the design's dimensions: what it does goes with its wall.
+    Membrane,
+    /// A model of an outer surface and a wall: the wall is part of the shape.
+    Wall(model::Kind),
+}
+
+impl Kind {
+    /// What the design names, or what `auto` chooses for it.
+    ///
+    /// # Errors
+    /// [`ModelError`] where no model answers.
+    pub(super) fn of(file: &DesignFile) -> Result<Self, ModelError> {
+        Ok(match file.model {
+            ModelSection::Membrane => Self::Membrane,
+            ModelSection::Solid { through, along } => Self::Wall(model::Kind::Solid(Elements {
+                through: through as usize,
+                along: along as usize,
+            })),
+            ModelSection::Auto => Self::Wall(choice::choose(&file.design(), &choice::Wanted::of(file))?.kind),
+        })
+    }
+
+    /// Whether a press is cheap enough to start a fit from many places.
+    pub(super) fn is_cheap(self) -> bool {
+        matches!(self, Self::Membrane | Self::Wall(model::Kind::Membrane))
+    }
+}
+
+/// Either model at rest.
+enum Ready {
+    Membrane(Box<Press<Law, STAGES>>),
+    Solid(Box<solid::press::Press>),
+}
+
+impl Ready {
+    fn new(kind: Kind, design: &Design) -> Result<Self, ModelError> {
+        let membrane = |design: &Design| {
+            let press = Press::with_resolution(design, TensionField::Relaxed, MESH)?;
+            Ok(Self::Membrane(Box::new(press)))
+        };
+        match kind {
+            Kind::Membrane => membrane(design),
+            Kind::Wall(model::Kind::Membrane) => membrane(&Design {
+                membrane: mid_surface(&design.membrane),
+                ..*design
+            }),
+            Kind::Wall(model::Kind::Solid(elements)) => {
+                solid::press::Press::new(design, elements).map(|press| Self::Solid(Box::new(press)))
+            }
+        }
+    }
+
+    fn height(&self) -> f64 {
+        match self {
+            Self::Membrane(press) => press.rest().height,
+            Self::Solid(press) => press.rest().height,
+        }
+    }
+
+    fn contact_at(&mut self, indentation: f64) -> Result<Contact, ModelError> {
+        match self {
+            Self::Membrane(press) => Ok(press.contact_at(indentation)?),
+            Self::Solid(press) => Ok(press.contact_at(indentation)?),
+        }
+    }
+}
+
+/// The model with what it has solved.
+#[derive(Debug)]
+pub(super) struct Model {
+    design: Design,
+    /// Which model.
+    pub(super) kind: Kind,
+    rest: RestBy,
+    by_stretch: bool,
+    deepest: f64,
+    shallowest: f64,
+    largest_rise: f64,
+    cache: RefCell<Vec<(Key, Solved)>>,
+}
+
+impl Model {
+    /// Ready to predict the data; `free` parameters will be changed.
+    pub(super) fn new(kind: Kind, file: &DesignFile, data: &Data, free: &[Parameter]) -> Self {
+        let mut nominal = file.clone();
+        nominal.calibration = model_tables::design_file::Calibration::default();
+        let design = nominal.design();
+        let largest = |of: fn(&DataRow) -> Option<f64>| data.rows.iter().filter_map(of).fold(0.0, f64::max);
+        let deepest = largest(|row| row.indentation);
+        Self {
+            kind,
+            rest: file.design().rest,
+            by_stretch: ParameterValues::rest_by_stretch(file, free),
+            deepest,
+            shallowest: data
+                .rows
+                .iter()
+                .filter_map(|row| row.indentation)
+                .filter(|&indentation| indentation > 0.0)
+                .fold(deepest, f64::min),
+            largest_rise: largest(|row| row.indentation.map_or(row.rise, |_| None)),
+            design,
+            cache: RefCell::new(Vec::new()),
+        }
+    }
+
+    /// What multiplies pressure and force, over that of the design: modulus, of a membrane times wall.
+    pub(super) fn stiffness(&self, values: &ParameterValues) -> f64 {
+        let wall = match self.kind {
+            Kind::Membrane => values.get(Parameter::Thickness),
+            Kind::Wall(_) => 1.0,
+        };
+        values.get(Parameter::Material) * wall
+    }
+
+    /// The press of unit factors for these values.
+    ///
+    /// # Errors
+    /// [`ModelError`] when there is no rest state or the press fails.
+    pub(super) fn shape(&self, values: &ParameterValues) -> Result<Rc<Shape>, ModelError> {
+        let scale = self.stiffness(values);
+        let rest = if self.by_stretch {
+            RestBy::PoleStretch(values.get(Parameter::PoleStretch))
+        } else {
+            match self.rest {
+                RestBy::Pressure(pressure) => RestBy::Pressure(pressure / scale),
+                geometric => geometric,
+            }
+        };
+        let compliance = values.get(Parameter::Compliance) * 1e-12 * scale;
+        let given = match rest {
+            RestBy::Unstretched => 0.0,
+            RestBy::PoleStretch(given)
+            | RestBy::Pressure(given)
+            | RestBy::EquatorRadius(given)
+            | RestBy::Height(given) => given,
+        };
+        let wall = match self.kind {
+            Kind::Membrane => 1.0,
+            Kind::Wall(_) => values.get(Parameter::Thickness),
+        };
+        // A step of the fit in stiffness alone moves the compliance by a rounding, and no more.
+        let key: Key = [given, compliance, wall].map(|value| (value.to_bits() + (1 << 11)) >> 12);
+        if let Some((_, found)) = self.cache.borrow().iter().find(|(known, _)| *known == key) {
+            return found.clone();
+        }
+        let mut design = Design {
+            rest,
+            compliance,
+            ..self.design
+        };
+        design.membrane.thickness *= wall;
+        let most_indentation = self.deepest - 1e-3 * values.get(Parameter::IndentationOffset).min(0.0);
+        let found = self
+            .solve(&design, 1.02 * most_indentation, scale, values)
+            .map(Rc::new);
+        let mut cache = self.cache.borrow_mut();
+        if cache.len() >= KEPT {
+            drop(cache.remove(0));
+        }
+        cache.push((key, found.clone()));
+        found
+    }
+
+    fn solve(
+        &self,
+        design: &Design,
+        deepest: f64,
+        scale: f64,
+        values: &ParameterValues,
+    ) -> Result<Shape, ModelError> {
+        let mut press = Ready::new(self.kind, design)?;
+        let largest_rise = 1.1 * self.largest_rise / (scale * values.get(Parameter::PressureGain));
+        let offset = 1e-3 * values.get(Parameter::IndentationOffset);
+        let [of_data, of_deepest] = SHALLOWEST;
+        let mut indentation = if deepest > 0.0 {
+            (of_data * (self.shallowest - offset)).clamp(of_deepest * deepest, 0.2 * deepest)
+        } else {
+            of_deepest * press.height()
+        };
+        let mut points: Vec<Contact> = Vec::new();
+        let mut ends = false;
+        while points.len() < MOST_STATES {
+            match press.contact_at(indentation) {
+                Ok(point) => points.push(point),
+                Err(error) => {
+                    let limit = error.beyond().ok_or(error)?;
+                    ends = true;
+                    let last = NEARLY * limit.indentation;
+                    if points.last().is_none_or(|point| point.indentation < last) {
+                        points.push(press.contact_at(last)?);
+                    }
+                    break;
+                }
+            }
+            let last = points[points.len() - 1];
+            if last.indentation >= deepest && last.pressure_rise >= largest_rise {
+                break;
+            }
+            indentation *= STEP;
+            if last.indentation < deepest && indentation > deepest {
+                indentation = deepest;
+            }
+        }
+        let [.., before, end] = points[..] else {
+            return Err(MembraneError::NotAnIndentation { asked: deepest }.into());
+        };
+        let slope = |of: fn(&Contact) -> f64| {
+            libm::log(of(&end) / of(&before)) / libm::log(end.indentation / before.indentation)
+        };
+        let end_slopes = [slope(|c| c.pressure_rise), slope(|c| c.force)];
+        let unsolved = ModelError::from(MembraneError::NotAnIndentation { asked: deepest });
+        Ok(Shape {
+            curve: Curve::new(points).map_err(|_| unsolved)?,
+            end_slopes,
+            ends,
+        })
+    }
+
+    /// What the bench would read of each target.
+    ///
+    /// # Errors
+    /// As [`Model::shape`].
+    pub(super) fn predict(
+        &self,
+        values: &ParameterValues,
+        data: &Data,
+        targets: &[Target],
+    ) -> Result<Vec<f64>, ModelError> {
+        let compliance = values.get(Parameter::Compliance);
+        if compliance < 0.0 {
+            // Odd about zero: smooth, so that the fit sees whether it wants to go there, and no such device is solved.
+            let with = |compliance: f64| {
+                let mut values = *values;
+                values.set(Parameter::Compliance, compliance);
+                self.predict(&values, data, targets)
+            };
+            let (zero, mirrored) = (with(0.0)?, with(-compliance)?);
+            return Ok(zero.iter().zip(mirrored).map(|(a, b)| 2.0 * a - b).collect());
+        }
+        let shape = self.shape(values)?;
+        let scale = self.stiffness(values);
+        let gain = values.get(Parameter::PressureGain);
+        let rise_offset = 1e3 * values.get(Parameter::PressureOffset);
+        let offset = 1e-3 * values.get(Parameter::IndentationOffset);
+        Ok(targets
+            .iter()
+            .map(|target| {
+                let row = &data.rows[target.row];
+                if let Some(read) = row.indentation {
+                    let contact = shape.at_indentation(read - offset);
+                    match target.quantity {
+                        DataQuantity::Force => scale * contact.force,
+                        DataQuantity::Rise => gain * scale * contact.pressure_rise + rise_offset,
+                    }
+                } else {
+                    let rise = (row.rise.unwrap_or(0.0) - rise_offset) / gain;
+                    scale * shape.force_at_rise(rise / scale)
+                }
+            })
+            .collect())
+    }
+}

@@ -1,0 +1,289 @@
+//! The design file: the TOML text that states a fingertip, read by build script and command line alike.
+//!
+//! Values keep the units of the file (their key names say which), so that reading what was printed gives the
+//! same design; [`DesignFile::design`] converts to SI. Every error is one line and names the key, the value
+//! found and what is allowed.
+
+mod calibration;
+mod error;
+mod print;
+pub mod section;
+mod sections;
+
+use crate::constants::{AIR, Quantity};
+use crate::design::{Design, Membrane, RestBy};
+use crate::material::Law;
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+pub use calibration::{Calibration, DataCurve};
+pub use error::{DesignFileError, Problem};
+
+/// Elements of a solid where a design does not say: through the wall and along it. Enough for a few tenths of a percent.
+pub const DEFAULT_ELEMENTS: [u32; 2] = [2, 60];
+
+/// A design file's content.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignFile {
+    /// The design's name: letters, digits, `-` and `_`.
+    pub name: String,
+    /// `[membrane]`.
+    pub membrane: MembraneSection,
+    /// `[material]`: constants in pascals, those of the preset if it names one.
+    pub material: Law,
+    /// `[rest]`.
+    pub rest: RestSection,
+    /// `[model]`.
+    pub model: ModelSection,
+    /// `[fluid] compliance_mm3_per_kpa`: tubing, actuator and bubbles, cubic millimetres per kilopascal.
+    pub compliance_mm3_per_kpa: f64,
+    /// `[press] max_indentation_mm`: end of the tables, millimetres.
+    pub max_indentation_mm: Option<f64>,
+    /// `[transducer]`.
+    pub transducer: Option<TransducerSection>,
+    /// `[accuracy]`.
+    pub accuracy: Option<Accuracy>,
+    /// `[actuator] diameter_mm`: free diameter of the feedback membrane, millimetres.
+    pub actuator_diameter_mm: Option<f64>,
+    /// `[calibration]`.
+    pub calibration: Calibration,
+}
+
+/// `[membrane]`: undeformed, millimetres. Semi-axes of the outer surface for a solid or `auto`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MembraneSection {
+    /// Radial semi-axis.
+    pub radial_semi_axis_mm: f64,
+    /// Axial semi-axis.
+    pub axial_semi_axis_mm: f64,
+    /// Wall thickness.
+    pub thickness_mm: f64,
+}
+
+/// `[model]`: what the fingertip is solved with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelSection {
+    /// `kind = "membrane"`, also where the section is left out.
+    Membrane,
+    /// `kind = "solid"`, with elements through the wall and along the meridian.
+    Solid {
+        /// `through`.
+        through: u32,
+        /// `along`.
+        along: u32,
+    },
+    /// `kind = "auto"`: the cheapest that meets `[accuracy]`.
+    Auto,
+}
+
+/// `[rest]`: exactly one of its keys; left out for a solid that is not inflated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RestSection {
+    /// No section: as it was made.
+    Unstretched,
+    /// `pole_stretch`, > 1.
+    PoleStretch(f64),
+    /// `pressure_kpa`, gauge, > 0.
+    PressureKpa(f64),
+    /// `equator_radius_mm`, deformed.
+    EquatorRadiusMm(f64),
+    /// `height_mm` of the inflated dome over its base.
+    HeightMm(f64),
+}
+
+/// `[transducer]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransducerSection {
+    /// Kilopascals. Of an absolute analogue part the two ends that its datasheet gives, absolute; of every other one gauge
+    /// pressures.
+    pub range_kpa: [f64; 2],
+    /// Smallest change it tells apart, pascals.
+    pub resolution_pa: f64,
+    /// One standard deviation of one sample at the converter, pascals; `resolution_pa` where not given.
+    pub noise_pa: f64,
+    /// What it measures against.
+    pub quantity: Quantity,
+    /// Its kind.
+    pub kind: TransducerKindSection,
+}
+
+impl TransducerSection {
+    /// The ends of the part's own range in its own quantity, kilopascals.
+    pub fn own_range_kpa(&self) -> [f64; 2] {
+        self.kind.absolute_range_kpa().unwrap_or(self.range_kpa)
+    }
+
+    /// Gauge pressures that it reads in any air, kilopascals.
+    pub fn gauge_range_kpa(&self) -> [f64; 2] {
+        if self.range_is_absolute() {
+            in_any_air(self.range_kpa)
+        } else {
+            self.range_kpa
+        }
+    }
+
+    /// Whether `range_kpa` is absolute: of an analogue part it describes the part, and not what is wanted of it.
+    pub fn range_is_absolute(&self) -> bool {
+        self.quantity == Quantity::Absolute && matches!(self.kind, TransducerKindSection::Ratiometric { .. })
+    }
+}
+
+/// [`AIR`], kilopascals.
+pub(crate) fn air_kpa() -> [f64; 2] {
+    AIR.map(|pascals| f64::from(pascals) / 1e3)
+}
+
+/// What is left of an absolute range above the air around it, whatever that is ([`AIR`]): gauge, kilopascals.
+pub(crate) fn in_any_air([low, high]: [f64; 2]) -> [f64; 2] {
+    let [thinnest, densest] = air_kpa();
+    [low - thinnest, high - densest]
+}
+
+/// `kind` of `[transducer]`, with the keys that only it has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TransducerKindSection {
+    /// `"ratiometric"`: a voltage proportional to the supply.
+    Ratiometric {
+        /// Output at the two ends of the range, fractions of the supply.
+        output_fraction_at_range: [f64; 2],
+        /// What the transducer is supplied with.
+        supply: Supply,
+    },
+    /// `"abp2"`: Honeywell ABP2.
+    Abp2 {
+        /// Seven-bit I2C address.
+        address: u8,
+        /// Transfer function.
+        transfer: Transfer,
+    },
+    /// `"ms5837-02ba"`: TE MS5837-02BA; its address is fixed.
+    Ms5837,
+    /// `"dps310"`: Infineon DPS310.
+    Dps310 {
+        /// Seven-bit I2C address, 0x76 or 0x77.
+        address: u8,
+    },
+}
+
+impl TransducerKindSection {
+    /// What a part on a bus measures against; an analogue one may be either.
+    pub const fn own_quantity(&self) -> Option<Quantity> {
+        match self {
+            Self::Ratiometric { .. } => None,
+            Self::Abp2 { .. } => Some(Quantity::Gauge),
+            Self::Ms5837 | Self::Dps310 { .. } => Some(Quantity::Absolute),
+        }
+    }
+
+    /// The range of an absolute part on a bus, which is in its datasheet: kilopascals absolute.
+    pub const fn absolute_range_kpa(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Ratiometric { .. } | Self::Abp2 { .. } => None,
+            // TE, datasheet of 09/2017: 10 to 2000 mbar.
+            Self::Ms5837 => Some([1.0, 200.0]),
+            // Infineon, datasheet V1.2, table 3.
+            Self::Dps310 { .. } => Some([30.0, 120.0]),
+        }
+    }
+}
+
+/// `supply` of a ratiometric transducer.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Supply {
+    /// `"reference"`: the converter's own reference, so that it cancels. The default.
+    #[default]
+    Reference,
+    /// `"measured"`: another one, which the board measures beside the output.
+    Measured,
+}
+
+/// Transfer function of a Honeywell ABP2.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Transfer {
+    /// 10 % to 90 % of 2^24 counts.
+    A,
+    /// 30 % to 70 % of 2^24 counts.
+    B,
+}
+
+/// `[accuracy]`: what the tables must meet on every input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Largest error of the force, percent of reading.
+    pub force_percent_of_reading: f64,
+    /// Largest error of the indentation, percent of reading.
+    pub indentation_percent_of_reading: f64,
+    /// Where that begins, percent of the output at `max_indentation_mm`; below it the same error in absolute
+    /// terms.
+    pub from_percent_of_full_scale: f64,
+}
+
+impl DesignFile {
+    /// Reads and checks a design file.
+    ///
+    /// # Errors
+    /// [`DesignFileError`] with the file's name, and the line where there is one.
+    pub fn read(path: &Path) -> Result<Self, DesignFileError> {
+        let text = std::fs::read_to_string(path).map_err(|error| DesignFileError {
+            file: path.display().to_string(),
+            line: None,
+            problem: Problem::Unreadable(error.to_string()),
+        })?;
+        Self::parse(&text, &path.display().to_string())
+    }
+
+    /// Checks the text of a design file; `file` is the name that errors give it.
+    ///
+    /// # Errors
+    /// [`DesignFileError`] for the first thing that is wrong.
+    pub fn parse(text: &str, file: &str) -> Result<Self, DesignFileError> {
+        sections::parse(text).map_err(|(line, problem)| DesignFileError {
+            file: file.to_owned(),
+            line,
+            problem,
+        })
+    }
+
+    /// The design's canonical text: every value written out, comments left out.
+    pub fn canonical(&self) -> String {
+        print::canonical(self)
+    }
+
+    /// SHA-256 of [`DesignFile::canonical`].
+    pub fn hash(&self) -> [u8; 32] {
+        Sha256::digest(self.canonical()).into()
+    }
+
+    /// What the model needs of the design as it is calibrated, in SI units.
+    pub fn design(&self) -> Design {
+        const MM: f64 = 1e-3;
+        const KPA: f64 = 1e3;
+        Design {
+            membrane: Membrane {
+                radial_semi_axis: self.membrane.radial_semi_axis_mm * MM,
+                axial_semi_axis: self.membrane.axial_semi_axis_mm * MM,
+                thickness: self.membrane.thickness_mm * self.calibration.thickness_factor * MM,
+            },
+            law: self.material.stiffened(self.calibration.material_factor),
+            rest: match self
+                .calibration
+                .pole_stretch
+                .map_or(self.rest, RestSection::PoleStretch)
+            {
+                RestSection::Unstretched => RestBy::Unstretched,
+                RestSection::PoleStretch(stretch) => RestBy::PoleStretch(stretch),
+                RestSection::PressureKpa(pressure) => RestBy::Pressure(pressure * KPA),
+                RestSection::EquatorRadiusMm(radius) => RestBy::EquatorRadius(radius * MM),
+                RestSection::HeightMm(height) => RestBy::Height(height * MM),
+            },
+            compliance: 1e-12
+                * self
+                    .calibration
+                    .compliance_mm3_per_kpa
+                    .unwrap_or(self.compliance_mm3_per_kpa),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,128 @@
+//! Why a design gets no tables.
+
+use crate::constants::BELOW_ZERO_DEVIATIONS;
+use crate::curve::CurveFailure;
+use crate::design_file::DesignFileError;
+use crate::generate::NoTables;
+use crate::model::ModelError;
+use std::fmt;
+
+/// Why a design has no tables. `Display` is one line that names the design's key, the numbers and the remedy.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GenerateError {
+    /// The design file cannot be used.
+    File(DesignFileError),
+    /// Making tables needs a section that is not there.
+    MissingSection {
+        /// The section.
+        section: &'static str,
+    },
+    /// The model gives no answer, or ends before `max_indentation_mm`.
+    Model(ModelError),
+    /// Pressure or force do not grow throughout.
+    Curve(CurveFailure<ModelError>),
+    /// A pressure lies outside the transducer's range.
+    OutOfRange {
+        /// Which pressure.
+        state: State,
+        /// The gauge pressure, kilopascals.
+        pressure: f64,
+        /// Gauge pressures that the transducer reads in any air, kilopascals.
+        range: [f64; 2],
+        /// The absolute range that those are left of, where `transducer.range_kpa` is one; kilopascals.
+        absolute: Option<[f64; 2]>,
+    },
+    /// The whole press raises the pressure by no more than what passes for noise around zero.
+    Unfelt {
+        /// By how much, pascals.
+        rise: f64,
+        /// What passes for noise, pascals.
+        least: f64,
+        /// The transducer's key that says so, and its value in pascals.
+        key: (&'static str, f64),
+    },
+    /// The data that the tables are to come from end before `max_indentation_mm`.
+    BeyondData {
+        /// The indentation asked for, millimetres.
+        asked: f64,
+        /// The deepest one of the data, millimetres.
+        deepest: f64,
+    },
+    /// No tables meet the accuracy.
+    NoTables(NoTables),
+}
+
+/// A state whose pressure the transducer has to read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum State {
+    /// At rest.
+    Rest,
+    /// At `max_indentation_mm`.
+    Pressed {
+        /// The indentation, millimetres.
+        indentation: f64,
+    },
+}
+
+impl fmt::Display for GenerateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(error) => error.fmt(f),
+            Self::MissingSection { section } => {
+                write!(f, "`[{section}]` is missing: tables cannot be made without it")
+            }
+            Self::Model(error) => error.fmt(f),
+            Self::Curve(error) => error.fmt(f),
+            Self::OutOfRange {
+                state,
+                pressure,
+                range: [low, high],
+                absolute,
+            } => {
+                match state {
+                    State::Rest => write!(f, "the rest pressure")?,
+                    State::Pressed { indentation } => {
+                        write!(f, "the pressure at press.max_indentation_mm = {indentation}")?;
+                    }
+                }
+                let (by, side) = if pressure > high {
+                    (pressure - high, "above")
+                } else {
+                    (low - pressure, "below")
+                };
+                write!(f, " is {pressure:.3} kPa, {by:.3} kPa {side} ")?;
+                match absolute {
+                    None => write!(f, "transducer.range_kpa = [{low}, {high}]: ")?,
+                    Some([start, end]) => write!(
+                        f,
+                        "the [{low}, {high}] kPa that transducer.range_kpa = [{start}, {end}] absolute leaves in any air: "
+                    )?,
+                }
+                match state {
+                    State::Rest => write!(f, "choose another transducer or rest state"),
+                    State::Pressed { .. } => {
+                        write!(f, "choose another transducer, or press less deep")
+                    }
+                }
+            }
+            Self::Unfelt {
+                rise,
+                least,
+                key: (key, value),
+            } => write!(
+                f,
+                "the whole press raises the pressure by {rise:.3} Pa, and up to {least:.3} Pa is noise \
+                 ({BELOW_ZERO_DEVIATIONS} times transducer.{key} = {value}): choose a finer transducer, or a design \
+                 whose pressure rises more"
+            ),
+            Self::BeyondData { asked, deepest } => write!(
+                f,
+                "press.max_indentation_mm = {asked} is beyond the data in [calibration], which end at {deepest} mm: \
+                 ask for less, or measure deeper"
+            ),
+            Self::NoTables(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for GenerateError {}

@@ -1,0 +1,337 @@
+//! From a design to its tables: the full model, and every refusal on the way.
+
+mod error;
+mod limit;
+
+pub use error::{GenerateError, State};
+pub use limit::Limit;
+
+use super::{Certified, NoTables, tables};
+use crate::constants::{BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
+use crate::curve::{Contact, Curve, CurveFailure};
+use crate::design_file::{DataCurve, DesignFile, Supply, TransducerKindSection, TransducerSection, Transfer};
+use crate::model::Fingertip;
+use sha2::{Digest as _, Sha256};
+use std::path::Path;
+
+/// States that the curve is compared with on a finer mesh, about; of the solid, whose states take long, fewer.
+const CHECKED: usize = 12;
+const CHECKED_SOLID: usize = 6;
+/// How much deeper than the press the curve goes where it can, so that the last input can be a number that the chip handles in
+/// fewer instructions: the pressure, which grows faster than the indentation, then goes on by as much at least.
+const BEYOND: f64 = 1.0 + 1.0 / 64.0;
+
+/// How often the accuracy is doubled at most where worse is allowed: a thousand times what was asked.
+const MOST_DOUBLINGS: u32 = 10;
+
+/// What tables of a design are made from.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// Its transducer.
+    pub transducer: TransducerSection,
+    /// Gauge pressure at rest, pascals.
+    pub rest_pressure: f64,
+    /// The press, which may go on a little beyond its end.
+    pub curve: Curve,
+    /// The end that the tables cover.
+    pub end: Contact,
+    /// The model that solved it; nothing where the curve is of data.
+    pub rung: Option<Fingertip>,
+}
+
+/// Tables of a design, with everything that is written beside them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Generated {
+    /// The design.
+    pub design: DesignFile,
+    /// Its transducer.
+    pub transducer: TransducerSection,
+    /// Gauge pressure at rest, pascals.
+    pub rest_pressure: f64,
+    /// The end of the press that the tables cover.
+    pub end: Contact,
+    /// Tables and certificate.
+    pub certified: Certified,
+    /// How far the curve is from the model's own limit; nothing where it is of data.
+    pub model_error: Option<Convergence>,
+}
+
+/// A curve against states of the same model on a finer mesh, half way between those that it was made from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Convergence {
+    /// The finer mesh, in words.
+    pub mesh: String,
+    /// States compared.
+    pub states: usize,
+    /// Largest error of the force at a pressure rise, percent of reading, as the tables' errors are.
+    pub force_percent: f64,
+    /// The same of the indentation.
+    pub indentation_percent: f64,
+}
+
+/// Reads a design file and makes its tables. Build scripts call this.
+///
+/// # Errors
+/// [`GenerateError`]; nothing is written anywhere.
+pub fn from_design_file(path: &Path) -> Result<Generated, GenerateError> {
+    from_design(DesignFile::read(path).map_err(GenerateError::File)?)
+}
+
+/// Solves a design with the full model and makes its tables.
+///
+/// # Errors
+/// [`GenerateError`].
+pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
+    make(design, 0)
+}
+
+/// The same, where no tables meet the accuracy with those of the nearest accuracy that some meet: that asked for, doubled as often
+/// as it takes. [`Generated::shortfall`] says what was not reached.
+///
+/// # Errors
+/// [`GenerateError`].
+pub fn from_design_or_worse(design: DesignFile) -> Result<Generated, GenerateError> {
+    make(design, MOST_DOUBLINGS)
+}
+
+fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> {
+    let missing = |section| GenerateError::MissingSection { section };
+    let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
+    let Solved {
+        transducer,
+        rest_pressure,
+        curve,
+        end,
+        rung,
+    } = solve(&design)?;
+    let mut allowed = accuracy;
+    let mut doubled = 0;
+    let certified = loop {
+        match tables(&curve, end, &allowed, transducer.resolution_pa) {
+            Err(NoTables::Inaccurate { .. }) if doubled < doublings => {
+                allowed.force_percent_of_reading *= 2.0;
+                allowed.indentation_percent_of_reading *= 2.0;
+                doubled += 1;
+            }
+            found => break found.map_err(GenerateError::NoTables)?,
+        }
+    };
+    let from = accuracy.from_percent_of_full_scale / 100.0;
+    let model_error = rung.and_then(|rung| convergence(&design, &rung, &curve, end, from));
+    Ok(Generated {
+        design,
+        transducer,
+        rest_pressure,
+        end,
+        certified,
+        model_error,
+    })
+}
+
+/// Solves a design down to `max_indentation_mm`, as its transducer reads it.
+///
+/// # Errors
+/// [`GenerateError`].
+pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
+    let missing = |section| GenerateError::MissingSection { section };
+    let indentation = design.max_indentation_mm.ok_or(missing("press"))?;
+    let transducer = design.transducer.ok_or(missing("transducer"))?;
+    let (rest_pressure, curve, end, rung) = if let Some(data) = &design.calibration.curve {
+        let curve = measured(data, indentation * 1e-3)?;
+        let end = curve.end();
+        (data.rest_pressure_kpa * 1e3, curve, end, None)
+    } else {
+        let mut rung = Fingertip::for_curve(design).map_err(GenerateError::Model)?;
+        let (rest_pressure, curve, end) = pressed(&mut rung, design, &transducer, indentation)?;
+        (rest_pressure, curve, end, Some(rung))
+    };
+    in_range(&transducer, State::Rest, rest_pressure)?;
+    in_range(
+        &transducer,
+        State::Pressed { indentation },
+        rest_pressure + end.pressure_rise,
+    )?;
+    is_felt(&transducer, end.pressure_rise)?;
+    Ok(Solved {
+        transducer,
+        rest_pressure,
+        curve,
+        end,
+        rung,
+    })
+}
+
+/// Refuses a press that never leaves what the firmware takes for noise around zero.
+fn is_felt(transducer: &TransducerSection, rise: f64) -> Result<(), GenerateError> {
+    let (resolution, noise) = (transducer.resolution_pa, transducer.noise_pa);
+    let key = if noise > resolution {
+        ("noise_pa", noise)
+    } else {
+        ("resolution_pa", resolution)
+    };
+    let least = BELOW_ZERO_DEVIATIONS as f64 * key.1;
+    if rise > least {
+        return Ok(());
+    }
+    Err(GenerateError::Unfelt { rise, least, key })
+}
+
+/// Solves the design again on a finer mesh at some indentations.
+fn convergence(
+    design: &DesignFile,
+    rung: &Fingertip,
+    curve: &Curve,
+    end: Contact,
+    from: f64,
+) -> Option<Convergence> {
+    let (mut press, mesh) = rung.finer(design).ok()?;
+    let checked = match rung {
+        Fingertip::Membrane(_) => CHECKED,
+        Fingertip::Solid(_) => CHECKED_SOLID,
+    };
+    let gain = design.calibration.pressure_gain;
+    let mut found = Convergence {
+        mesh,
+        states: 0,
+        force_percent: 0.0,
+        indentation_percent: 0.0,
+    };
+    let pairs: Vec<&[Contact]> = curve
+        .points()
+        .windows(2)
+        .filter(|pair| pair[1].indentation >= from * end.indentation)
+        .collect();
+    for pair in pairs.iter().step_by(pairs.len().div_ceil(checked).max(1)) {
+        let indentation = libm::sqrt(pair[0].indentation * pair[1].indentation);
+        let state = press.contact_at(indentation).ok()?;
+        let read = curve.at_pressure_rise(gain * state.pressure_rise);
+        let share = |got: f64, truth: f64, full: f64| 100.0 * (got - truth).abs() / truth.max(from * full);
+        let force = share(read.force, state.force, end.force);
+        let indentation = share(read.indentation, indentation, end.indentation);
+        found.states += 1;
+        found.force_percent = found.force_percent.max(force);
+        found.indentation_percent = found.indentation_percent.max(indentation);
+    }
+    Some(found)
+}
+
+/// What the transducer reads at rest, and the curve of the model as it reads it with the end of the press: its own zero takes
+/// the offset away.
+fn pressed(
+    press: &mut Fingertip,
+    design: &DesignFile,
+    transducer: &TransducerSection,
+    indentation: f64,
+) -> Result<(f64, Curve, Contact), GenerateError> {
+    let calibration = &design.calibration;
+    let deepest = indentation * 1e-3;
+    let rest_pressure = calibration.pressure_read(press.rest_pressure());
+    // What cannot be read is refused before the curve is solved.
+    in_range(transducer, State::Rest, rest_pressure)?;
+    let end = press.contact_at(deepest).map_err(GenerateError::Model)?;
+    in_range(
+        transducer,
+        State::Pressed { indentation },
+        calibration.pressure_read(press.rest_pressure() + end.pressure_rise),
+    )?;
+    let curve = match press.curve(deepest * BEYOND) {
+        Ok(curve) => curve,
+        Err(_) => press.curve(deepest).map_err(GenerateError::Curve)?,
+    };
+    let end = curve.at_indentation(deepest);
+    if calibration.pressure_gain.to_bits() == 1.0_f64.to_bits() {
+        return Ok((rest_pressure, curve, end));
+    }
+    let read = |point: &Contact| Contact {
+        pressure_rise: calibration.pressure_gain * point.pressure_rise,
+        ..*point
+    };
+    let curve = Curve::new(curve.points().iter().map(read).collect())
+        .map_err(|error| GenerateError::Curve(CurveFailure::Shape(error)))?;
+    Ok((rest_pressure, curve, read(&end)))
+}
+
+/// The curve of the data down to an indentation within them.
+fn measured(data: &DataCurve, deepest: f64) -> Result<Curve, GenerateError> {
+    let end = data.end();
+    if deepest > end.indentation * (1.0 + 1e-9) {
+        return Err(GenerateError::BeyondData {
+            asked: deepest * 1e3,
+            deepest: end.indentation * 1e3,
+        });
+    }
+    Curve::new(data.points(deepest)).map_err(|error| GenerateError::Curve(CurveFailure::Shape(error)))
+}
+
+fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Result<(), GenerateError> {
+    let pressure = pascals * 1e-3;
+    let range = transducer.gauge_range_kpa();
+    if pressure >= range[0] && pressure <= range[1] {
+        return Ok(());
+    }
+    Err(GenerateError::OutOfRange {
+        state,
+        pressure,
+        range,
+        absolute: transducer.range_is_absolute().then_some(transducer.range_kpa),
+    })
+}
+
+impl Generated {
+    /// First eight bytes of the design's hash, big-endian: [`crate::constants::DesignConstants::hash`].
+    pub fn hash(&self) -> u64 {
+        let [a, b, c, d, e, f, g, h, ..] = self.design.hash();
+        u64::from_be_bytes([a, b, c, d, e, f, g, h])
+    }
+
+    /// First eight bytes of the SHA-256 of the certificate, big-endian: [`crate::constants::DesignConstants::certificate`].
+    pub fn certificate_hash(&self) -> u64 {
+        let [a, b, c, d, e, f, g, h, ..]: [u8; 32] = Sha256::digest(self.certificate()).into();
+        u64::from_be_bytes([a, b, c, d, e, f, g, h])
+    }
+
+    /// The transducer as the firmware knows it.
+    pub fn transducer(&self) -> Transducer {
+        let section = &self.transducer;
+        Transducer {
+            range: section
+                .own_range_kpa()
+                .map(|kilopascals| integer(kilopascals * 1e3)),
+            resolution: integer(section.resolution_pa * 1e3),
+            noise: integer(section.noise_pa * 1e3),
+            quantity: section.quantity,
+            kind: kind(section.kind),
+        }
+    }
+}
+
+/// The nearest integer; a float to integer cast saturates.
+pub(super) fn integer(value: f64) -> i32 {
+    libm::round(value) as i32
+}
+
+fn kind(section: TransducerKindSection) -> TransducerKind {
+    const COUNTS: f64 = 16_777_216.0;
+    match section {
+        TransducerKindSection::Ratiometric {
+            output_fraction_at_range,
+            supply,
+        } => TransducerKind::Ratiometric {
+            output: output_fraction_at_range.map(|fraction| libm::round(fraction * 65536.0) as u32),
+            supply_measured: supply == Supply::Measured,
+        },
+        TransducerKindSection::Abp2 { address, transfer } => TransducerKind::Abp2 {
+            address,
+            counts: match transfer {
+                Transfer::A => [0.1, 0.9],
+                Transfer::B => [0.3, 0.7],
+            }
+            .map(|fraction| libm::round(fraction * COUNTS) as u32),
+        },
+        TransducerKindSection::Ms5837 => TransducerKind::Ms5837 { address: 0x76 },
+        TransducerKindSection::Dps310 { address } => TransducerKind::Dps310 { address },
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,22 @@
+//! The membrane model: a wall so thin that it carries tension alone.
+//!
+//! [`equations`] (the local equations along the meridian) -> [`equilibrium`] (with a [`closure`], Newton's method over the
+//! [`solver`](crate::solver)) -> [`adapt`] (on a [`mesh`] that fits the [`solution`]) -> [`inflation`] and [`rest`] (the
+//! rest state) -> [`press`] (states at asked indentations, started from the [`history`] of earlier ones, and the end of
+//! the press) -> [`state`] (what is read off).
+
+pub mod adapt;
+pub mod closure;
+pub mod equations;
+pub mod equilibrium;
+pub mod history;
+pub mod inflation;
+pub mod mesh;
+pub mod press;
+mod refine;
+pub mod rest;
+pub mod solution;
+pub mod state;
+mod wrinkle;
+
+pub use equations::{TensionField, Zone};

@@ -1,0 +1,192 @@
+//! Which model a design needs.
+//!
+//! `kind = "auto"` solves every rung of a ladder up to the solid of 2 x 60 elements, at eight indentations up to the deepest. **The rule:**
+//! the first rung, from the cheapest, is taken whose force and pressure rise differ from that solid's by no more than what
+//! [`Accuracy`](crate::design_file::Accuracy) allows of the force, less the solid's own error ([`Wanted::own_error`]); the solid itself if
+//! only that is allowed. If even that is not, a refined solid judges them all. Coarse solids judge nobody: their errors are of one
+//! kind, and two of them agreed with each other where both were wrong. `designer ladder` holds the rule to the refined solid over
+//! random walls.
+
+use super::{Fingertip, Kind, ModelError};
+use crate::curve::Contact;
+use crate::design::Design;
+use crate::design_file::{DEFAULT_ELEMENTS, DesignFile};
+use crate::solid;
+use crate::solid::SolidError;
+use crate::solid::mesh::Elements;
+
+/// The ladder that `auto` climbs.
+pub const LADDER: [Kind; 5] = [
+    Kind::Membrane,
+    Kind::Solid(solid::press::COARSE),
+    Kind::Solid(solid::press::FULL),
+    Kind::Solid(FINE),
+    Kind::Solid(REFINED),
+];
+/// Enough elements for a few tenths of a percent.
+pub const FINE: Elements = Elements {
+    through: DEFAULT_ELEMENTS[0] as usize,
+    along: DEFAULT_ELEMENTS[1] as usize,
+};
+/// What the other rungs are measured against.
+pub const REFINED: Elements = Elements {
+    through: 3,
+    along: 96,
+};
+/// Indentations at which rungs are compared, over the deepest.
+pub const PARTS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
+/// Error of [`FINE`], largest of the walls of `designer ladder` that are no [`THIN`] ones.
+const FINE_ERROR: f64 = 0.006;
+/// The same of walls that are [`THIN`], and of presses that are [`DEEP`].
+const HARD_ERROR: f64 = 0.01;
+/// Wall over outer radius under which 60 elements are long for what bends, `sqrt(radius * wall)`.
+const THIN: f64 = 0.02;
+/// Indentation over the height beyond which the bonded rim takes part.
+const DEEP: f64 = 0.36;
+/// What is allowed of the force where a design does not say, percent.
+const DEFAULT_PERCENT: f64 = 1.0;
+/// Where the percentage begins where a design does not say, percent of the deepest.
+const DEFAULT_FROM: f64 = 1.0;
+/// The deepest indentation where a design does not say, over the height: well before the end of any press.
+const DEFAULT_DEPTH: f64 = 0.35;
+
+/// How near a design's model has to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// Error of force and pressure rise, relative to the reading.
+    pub error: f64,
+    /// The part of the deepest reading below which the same error counts in absolute terms.
+    pub from: f64,
+    /// Deepest indentation, metres.
+    pub deepest: f64,
+}
+
+impl Wanted {
+    /// What a design file says, and what goes without saying.
+    pub fn of(file: &DesignFile) -> Self {
+        let percent = file
+            .accuracy
+            .map_or(DEFAULT_PERCENT, |a| a.force_percent_of_reading);
+        let from = file
+            .accuracy
+            .map_or(DEFAULT_FROM, |a| a.from_percent_of_full_scale);
+        let height = file.membrane.axial_semi_axis_mm;
+        Self {
+            error: percent / 100.0,
+            from: from / 100.0,
+            deepest: 1e-3 * file.max_indentation_mm.unwrap_or(DEFAULT_DEPTH * height),
+        }
+    }
+
+    /// The error that a rung counts with as a judge; infinite if it does not judge.
+    pub fn own_error(&self, kind: Kind, design: &Design) -> f64 {
+        let outer = &design.membrane;
+        match kind {
+            Kind::Solid(REFINED) => 0.0,
+            Kind::Solid(FINE) => {
+                let thin = outer.thickness < THIN * outer.radial_semi_axis;
+                let deep = self.deepest > DEEP * outer.axial_semi_axis;
+                if thin || deep { HARD_ERROR } else { FINE_ERROR }
+            }
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// How far contacts are from true ones, over the readings: the largest difference of force or pressure rise.
+    pub fn distance(&self, found: &[Contact], truth: &[Contact]) -> f64 {
+        let Some(end) = truth.last() else {
+            return f64::INFINITY;
+        };
+        found
+            .iter()
+            .zip(truth)
+            .flat_map(|(found, truth)| {
+                [
+                    (found.force, truth.force, end.force),
+                    (found.pressure_rise, truth.pressure_rise, end.pressure_rise),
+                ]
+            })
+            .map(|(found, truth, full)| (found - truth).abs() / truth.abs().max(self.from * full))
+            .fold(0.0, f64::max)
+    }
+
+    /// The first of some rungs, the judge among them, that is near enough to the judge with its own error.
+    pub fn judge<'a>(
+        &self,
+        mut rungs: impl Iterator<Item = &'a [Contact]>,
+        truth: &[Contact],
+        own_error: f64,
+    ) -> Option<usize> {
+        rungs.position(|contacts| self.distance(contacts, truth) + own_error <= self.error)
+    }
+
+    /// A model's contacts at [`PARTS`] of the deepest indentation.
+    ///
+    /// # Errors
+    /// [`ModelError`] of the model.
+    pub fn contacts(&self, rung: &mut Fingertip) -> Result<Vec<Contact>, ModelError> {
+        PARTS
+            .iter()
+            .map(|part| rung.contact_at(part * self.deepest))
+            .collect()
+    }
+}
+
+/// A rung that was taken, and on what evidence.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// The model.
+    pub kind: Kind,
+    /// The rung that judged it, and how far it may be off, relative; `None` where none could judge.
+    pub judged: Option<(Kind, f64)>,
+    /// The model at rest, its contacts solved.
+    pub rung: Fingertip,
+}
+
+/// Climbs the ladder for a design whose semi-axes are the outer surface's. Rungs that do not apply, or find no state, are
+/// passed over.
+///
+/// # Errors
+/// [`ModelError`] of the last rung.
+pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
+    let mut solved: Vec<(Kind, Fingertip, Vec<Contact>)> = Vec::new();
+    let mut failure = ModelError::Solid(SolidError::RestNotForSolid);
+    for judge in LADDER {
+        if !judge.applies(design) {
+            continue;
+        }
+        let own_error = wanted.own_error(judge, design);
+        let found = Fingertip::of(judge, design).and_then(|mut rung| {
+            let contacts = wanted.contacts(&mut rung)?;
+            Ok((rung, contacts))
+        });
+        let contacts = match found {
+            Ok((rung, contacts)) => {
+                solved.push((judge, rung, contacts.clone()));
+                contacts
+            }
+            Err(error) => {
+                failure = error;
+                continue;
+            }
+        };
+        let rungs = solved.iter().map(|(_, _, contacts)| contacts.as_slice());
+        if let Some(near) = wanted.judge(rungs, &contacts, own_error) {
+            let (kind, rung, found) = solved.swap_remove(near);
+            let distance = wanted.distance(&found, &contacts);
+            return Ok(Choice {
+                kind,
+                judged: Some((judge, distance + own_error)),
+                rung,
+            });
+        }
+    }
+    match solved.pop() {
+        Some((kind, rung, _)) => Ok(Choice {
+            kind,
+            judged: None,
+            rung,
+        }),
+        None => Err(failure),
+    }
+}

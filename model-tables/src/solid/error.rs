@@ -1,0 +1,100 @@
+//! Why the solid gives no answer, in words.
+
+use super::Failure;
+use crate::limit::{Limit, refuse_indentation, refuse_unsolved};
+use core::fmt;
+
+/// Why the solid gives no answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SolidError {
+    /// A solid rests unstretched, or at a pressure.
+    RestNotForSolid,
+    /// Inflation does not reach this pressure; pascals.
+    PressureOutOfReach {
+        /// What was asked for.
+        asked: f64,
+        /// The greatest that inflation passes.
+        greatest: f64,
+    },
+    /// The rest state was not found.
+    RestUnsolved {
+        /// What failed.
+        failure: Failure,
+    },
+    /// The indentation lies beyond the end of the press.
+    BeyondLimit {
+        /// The indentation asked for, metres.
+        asked: f64,
+        /// The end.
+        limit: Limit,
+    },
+    /// An indentation is a length >= 0.
+    NotAnIndentation {
+        /// What was asked for, metres.
+        asked: f64,
+    },
+    /// The state was not found.
+    PressUnsolved {
+        /// The indentation asked for, metres.
+        asked: f64,
+        /// The largest indentation reached on the way, metres.
+        reached: f64,
+        /// What failed.
+        failure: Failure,
+    },
+}
+
+impl fmt::Display for SolidError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::RestNotForSolid => write!(
+                f,
+                "a solid rests unstretched or at a pressure: leave [rest] out, or give rest.pressure_kpa"
+            ),
+            Self::PressureOutOfReach { asked, greatest } => write!(
+                f,
+                "no rest state has a pressure of {} kPa: inflation reaches {:.6} kPa and softens there; ask for less",
+                asked * 1e-3,
+                greatest * 1e-3
+            ),
+            Self::RestUnsolved { failure } => {
+                write!(
+                    f,
+                    "the rest state was not found ({failure}); ask for a less inflated one"
+                )
+            }
+            Self::BeyondLimit { asked, limit } => limit.refuse(f, asked),
+            Self::NotAnIndentation { asked } => refuse_indentation(f, asked),
+            Self::PressUnsolved {
+                asked,
+                reached,
+                failure,
+            } => refuse_unsolved(f, asked, reached, &failure),
+        }
+    }
+}
+
+impl core::error::Error for SolidError {}
+
+impl SolidError {
+    /// The same with every indentation as `read` has it.
+    #[must_use]
+    pub fn read_by(self, read: impl Fn(f64) -> f64) -> Self {
+        match self {
+            Self::BeyondLimit { asked, limit } => Self::BeyondLimit {
+                asked: read(asked),
+                limit: limit.read_by(read),
+            },
+            Self::PressUnsolved {
+                asked,
+                reached,
+                failure,
+            } => Self::PressUnsolved {
+                asked: read(asked),
+                reached: read(reached),
+                failure,
+            },
+            other => other,
+        }
+    }
+}

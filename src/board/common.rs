@@ -1,0 +1,132 @@
+//! What every board gives the tasks, and how it is set up.
+
+use super::chosen::{BAUD, CALIBRATION, Interrupts, Pins, Region, WATCHDOG, clocks, region};
+#[cfg(transducer = "ratiometric")]
+use super::converter::Converter;
+#[cfg(not(transducer = "ratiometric"))]
+use super::i2c::I2cBus;
+use super::memory::Patient;
+use crate::status::ResetCause;
+use crate::units::Microseconds;
+#[cfg(transducer = "ratiometric")]
+use embassy_stm32::adc::Adc;
+use embassy_stm32::mode::Async;
+use embassy_stm32::pac;
+use embassy_stm32::peripherals::IWDG;
+use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
+use embassy_stm32::wdg::IndependentWatchdog;
+use embassy_time::Instant;
+use static_cell::ConstStaticCell;
+
+/// The serial port's sender.
+pub type Line = UartTx<'static, Async>;
+
+/// The serial port's receiver.
+pub type Ears = RingBufferedUartRx<'static>;
+
+/// Bytes heard and not yet taken: 2.8 ms of a line that never pauses.
+static HEARD: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
+
+/// Where the calibration lies.
+pub type Memory = Patient<Region>;
+
+/// Resets the chip unless it is fed.
+pub type Watchdog = IndependentWatchdog<'static, IWDG>;
+
+/// Time since the board was set up.
+///
+/// Not the bare counter of the executor: setting that up can leave a compare flag behind, which starts it one
+/// period, 65 536 us, ahead.
+#[derive(Clone, Copy)]
+pub struct Clock {
+    start: Instant,
+}
+
+impl Clock {
+    /// The time.
+    #[inline]
+    pub fn now(self) -> Microseconds {
+        Microseconds(Instant::now().as_micros().saturating_sub(self.start.as_micros()))
+    }
+}
+
+/// What the tasks get.
+pub struct Board {
+    /// The time, from here on.
+    pub clock: Clock,
+    /// What the transducer is on, if anything is to be measured.
+    pub port: Option<Port>,
+    /// The way out for frames.
+    pub line: Line,
+    /// The way in for commands.
+    pub ears: Ears,
+    /// Where the calibration lies.
+    pub memory: Memory,
+    /// Running from here on.
+    pub watchdog: Watchdog,
+    /// Whether the crystal runs, where there is one; the chip's own oscillator, 1 % off, has taken its place if not.
+    pub crystal: bool,
+}
+
+/// What the transducer is on: the converter, ...
+#[cfg(transducer = "ratiometric")]
+pub type Port = Converter;
+
+/// ... or the bus.
+#[cfg(not(transducer = "ratiometric"))]
+pub type Port = I2cBus;
+
+impl Board {
+    /// Sets up clocks, pins and peripherals. Called once.
+    ///
+    /// After `gave_up` nothing is measured, and what the transducer is on is left alone.
+    ///
+    /// # Panics
+    /// For faults of the board's file, found by running the image once.
+    pub fn take(gave_up: bool) -> Self {
+        let (config, crystal) = clocks();
+        let pins = Pins::of(embassy_stm32::init(config));
+        let clock = Clock {
+            start: Instant::now(),
+        };
+
+        let mut watchdog = IndependentWatchdog::new(pins.watchdog, WATCHDOG);
+        watchdog.unleash();
+
+        #[cfg(transducer = "ratiometric")]
+        let port = (!gave_up).then(|| Converter::new(Adc::new(pins.converter)));
+        #[cfg(not(transducer = "ratiometric"))]
+        let port = (!gave_up).then_some(I2cBus(pins.bus));
+
+        let mut serial = usart::Config::default();
+        serial.baudrate = BAUD;
+        let (line, ears) = Uart::new(
+            pins.serial,
+            pins.receive,
+            pins.transmit,
+            pins.transmit_dma,
+            pins.receive_dma,
+            Interrupts,
+            serial,
+        )
+        .expect("the rate divides from the clock")
+        .split();
+
+        Self {
+            clock,
+            port,
+            line,
+            ears: ears.into_ring_buffered(HEARD.take()),
+            memory: Patient::new(region(pins.flash), CALIBRATION),
+            watchdog,
+            crystal,
+        }
+    }
+}
+
+/// Starts the watchdog, and reads and clears the flags of the last reset: all that is done before that reset is counted.
+/// Until it is set in [`Board::take`], the watchdog is fed for half a second (RM0090 21.3.3, RM0394 36.3.2).
+pub fn begin() -> ResetCause {
+    pac::IWDG.kr().write(|w| w.set_key(pac::iwdg::vals::Key::START));
+    super::chip::reset_cause()
+}

@@ -1,0 +1,63 @@
+//! The chip's converter, free-running, its DMA filling a ring of two blocks without an interrupt: the clock, of the same
+//! oscillator, tells when a block is there.
+
+use super::chip;
+use crate::image::ImageDesign;
+use crate::signal::design::Design;
+use crate::transducer::counts::{BLOCK_LENGTH, Block, PERIOD, Ring};
+use crate::transducer::ratiometric;
+use core::sync::atomic::{AtomicU32, Ordering, fence};
+use embassy_stm32::adc::Adc;
+use embassy_stm32::peripherals::ADC1;
+use embassy_time::{Duration, Ticker};
+
+/// Whether the transducer has a supply of its own, which is measured beside its output: then every second conversion is of
+/// the supply.
+const SUPPLY_MEASURED: bool = ratiometric::supply_measured(&ImageDesign::CONSTANTS.transducer);
+
+/// The ring that the converter's DMA fills.
+static RING: [Block; 2] = [const { [const { AtomicU32::new(0) }; BLOCK_LENGTH / 2] }; 2];
+
+/// ADC1 on the board's analogue pins.
+pub struct Converter {
+    ticker: Ticker,
+}
+
+impl Converter {
+    /// The ticks come this long after the end of a block, microseconds.
+    const MARGIN: u64 = 20;
+
+    pub(super) fn new(adc: Adc<'static, ADC1>) -> Self {
+        // Powered and clocked, and calibrated where the chip needs it; dropping it would undo that.
+        core::mem::forget(adc);
+        chip::set_up_converter(SUPPLY_MEASURED);
+        Self {
+            ticker: Ticker::every(Duration::from_micros(u64::from(PERIOD))),
+        }
+    }
+}
+
+impl ratiometric::Converter for Converter {
+    const CONVERSION: u32 = 10;
+
+    fn restart(&mut self) {
+        chip::restart_converter(RING.as_ptr() as u32, Ring::LENGTH as u16);
+        self.ticker.reset_after(Duration::from_micros(Self::MARGIN));
+    }
+
+    async fn tick(&mut self) {
+        self.ticker.next().await;
+    }
+
+    fn position(&self) -> Option<usize> {
+        let running = chip::converter_runs();
+        let position = Ring::LENGTH - usize::from(chip::conversions_left());
+        // What the DMA wrote before it counted is there to be read.
+        fence(Ordering::SeqCst);
+        running.then_some(position)
+    }
+
+    fn ring(&self) -> &[Block; 2] {
+        &RING
+    }
+}

@@ -1,0 +1,105 @@
+//! The STM32F4: flags of the last reset, and its converter.
+
+#[cfg(transducer = "ratiometric")]
+use super::chosen::{OUTPUT, SUPPLY};
+use crate::status::ResetCause;
+#[cfg(transducer = "ratiometric")]
+use embassy_stm32::adc::SampleTime;
+use embassy_stm32::pac;
+#[cfg(transducer = "ratiometric")]
+use embassy_time::Duration;
+
+/// Why the chip was reset; clears the flags. Every internal reset also pulls the pin, so that one is asked last (RM0090
+/// 6.1.1).
+pub(super) fn reset_cause() -> ResetCause {
+    let flags = pac::RCC.csr().read();
+    pac::RCC.csr().modify(|register| register.set_rmvf(true));
+    if flags.wdgrstf() || flags.wwdgrstf() {
+        ResetCause::Watchdog
+    } else if flags.lpwrrstf() {
+        ResetCause::LowPower
+    } else if flags.sftrstf() {
+        ResetCause::Software
+    } else if flags.porrstf() {
+        ResetCause::PowerOn
+    } else if flags.borrstf() {
+        ResetCause::BrownOut
+    } else if flags.padrstf() {
+        ResetCause::Pin
+    } else {
+        ResetCause::Unknown
+    }
+}
+
+/// Sets up ADC1 to run free at 4 MHz, served by stream 0 of DMA2, channel 0. 28 cycles of sampling (7 us, enough for 10
+/// kilo-ohm) and 12 of conversion are 10 us; 100 of them 1 ms to the cycle.
+#[cfg(transducer = "ratiometric")]
+pub(super) fn set_up_converter(supply_measured: bool) {
+    OUTPUT.connect();
+    let adc = pac::ADC1;
+    adc.smpr2()
+        .modify(|w| w.set_smp(usize::from(OUTPUT.channel), SampleTime::CYCLES28));
+    adc.sqr1().modify(|w| w.set_l(u8::from(supply_measured)));
+    adc.sqr3().modify(|w| w.set_sq(0, OUTPUT.channel));
+    if supply_measured {
+        SUPPLY.connect();
+        // The upper channels have a register of their own, from 10 on.
+        adc.smpr1()
+            .modify(|w| w.set_smp(usize::from(SUPPLY.channel) - 10, SampleTime::CYCLES28));
+        adc.sqr3().modify(|w| w.set_sq(1, SUPPLY.channel));
+        adc.cr1().modify(|w| w.set_scan(true));
+    }
+}
+
+/// Starts it at the front of the ring, also from any state it is stuck in.
+#[cfg(transducer = "ratiometric")]
+pub(super) fn restart_converter(ring: u32, length: u16) {
+    use pac::dma::vals::{Dir, Pl, Size};
+    let (adc, dma, stream) = (pac::ADC1, pac::DMA2, pac::DMA2.st(0));
+    adc.cr2().write(|_| {});
+    stream.cr().write(|_| {});
+    // It ends the transfer under way, a few cycles.
+    while stream.cr().read().en() {}
+    dma.ifcr(0).write(|w| {
+        w.set_tcif(0, true);
+        w.set_htif(0, true);
+        w.set_teif(0, true);
+        w.set_dmeif(0, true);
+        w.set_feif(0, true);
+    });
+    stream.par().write_value(adc.dr().as_ptr() as u32);
+    stream.m0ar().write_value(ring);
+    stream.ndtr().write(|w| w.set_ndt(length));
+    stream.cr().write(|w| {
+        w.set_chsel(0);
+        w.set_dir(Dir::PERIPHERAL_TO_MEMORY);
+        w.set_pl(Pl::VERY_HIGH);
+        w.set_msize(Size::BITS16);
+        w.set_psize(Size::BITS16);
+        w.set_minc(true);
+        w.set_circ(true);
+        w.set_en(true);
+    });
+    adc.sr().write(|_| {});
+    adc.cr2().write(|w| {
+        w.set_dma(true);
+        w.set_dds(pac::adc::vals::Dds::CONTINUOUS);
+        w.set_cont(true);
+        w.set_adon(true);
+    });
+    // It needs 3 us to wake (DS9405 table 74).
+    embassy_time::block_for(Duration::from_micros(3));
+    adc.cr2().modify(|w| w.set_swstart(true));
+}
+
+/// Whether it runs: it stops when a code was not fetched in time.
+#[cfg(transducer = "ratiometric")]
+pub(super) fn converter_runs() -> bool {
+    !pac::ADC1.sr().read().ovr()
+}
+
+/// Conversions until the DMA is at the front of the ring again.
+#[cfg(transducer = "ratiometric")]
+pub(super) fn conversions_left() -> u16 {
+    pac::DMA2.st(0).ndtr().read().ndt()
+}

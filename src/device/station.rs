@@ -1,0 +1,350 @@
+//! Everything between a sample and the line that is no wire and no clock: reports at the rate asked for, hellos,
+//! commands and what comes of them.
+
+use crate::device::supervisor::Start;
+use crate::link::command::{Command, CommandKind, Outcome, Request};
+use crate::link::telemetry::{Answer, Hello, Message};
+use crate::signal::calibration::Calibration;
+use crate::signal::design::Design;
+use crate::signal::pipeline::Pipeline;
+use crate::signal::report::Report;
+use crate::signal::zero::{StartUp, Zero};
+use crate::status::{Fault, LastFault, ResetCause, Status, Stored, Warnings};
+use crate::storage::store::StoreError;
+use crate::transducer::driver::Sample;
+use crate::units::Microseconds;
+use model_tables::units::Nanometres;
+
+/// From one hello to the next, microseconds.
+const HELLO_PERIOD: u64 = 1_000_000;
+
+/// From one save to the next at the least, microseconds: a client that saves for ever wears the memory out in
+/// months and not in days.
+const SAVE_PAUSE: u64 = 1_000_000;
+
+/// What a self-test found, one bit each; none: all is well.
+pub mod findings {
+    /// There are no readings.
+    pub const NO_READING: u16 = 1;
+    /// The zero is not verified.
+    pub const ZERO_UNVERIFIED: u16 = 2;
+    /// No stored calibration serves.
+    pub const NOT_STORED: u16 = 4;
+    /// A leak or a bubble is suspected.
+    pub const FLUID: u16 = 8;
+    /// At the indentation given the fingertip is softer than its model.
+    pub const SOFT: u16 = 16;
+    /// The run before this one ended in a fault.
+    pub const LAST_FAULT: u16 = 32;
+    /// Samples were lost since the last reset.
+    pub const SAMPLES_LOST: u16 = 64;
+    /// The crystal does not run.
+    pub const CLOCK: u16 = 128;
+}
+
+/// What others count.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Counters {
+    /// Samples lost.
+    pub samples_lost: u32,
+    /// Frames dropped.
+    pub frames_dropped: u32,
+    /// Frames and stretches of bytes that were no command.
+    pub commands_refused: u32,
+}
+
+/// What a board knows when it starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Beginning {
+    /// Why the chip was reset.
+    pub reset_cause: ResetCause,
+    /// What the run before left.
+    pub start: Start,
+    /// What became of the stored calibration.
+    pub stored: Stored,
+    /// Its number.
+    pub stored_sequence: u32,
+    /// The calibration, if it serves.
+    pub calibration: Option<Calibration>,
+    /// The crystal does not run.
+    pub clock_failed: bool,
+    /// The firmware: major, minor, patch.
+    pub firmware: [u8; 3],
+}
+
+/// To be put in the flash; [`Station::stored`] wants to know what came of it.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct ToStore(pub Option<Calibration>);
+
+/// A command whose answer is not known yet.
+#[derive(Clone, Copy, Debug)]
+struct Pending {
+    command: CommandKind,
+    sequence: u16,
+}
+
+/// One fingertip and its line.
+#[derive(Clone, Debug)]
+pub struct Station<D> {
+    /// What others count.
+    pub counters: Counters,
+    pipeline: Pipeline<D>,
+    hello: Hello,
+    /// Reset after reset: nothing is measured.
+    gave_up: bool,
+    next_hello: u64,
+    /// One report in so many goes on the line.
+    every: u16,
+    passed: u16,
+    status: Option<Status>,
+    /// The last reading: what a self-test judges.
+    last: Option<(Nanometres, Warnings)>,
+    tare: Option<Pending>,
+    save: Option<(Pending, ToStore)>,
+    saved: Option<Microseconds>,
+}
+
+impl<D: Design> Station<D> {
+    /// A station that has seen nothing yet.
+    pub fn new(beginning: &Beginning) -> Self {
+        let Beginning {
+            reset_cause,
+            start,
+            stored,
+            ..
+        } = *beginning;
+        let refused = matches!(stored, Stored::OtherDesign | Stored::Damaged | Stored::Unreadable);
+        let standing = Warnings::CALIBRATION_REFUSED
+            .when(refused)
+            .and(Warnings::CLOCK.when(beginning.clock_failed));
+        let calibration = beginning.calibration.unwrap_or_default();
+        Self {
+            counters: Counters::default(),
+            pipeline: Pipeline::new(
+                StartUp::after(reset_cause, start.kept, D::CONSTANTS.transducer.quantity),
+                calibration,
+                standing,
+            ),
+            hello: Hello {
+                firmware: beginning.firmware,
+                reset_cause,
+                design_hash: D::CONSTANTS.hash,
+                table_version: D::CONSTANTS.table_version,
+                report_period: Pipeline::<D>::PERIOD,
+                stored,
+                last_fault: start.fault,
+                last_fault_detail: start.detail,
+                resets_in_a_row: start.crumb.resets,
+                stored_sequence: beginning.stored_sequence,
+                ..Hello::default()
+            },
+            gave_up: start.give_up,
+            next_hello: 0,
+            every: 1,
+            passed: 0,
+            status: None,
+            last: None,
+            tare: None,
+            save: None,
+            saved: None,
+        }
+    }
+
+    /// The report of one sample, or of its absence; what goes on the line is given to `say`.
+    #[inline]
+    pub fn step(
+        &mut self,
+        now: Microseconds,
+        sample: Result<Sample, Fault>,
+        mut say: impl FnMut(&Message),
+    ) -> Report {
+        let report = if self.gave_up {
+            Report {
+                time: now,
+                outcome: Err(Fault::ResetLoop),
+            }
+        } else {
+            self.pipeline.step(now, sample)
+        };
+        if now.0 >= self.next_hello {
+            self.next_hello = now.0.saturating_add(HELLO_PERIOD);
+            say(&Message::Hello(self.hello(now)));
+        }
+        self.last = report
+            .outcome
+            .as_ref()
+            .ok()
+            .map(|reading| (reading.indentation, reading.warnings));
+        if self.tare.is_some()
+            && let Some(answer) = self.pipeline.take_tare_answer()
+            && let Some(pending) = self.tare.take()
+        {
+            let outcome = answer.map_or_else(Outcome::from, |()| Outcome::Done);
+            say(&answered(now, pending, outcome, 0));
+        }
+        self.passed = self.passed.saturating_add(1);
+        let status = Some(report.status());
+        // A change is never held back, at whatever rate.
+        if self.passed >= self.every || status != self.status {
+            self.passed = 0;
+            self.status = status;
+            say(&Message::Report {
+                report,
+                pressure_fraction_bits: D::PRESSURE_FRACTION_BITS as u8,
+            });
+        }
+        report
+    }
+
+    /// Does what is asked for, or begins to; the answer is given to `say` when there is one. What has to be stored is
+    /// the caller's to store.
+    pub fn request(
+        &mut self,
+        now: Microseconds,
+        request: Request,
+        mut say: impl FnMut(&Message),
+    ) -> Option<ToStore> {
+        let pending = Pending {
+            command: request.command.kind(),
+            sequence: request.sequence,
+        };
+        let mut found = 0;
+        let outcome = match request.command {
+            // No sample reaches the signal path: it would never finish a tare, and nobody sees whether its zero holds.
+            Command::Tare | Command::Save { .. } if self.gave_up => Outcome::NoReading,
+            Command::Tare => match self.pipeline.tare() {
+                Ok(()) => {
+                    self.tare = Some(pending);
+                    return None;
+                }
+                Err(refusal) => refusal.into(),
+            },
+            Command::Undo => self
+                .pipeline
+                .undo_tare()
+                .map_or_else(Outcome::from, |()| Outcome::Done),
+            Command::Save { gain } => match self.pipeline.calibration_to_store() {
+                None => Outcome::ZeroUnverified,
+                Some(calibration) => {
+                    let gain = gain.unwrap_or(calibration.gain);
+                    return self.store(now, pending, Some(Calibration { gain, ..calibration }), say);
+                }
+            },
+            Command::Forget => return self.store(now, pending, None, say),
+            Command::Info => {
+                say(&Message::Hello(self.hello(now)));
+                Outcome::Done
+            }
+            Command::SelfTest { indentation } => {
+                found = self.self_test(indentation);
+                Outcome::Done
+            }
+            Command::Rate { every } => {
+                self.every = every;
+                self.hello.report_period = u32::from(every) * Pipeline::<D>::PERIOD;
+                Outcome::Done
+            }
+        };
+        say(&answered(now, pending, outcome, found));
+        None
+    }
+
+    fn store(
+        &mut self,
+        now: Microseconds,
+        pending: Pending,
+        calibration: Option<Calibration>,
+        mut say: impl FnMut(&Message),
+    ) -> Option<ToStore> {
+        let soon = self
+            .saved
+            .is_some_and(|saved| now.0.saturating_sub(saved.0) < SAVE_PAUSE);
+        if self.save.is_some() || soon {
+            say(&answered(now, pending, Outcome::Busy, 0));
+            return None;
+        }
+        let to_store = ToStore(calibration);
+        self.save = Some((pending, to_store));
+        Some(to_store)
+    }
+
+    /// What came of storing, and the number of the record that serves now.
+    pub fn stored(
+        &mut self,
+        now: Microseconds,
+        result: Result<(), StoreError>,
+        sequence: u32,
+        mut say: impl FnMut(&Message),
+    ) {
+        let Some((pending, ToStore(calibration))) = self.save.take() else {
+            return;
+        };
+        self.saved = Some(now);
+        let outcome = match result {
+            Ok(()) => {
+                self.hello.stored = calibration.map_or(Stored::None, |_| Stored::Serves);
+                self.hello.stored_sequence = sequence;
+                self.pipeline.calibrated(calibration);
+                Outcome::Done
+            }
+            Err(StoreError::Failed | StoreError::WornOut) => Outcome::MemoryFailed,
+        };
+        say(&answered(now, pending, outcome, 0));
+    }
+
+    fn self_test(&mut self, indentation: i32) -> u16 {
+        let mut found = 0;
+        let mut add = |finding: u16, holds: bool| {
+            if holds {
+                found |= finding;
+            }
+        };
+        match self.last {
+            None => add(findings::NO_READING, true),
+            Some((read, warnings)) => {
+                let warned = |warning| warnings.contains(warning);
+                add(findings::ZERO_UNVERIFIED, warned(Warnings::ZERO_UNVERIFIED));
+                add(
+                    findings::FLUID,
+                    warned(Warnings::LEAK_SUSPECTED) || warned(Warnings::BUBBLE_SUSPECTED),
+                );
+                add(findings::CLOCK, warned(Warnings::CLOCK));
+                let soft = indentation > 0 && !self.pipeline.compare(read, Nanometres(indentation));
+                add(findings::SOFT, soft);
+            }
+        }
+        add(findings::NOT_STORED, self.hello.stored != Stored::Serves);
+        add(findings::LAST_FAULT, self.hello.last_fault != LastFault::None);
+        add(findings::SAMPLES_LOST, self.counters.samples_lost > 0);
+        found
+    }
+
+    fn hello(&self, now: Microseconds) -> Hello {
+        Hello {
+            time: now,
+            samples_lost: self.counters.samples_lost,
+            samples_rejected: self.pipeline.rejected(),
+            frames_dropped: self.counters.frames_dropped,
+            commands_refused: self.counters.commands_refused,
+            ..self.hello
+        }
+    }
+
+    /// The zero that serves: what a reset that nobody saw coming has to keep.
+    pub fn zero(&self) -> Option<Zero> {
+        self.pipeline.zero()
+    }
+}
+
+fn answered(time: Microseconds, pending: Pending, outcome: Outcome, findings: u16) -> Message {
+    Message::Answer(Answer {
+        time,
+        command: pending.command,
+        command_sequence: pending.sequence,
+        outcome,
+        findings,
+    })
+}
+
+#[cfg(test)]
+mod tests;

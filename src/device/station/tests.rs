@@ -1,0 +1,368 @@
+use super::*;
+use crate::device::supervisor::Breadcrumb;
+use crate::signal::test_design::Linear;
+use crate::status::Touch;
+use crate::units::{Millipascals, Pressure};
+use model_tables::constants::{DesignConstants, TransducerKind};
+use model_tables::table::Reading;
+use model_tables::units::PressureRise;
+use proptest::prelude::*;
+
+const BEGINNING: Beginning = Beginning {
+    reset_cause: ResetCause::PowerOn,
+    start: Start {
+        fault: LastFault::None,
+        detail: 0,
+        kept: None,
+        give_up: false,
+        crumb: Breadcrumb {
+            fault: LastFault::None,
+            detail: 0,
+            resets: 0,
+            good: false,
+            design_hash: 1,
+            zero: None,
+        },
+    },
+    stored: Stored::None,
+    stored_sequence: 0,
+    calibration: None,
+    clock_failed: false,
+    firmware: [0, 1, 0],
+};
+
+struct Bench {
+    station: Station<Linear>,
+    ms: u64,
+    said: Vec<Message>,
+}
+
+impl Bench {
+    fn new(beginning: &Beginning) -> Self {
+        Self {
+            station: Station::new(beginning),
+            ms: 0,
+            said: vec![],
+        }
+    }
+
+    fn zeroed() -> Self {
+        let mut bench = Self::new(&BEGINNING);
+        bench.steps(400, 20_000.0);
+        bench.said.clear();
+        bench
+    }
+
+    fn steps(&mut self, times: u64, pascals: f64) {
+        let sample = Sample {
+            pressure: Millipascals((pascals * 1000.0) as i32),
+            headroom: Millipascals(1),
+            age: 500,
+            ..Sample::default()
+        };
+        for _ in 0..times {
+            self.ms += 1;
+            let said = &mut self.said;
+            self.station
+                .step(Microseconds(self.ms * 1000), Ok(sample), |message| {
+                    said.push(*message);
+                });
+        }
+    }
+
+    fn ask(&mut self, command: Command) -> Option<ToStore> {
+        let said = &mut self.said;
+        let request = Request { sequence: 9, command };
+        self.station
+            .request(Microseconds(self.ms * 1000), request, |message| {
+                said.push(*message);
+            })
+    }
+
+    fn stored(&mut self, result: Result<(), StoreError>) {
+        let said = &mut self.said;
+        self.station
+            .stored(Microseconds(self.ms * 1000), result, 17, |message| {
+                said.push(*message);
+            });
+    }
+
+    fn answers(&mut self) -> Vec<(CommandKind, Outcome, u16)> {
+        self.said
+            .drain(..)
+            .filter_map(|message| match message {
+                Message::Answer(answer) => {
+                    assert_eq!(answer.command_sequence, 9);
+                    Some((answer.command, answer.outcome, answer.findings))
+                }
+                _ => None,
+            })
+            .collect()
+    }
+
+    fn reports(&self) -> usize {
+        self.said
+            .iter()
+            .filter(|message| matches!(message, Message::Report { .. }))
+            .count()
+    }
+}
+
+#[test]
+fn a_report_each_period_and_a_hello_each_second() {
+    let mut bench = Bench::zeroed();
+    bench.steps(2_000, 20_000.0);
+    assert_eq!(bench.reports(), 2_000);
+    assert_eq!(bench.said.len(), 2_002);
+}
+
+#[test]
+fn at_a_lower_rate_a_change_of_status_is_still_said_at_once() {
+    let mut bench = Bench::zeroed();
+    bench.ask(Command::Rate { every: 100 });
+    assert_eq!(bench.answers(), [(CommandKind::Rate, Outcome::Done, 0)]);
+    bench.steps(1_000, 20_000.0);
+    assert_eq!(bench.reports(), 10);
+    bench.said.clear();
+    bench.steps(20, 70_000.0);
+    let statuses: Vec<String> = bench
+        .said
+        .iter()
+        .filter_map(|message| match message {
+            Message::Report { report, .. } => Some(report.status().to_string()),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(statuses, ["fault: jump", "warning: saturated"]);
+}
+
+#[test]
+fn a_tare_is_answered_when_it_is_taken_or_refused() {
+    let mut bench = Bench::zeroed();
+    bench.ask(Command::Tare);
+    assert_eq!(bench.answers(), []);
+    bench.ask(Command::Tare);
+    assert_eq!(bench.answers(), [(CommandKind::Tare, Outcome::Busy, 0)]);
+    bench.steps(300, 20_010.0);
+    assert_eq!(bench.answers(), [(CommandKind::Tare, Outcome::Done, 0)]);
+    bench.ask(Command::Undo);
+    bench.ask(Command::Undo);
+    assert_eq!(
+        bench.answers(),
+        [
+            (CommandKind::Undo, Outcome::Done, 0),
+            (CommandKind::Undo, Outcome::NothingToUndo, 0)
+        ]
+    );
+    bench.ask(Command::Tare);
+    bench.steps(2_100, 21_000.0);
+    assert_eq!(bench.answers(), [(CommandKind::Tare, Outcome::Touched, 0)]);
+}
+
+#[test]
+fn a_save_is_answered_when_the_memory_has_it() {
+    let mut bench = Bench::zeroed();
+    let to_store = bench.ask(Command::Save { gain: Some(1_000) });
+    let calibration = to_store.and_then(|to_store| to_store.0).expect("a verified zero");
+    assert!((calibration.zero.expect("a zero").0 - 20_000_000).abs() < 100);
+    assert_eq!(calibration.gain, 1_000);
+    assert_eq!(bench.ask(Command::Save { gain: None }), None);
+    assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::Busy, 0)]);
+    bench.stored(Ok(()));
+    assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::Done, 0)]);
+    // The next one has to wait for a second, and keeps the gain.
+    assert_eq!(bench.ask(Command::Save { gain: None }), None);
+    bench.steps(1_001, 20_000.0);
+    let again = bench
+        .ask(Command::Save { gain: None })
+        .and_then(|to_store| to_store.0);
+    assert_eq!(again.map(|calibration| calibration.gain), Some(1_000));
+    bench.said.clear();
+    bench.stored(Err(StoreError::Failed));
+    assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::MemoryFailed, 0)]);
+    bench.ask(Command::Info);
+    let Some(Message::Hello(hello)) = bench.said.first() else {
+        panic!("{:?}", bench.said);
+    };
+    assert_eq!((hello.stored, hello.stored_sequence), (Stored::Serves, 17));
+}
+
+#[test]
+fn without_a_verified_zero_nothing_is_saved() {
+    let mut bench = Bench::new(&BEGINNING);
+    bench.steps(2_100, 25_000.0);
+    bench.said.clear();
+    assert_eq!(bench.ask(Command::Save { gain: None }), None);
+    assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::ZeroUnverified, 0)]);
+}
+
+#[test]
+fn what_was_stored_can_be_forgotten() {
+    let mut bench = Bench::zeroed();
+    assert_eq!(bench.ask(Command::Forget), Some(ToStore(None)));
+    bench.stored(Ok(()));
+    assert_eq!(bench.answers(), [(CommandKind::Forget, Outcome::Done, 0)]);
+}
+
+#[test]
+fn a_self_test_names_what_it_finds() {
+    let mut bench = Bench::zeroed();
+    bench.ask(Command::SelfTest { indentation: 0 });
+    assert_eq!(
+        bench.answers(),
+        [(CommandKind::SelfTest, Outcome::Done, findings::NOT_STORED)]
+    );
+    // 1 nm a count of 1/256 Pa: 500 Pa are 0.128 mm.
+    bench.steps(5, 20_500.0);
+    bench.said.clear();
+    bench.ask(Command::SelfTest { indentation: 128_000 });
+    bench.ask(Command::SelfTest { indentation: 256_000 });
+    bench.steps(1, 20_500.0);
+    bench.ask(Command::SelfTest { indentation: 0 });
+    let found: Vec<u16> = bench.answers().iter().map(|(_, _, found)| *found).collect();
+    let stored = findings::NOT_STORED;
+    assert_eq!(found, [stored, stored | findings::SOFT, stored | findings::FLUID]);
+    let mut silent = Bench::new(&BEGINNING);
+    silent.ask(Command::SelfTest { indentation: 0 });
+    assert_eq!(silent.answers()[0].2, findings::NO_READING | findings::NOT_STORED);
+}
+
+fn given_up() -> Bench {
+    let zero = Zero {
+        pressure: Pressure::from_pascals(20_000, Linear::PRESSURE_FRACTION_BITS),
+        verified: true,
+    };
+    let mut bench = Bench::new(&Beginning {
+        reset_cause: ResetCause::Watchdog,
+        start: Start {
+            give_up: true,
+            kept: Some(zero),
+            ..BEGINNING.start
+        },
+        ..BEGINNING
+    });
+    bench.steps(500, 20_000.0);
+    bench
+}
+
+#[test]
+fn after_too_many_resets_it_measures_nothing() {
+    assert!(given_up().said.iter().all(|message| match message {
+        Message::Report { report, .. } => report.outcome == Err(Fault::ResetLoop),
+        _ => true,
+    }));
+}
+
+#[test]
+fn after_too_many_resets_every_command_is_answered() {
+    let found = findings::NO_READING | findings::NOT_STORED;
+    for (command, outcome, findings) in [
+        (Command::Tare, Outcome::NoReading, 0),
+        (Command::Undo, Outcome::NothingToUndo, 0),
+        (Command::Save { gain: None }, Outcome::NoReading, 0),
+        (Command::Info, Outcome::Done, 0),
+        (Command::SelfTest { indentation: 0 }, Outcome::Done, found),
+        (Command::Rate { every: 10 }, Outcome::Done, 0),
+        (Command::Forget, Outcome::Done, 0),
+    ] {
+        let mut bench = given_up();
+        bench.said.clear();
+        if bench.ask(command).is_some() {
+            bench.stored(Ok(()));
+        }
+        bench.steps(2_500, 20_000.0);
+        assert_eq!(bench.answers(), [(command.kind(), outcome, findings)]);
+    }
+}
+
+/// The linear fingertip with another transducer, 0 to 3.
+struct WithTransducer<const N: usize>;
+
+impl<const N: usize> Design for WithTransducer<N> {
+    const CONSTANTS: DesignConstants = DesignConstants {
+        transducer: model_tables::constants::Transducer {
+            kind: [
+                Linear::CONSTANTS.transducer.kind,
+                TransducerKind::Abp2 {
+                    address: 0x28,
+                    counts: [1_677_722, 15_099_494],
+                },
+                TransducerKind::Ms5837 { address: 0x76 },
+                TransducerKind::Dps310 { address: 0x77 },
+            ][N],
+            ..Linear::CONSTANTS.transducer
+        },
+        ..Linear::CONSTANTS
+    };
+    const PRESSURE_FRACTION_BITS: u32 = Linear::PRESSURE_FRACTION_BITS;
+    const LAST_RISE: PressureRise = Linear::LAST_RISE;
+
+    fn lookup(rise: PressureRise) -> Reading {
+        Linear::lookup(rise)
+    }
+}
+
+/// The report periods of two hellos: the first, and one at every tenth report.
+fn greeted_periods<D: Design>() -> [u32; 2] {
+    let mut station = Station::<D>::new(&BEGINNING);
+    let mut greeted = vec![];
+    let mut hear = |message: &Message| {
+        if let Message::Hello(hello) = message {
+            greeted.push(hello.report_period);
+        }
+    };
+    station.step(Microseconds(0), Err(Fault::SensorAbsent), &mut hear);
+    for command in [Command::Rate { every: 10 }, Command::Info] {
+        station.request(Microseconds(1), Request { sequence: 1, command }, &mut hear);
+    }
+    greeted.try_into().expect("two hellos")
+}
+
+/// As the README's table of transducers has them.
+#[test]
+fn the_hello_has_the_report_period_of_the_transducer() {
+    assert_eq!(greeted_periods::<WithTransducer<0>>(), [1_000, 10_000]);
+    assert_eq!(greeted_periods::<WithTransducer<1>>(), [8_000, 80_000]);
+    assert_eq!(greeted_periods::<WithTransducer<2>>(), [7_000, 70_000]);
+    assert_eq!(greeted_periods::<WithTransducer<3>>(), [14_000, 140_000]);
+}
+
+#[test]
+fn a_record_that_cannot_serve_qualifies_every_reading() {
+    for stored in [Stored::OtherDesign, Stored::Damaged, Stored::Unreadable] {
+        let mut bench = Bench::new(&Beginning { stored, ..BEGINNING });
+        bench.steps(400, 20_000.0);
+        let Some(Message::Report { report, .. }) = bench.said.last() else {
+            panic!("it reports");
+        };
+        assert_eq!(report.status().to_string(), "warning: calibration refused");
+        assert_eq!(report.outcome.map(|reading| reading.touch), Ok(Touch::Untouched));
+    }
+}
+
+proptest! {
+    #[test]
+    fn every_command_is_answered_once(commands in prop::collection::vec((0..7, 0..30_u64, 20_000..20_100_u32), 1..40)) {
+        let mut bench = Bench::zeroed();
+        let mut asked = 0;
+        for (which, ms, pascals) in commands {
+            let command = match which {
+                0 => Command::Tare,
+                1 => Command::Undo,
+                2 => Command::Save { gain: None },
+                3 => Command::Info,
+                4 => Command::SelfTest { indentation: 1 },
+                5 => Command::Rate { every: 3 },
+                _ => Command::Forget,
+            };
+            let to_store = bench.ask(command);
+            asked += 1;
+            bench.steps(ms, f64::from(pascals));
+            if to_store.is_some() {
+                bench.stored(Ok(()));
+            }
+        }
+        bench.steps(2_500, 20_000.0);
+        prop_assert_eq!(bench.answers().len(), asked);
+    }
+}

@@ -1,0 +1,323 @@
+//! Who watches the tasks, what is remembered across a reset, and when resets stop.
+//!
+//! - The watchdog is fed only while every task has reported within its time ([`Roster`]).
+//! - What ended a run is left in memory that a reset keeps ([`Breadcrumb`]), with the zero that served.
+//! - Resets in a row that nobody asked for end in a board that measures nothing and says so ([`Breadcrumb::start`]).
+//!
+//! A transducer that does not answer is the matter of its [`keeper`](crate::transducer::keeper).
+
+use crate::signal::zero::Zero;
+use crate::status::{LastFault, ResetCause, code_of, named_by};
+use crate::units::{Microseconds, Pressure};
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+
+/// A run that lasted this long was a good one, microseconds: later resets are counted from 1.
+pub const GOOD_RUN: u64 = 10_000_000;
+
+/// Resets in a row, each before [`GOOD_RUN`] was over, after which nothing is measured any more: neither the store
+/// nor the transducer is touched, as one of them may be what hangs.
+pub const RESET_LIMIT: u8 = 5;
+
+/// The tasks that must report, and how often.
+#[derive(Clone, Copy, Debug)]
+pub struct Roster<const TASKS: usize> {
+    /// Longest time between two reports of each, microseconds.
+    allowed: [u64; TASKS],
+    last: [Microseconds; TASKS],
+}
+
+impl<const TASKS: usize> Roster<TASKS> {
+    /// All tasks report at `now`.
+    pub const fn new(allowed: [u64; TASKS], now: Microseconds) -> Self {
+        Self {
+            allowed,
+            last: [now; TASKS],
+        }
+    }
+
+    /// A task is alive. A number that no task has is ignored.
+    #[inline]
+    pub fn report(&mut self, task: usize, now: Microseconds) {
+        if let Some(last) = self.last.get_mut(task) {
+            *last = now;
+        }
+    }
+
+    /// The first task that is late; the watchdog is fed only if there is none.
+    #[inline]
+    pub fn late(&self, now: Microseconds) -> Option<usize> {
+        (0..TASKS).find(|&task| now.0.saturating_sub(self.last[task].0) > self.allowed[task])
+    }
+}
+
+/// How far a start came: what a hang without another trace is told by.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Stage {
+    /// It is over: samples come.
+    Running = 0,
+    /// Clocks and peripherals are set up.
+    Board = 1,
+    /// The stored calibration is read.
+    Store = 2,
+    /// The first sample is awaited.
+    Transducer = 3,
+}
+
+/// What a run leaves for the next one. In memory that no start-up clears, so any bits may lie there first.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Breadcrumb {
+    /// What went wrong, and where.
+    pub fault: LastFault,
+    /// Which task, line or address; the [`Stage`] as long as nothing went wrong.
+    pub detail: u32,
+    /// Resets in a row that nobody asked for.
+    pub resets: u8,
+    /// Whether this run has lasted for [`GOOD_RUN`].
+    pub good: bool,
+    /// The design the zero is of: its hash.
+    pub design_hash: u64,
+    /// The zero that served.
+    pub zero: Option<Zero>,
+}
+
+/// Words of a [`Breadcrumb`] in memory.
+pub const WORDS: usize = 8;
+
+const MAGIC: u32 = 0x4642_5243;
+
+const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+
+fn check(words: &[u32; WORDS]) -> u32 {
+    let mut digest = CHECK.digest();
+    for word in &words[..WORDS - 1] {
+        digest.update(&word.to_le_bytes());
+    }
+    digest.finalize()
+}
+
+impl Breadcrumb {
+    /// The words to be kept.
+    pub fn to_words(&self) -> [u32; WORDS] {
+        let zero = self.zero.unwrap_or(Zero {
+            pressure: Pressure(0),
+            verified: false,
+        });
+        let flags = u32::from(self.good)
+            | u32::from(self.zero.is_some()) << 1
+            | u32::from(zero.verified) << 2
+            | u32::from(self.resets) << 8
+            | u32::from(code_of(&LastFault::CODES, self.fault)) << 16;
+        let mut words = [
+            MAGIC,
+            flags,
+            self.detail,
+            self.design_hash as u32,
+            (self.design_hash >> 32) as u32,
+            zero.pressure.0 as u32,
+            0,
+            0,
+        ];
+        words[WORDS - 1] = check(&words);
+        words
+    }
+
+    /// What was kept; nothing when the words are none that [`Breadcrumb::to_words`] gives.
+    pub fn from_words(words: &[u32; WORDS]) -> Option<Self> {
+        let [magic, flags, detail, low, high, zero, _, sum] = *words;
+        if magic != MAGIC || sum != check(words) {
+            return None;
+        }
+        let flag = |bit: u32| flags >> bit & 1 == 1;
+        Some(Self {
+            fault: named_by(&LastFault::CODES, (flags >> 16) as u8)?,
+            detail,
+            resets: (flags >> 8) as u8,
+            good: flag(0),
+            design_hash: u64::from(high) << 32 | u64::from(low),
+            zero: flag(1).then_some(Zero {
+                pressure: Pressure(zero as i32),
+                verified: flag(2),
+            }),
+        })
+    }
+
+    /// What the run before left, and what this run starts with. `found` is what the memory holds.
+    pub fn start(found: Option<Self>, cause: ResetCause, design_hash: u64) -> Start {
+        // After power was off the memory says nothing, whatever it looks like.
+        let asked = matches!(
+            cause,
+            ResetCause::PowerOn | ResetCause::BrownOut | ResetCause::Pin
+        );
+        let before = found.filter(|_| cause != ResetCause::PowerOn).unwrap_or_default();
+        let (fault, detail) = match (before.fault, cause) {
+            (LastFault::None, ResetCause::Watchdog) => (LastFault::Hang, before.detail),
+            (LastFault::None, _) => (LastFault::None, 0),
+            (fault, _) => (fault, before.detail),
+        };
+        let resets = match (asked, before.good) {
+            (true, _) => 0,
+            (false, true) => 1,
+            (false, false) => before.resets.saturating_add(1),
+        };
+        Start {
+            fault,
+            detail,
+            kept: before.zero.filter(|_| before.design_hash == design_hash),
+            give_up: resets > RESET_LIMIT,
+            crumb: Self {
+                fault: LastFault::None,
+                detail: Stage::Board as u32,
+                resets,
+                good: false,
+                design_hash,
+                zero: None,
+            },
+        }
+    }
+}
+
+/// How a run starts.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Start {
+    /// What ended the run before.
+    pub fault: LastFault,
+    /// Which task, line, address or stage.
+    pub detail: u32,
+    /// The zero that served then, if it is of this design.
+    pub kept: Option<Zero>,
+    /// Reset after reset: measure nothing, say so.
+    pub give_up: bool,
+    /// To be kept from now on.
+    pub crumb: Breadcrumb,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_watchdog_is_fed_only_while_every_task_reports() {
+        let mut roster = Roster::new([2_000, 50_000], Microseconds(0));
+        for ms in 0..40 {
+            roster.report(0, Microseconds(ms * 1000));
+            assert_eq!(roster.late(Microseconds(ms * 1000)), None);
+        }
+        // The second one reports in time, then the first hangs, then the second.
+        roster.report(1, Microseconds(40_000));
+        assert_eq!(roster.late(Microseconds(41_000)), None);
+        assert_eq!(roster.late(Microseconds(41_001)), Some(0));
+        roster.report(0, Microseconds(90_000));
+        assert_eq!(roster.late(Microseconds(90_000)), None);
+        roster.report(0, Microseconds(90_001));
+        assert_eq!(roster.late(Microseconds(90_001)), Some(1));
+        roster.report(9, Microseconds(90_001));
+        assert_eq!(roster.late(Microseconds(90_001)), Some(1));
+    }
+
+    const CRUMB: Breadcrumb = Breadcrumb {
+        fault: LastFault::Late,
+        detail: 2,
+        resets: 3,
+        good: false,
+        design_hash: 0x0123_4567_89AB_CDEF,
+        zero: Some(Zero {
+            pressure: Pressure(-42),
+            verified: true,
+        }),
+    };
+
+    #[test]
+    fn a_watchdog_reset_keeps_the_zero_and_says_what_hung() {
+        let start = Breadcrumb::start(Some(CRUMB), ResetCause::Watchdog, CRUMB.design_hash);
+        assert_eq!((start.fault, start.detail), (LastFault::Late, 2));
+        assert_eq!(start.kept, CRUMB.zero);
+        assert_eq!((start.crumb.resets, start.give_up), (4, false));
+        let other = Breadcrumb::start(Some(CRUMB), ResetCause::Watchdog, 1);
+        assert_eq!(other.kept, None);
+    }
+
+    #[test]
+    fn a_hang_without_a_trace_is_one_all_the_same() {
+        let start = Breadcrumb::start(None, ResetCause::Watchdog, 1);
+        assert_eq!((start.fault, start.kept), (LastFault::Hang, None));
+    }
+
+    #[test]
+    fn a_hang_while_it_starts_says_where() {
+        let first = Breadcrumb::start(None, ResetCause::PowerOn, 1);
+        let again = Breadcrumb::start(Some(first.crumb), ResetCause::Watchdog, 1);
+        assert_eq!(
+            (again.fault, again.detail),
+            (LastFault::Hang, Stage::Board as u32)
+        );
+        let left = Breadcrumb {
+            detail: Stage::Store as u32,
+            ..again.crumb
+        };
+        let third = Breadcrumb::start(Some(left), ResetCause::Watchdog, 1);
+        assert_eq!(
+            (third.fault, third.detail),
+            (LastFault::Hang, Stage::Store as u32)
+        );
+        assert_eq!(third.crumb.resets, 2);
+        // A button is no hang, wherever it was pressed.
+        let pressed = Breadcrumb::start(Some(left), ResetCause::Pin, 1);
+        assert_eq!((pressed.fault, pressed.detail), (LastFault::None, 0));
+    }
+
+    #[test]
+    fn power_and_the_button_start_afresh() {
+        let start = Breadcrumb::start(Some(CRUMB), ResetCause::PowerOn, CRUMB.design_hash);
+        assert_eq!(
+            (start.fault, start.kept, start.crumb.resets),
+            (LastFault::None, None, 0)
+        );
+        let start = Breadcrumb::start(Some(CRUMB), ResetCause::Pin, CRUMB.design_hash);
+        assert_eq!((start.fault, start.crumb.resets), (LastFault::Late, 0));
+    }
+
+    #[test]
+    fn a_loop_of_resets_ends_and_a_good_run_between_them_counts() {
+        let mut found = None;
+        for reset in 1..=RESET_LIMIT {
+            let start = Breadcrumb::start(found, ResetCause::Watchdog, 1);
+            assert_eq!((start.crumb.resets, start.give_up), (reset, false));
+            found = Some(start.crumb);
+        }
+        assert!(Breadcrumb::start(found, ResetCause::Watchdog, 1).give_up);
+        let good = found.map(|crumb| Breadcrumb { good: true, ..crumb });
+        assert_eq!(Breadcrumb::start(good, ResetCause::Watchdog, 1).crumb.resets, 1);
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_kept_is_found(fault in 0..LastFault::CODES.len(), detail in any::<u32>(), resets in any::<u8>(), flags in any::<[bool; 3]>(), hash in any::<u64>(), zero in any::<i32>()) {
+            let crumb = Breadcrumb {
+                fault: LastFault::CODES[fault].0,
+                detail,
+                resets,
+                good: flags[0],
+                design_hash: hash,
+                zero: flags[1].then_some(Zero { pressure: Pressure(zero), verified: flags[2] }),
+            };
+            prop_assert_eq!(Breadcrumb::from_words(&crumb.to_words()), Some(crumb));
+        }
+
+        #[test]
+        fn random_memory_is_no_breadcrumb(words in any::<[u32; WORDS]>(), magic in any::<bool>()) {
+            let mut words = words;
+            if magic {
+                words[0] = MAGIC;
+            }
+            prop_assert_eq!(Breadcrumb::from_words(&words), None);
+        }
+
+        #[test]
+        fn one_flipped_bit_is_no_breadcrumb(word in 0..WORDS, bit in 0..32) {
+            let mut words = CRUMB.to_words();
+            words[word] ^= 1_u32 << bit;
+            prop_assert_eq!(Breadcrumb::from_words(&words), None);
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! What the image adds to the library: the tasks, the transducer of the design on the board's port, and memory that a reset
+//! keeps.
+
+mod retained;
+mod tasks;
+mod transducer;

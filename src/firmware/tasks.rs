@@ -1,0 +1,319 @@
+//! The tasks of the firmware: [`signal`] makes reports, [`send`] puts them on the line, [`listen`] takes commands from
+//! it, [`remember`] stores the calibration. The first one feeds the watchdog, while all four report.
+
+use crate::firmware::retained;
+use crate::firmware::transducer::{self as chosen, Pace};
+use core::cell::RefCell;
+use core::sync::atomic::{AtomicU32, Ordering};
+use defmt_rtt as _;
+use embassy_executor::Spawner;
+use embassy_sync::blocking_mutex::ThreadModeMutex;
+use embassy_sync::blocking_mutex::raw::{NoopRawMutex, ThreadModeRawMutex};
+use embassy_sync::channel::Channel;
+use embassy_sync::signal::Signal;
+use embassy_time::{Delay, Duration, with_timeout};
+use fingertip::board::{self, Board, Clock, Ears, Line, Memory, SLOT, Watchdog};
+use fingertip::device::station::{Beginning, Station, ToStore};
+use fingertip::device::supervisor::{Breadcrumb, GOOD_RUN, Roster, Stage};
+use fingertip::image::ImageDesign;
+use fingertip::link::command::{self, Request};
+use fingertip::link::outbox::Outbox;
+use fingertip::link::telemetry::Message;
+use fingertip::link::wire::{Deframer, Encoded};
+use fingertip::signal::design::Design;
+use fingertip::signal::pipeline::Pipeline;
+use fingertip::signal::report::Report;
+use fingertip::status::{Fault, LastFault, Status, Stored};
+use fingertip::storage::store::{Identity, Store, StoreError};
+use fingertip::transducer::driver::Driver;
+use fingertip::transducer::keeper::Keeper;
+use fingertip::units::Microseconds;
+use static_cell::{ConstStaticCell, StaticCell};
+
+/// Every how many reports one goes to the log.
+const LOGGED: u32 = 250;
+
+/// From one report to the next, microseconds.
+const PERIOD: u32 = Pipeline::<ImageDesign>::PERIOD;
+
+/// From one look at the tasks, and one meal of the watchdog, to the next, microseconds.
+const MEALS: u64 = 16_000;
+
+/// From one note of the zero for the next run to the next, microseconds.
+const NOTES: u64 = 1_000_000;
+
+/// Tasks that wait for the host wake so often to report, and may be late by as much again; who sends frames is known by
+/// leaving none. The memory is given the time of an erasure.
+const IDLE: Duration = Duration::from_millis(50);
+const ALLOWED: [u64; 3] = [150_000, 150_000, 5_000_000];
+const SEND: usize = 0;
+const LISTEN: usize = 1;
+const REMEMBER: usize = 2;
+
+/// 8 ms of reports.
+const WAITING: usize = 8;
+
+/// Frames waiting for the line.
+struct Waiting {
+    frames: RefCell<Outbox<'static, WAITING>>,
+    more: Signal<NoopRawMutex, ()>,
+}
+
+/// The frames themselves, and the one on the line.
+static FRAMES: ConstStaticCell<[Encoded; WAITING]> = ConstStaticCell::new([Encoded::NOTHING; WAITING]);
+static SENT: ConstStaticCell<Encoded> = ConstStaticCell::new(Encoded::NOTHING);
+static OUTBOX: StaticCell<Waiting> = StaticCell::new();
+
+impl Waiting {
+    fn put(&self, message: &Message) {
+        self.frames.borrow_mut().put(message);
+        self.more.signal(());
+    }
+}
+
+/// Commands waiting for the next report. When full the newest is refused, and counted.
+static REQUESTS: Channel<ThreadModeRawMutex, Request, 2> = Channel::new();
+
+/// What came over the line and was no command.
+static REFUSED: AtomicU32 = AtomicU32::new(0);
+
+/// To be stored, and what came of it.
+static TO_STORE: Channel<ThreadModeRawMutex, ToStore, 1> = Channel::new();
+static STORED: Channel<ThreadModeRawMutex, (Result<(), StoreError>, u32), 1> = Channel::new();
+
+/// Who reported when.
+static ROSTER: ThreadModeMutex<RefCell<Roster<3>>> =
+    ThreadModeMutex::new(RefCell::new(Roster::new(ALLOWED, Microseconds(0))));
+
+fn alive(task: usize, clock: Clock) {
+    ROSTER.lock(|roster| roster.borrow_mut().report(task, clock.now()));
+}
+
+#[embassy_executor::main]
+async fn main(spawner: Spawner) {
+    let constants = ImageDesign::CONSTANTS;
+    // Before anything that can hang, so that every reset is counted.
+    let reset_cause = board::begin();
+    let start = Breadcrumb::start(retained::read(), reset_cause, constants.hash);
+    retained::write(&start.crumb);
+    let board = Board::take(start.give_up);
+    let number = |text: &str| text.parse().unwrap_or(u8::MAX);
+    let firmware = [
+        number(env!("CARGO_PKG_VERSION_MAJOR")),
+        number(env!("CARGO_PKG_VERSION_MINOR")),
+        number(env!("CARGO_PKG_VERSION_PATCH")),
+    ];
+    let identity = Identity {
+        design_hash: constants.hash,
+        table_version: constants.table_version,
+        firmware,
+        range: constants.transducer.range,
+    };
+    let (store, stored) = if start.give_up {
+        (None, Stored::Unreadable)
+    } else {
+        retained::enter(Stage::Store);
+        let (store, stored) = Store::open(board.memory, SLOT, identity).await;
+        (Some(store), stored)
+    };
+    retained::enter(Stage::Transducer);
+    let beginning = Beginning {
+        reset_cause,
+        start,
+        stored,
+        stored_sequence: store.as_ref().map_or(0, Store::sequence),
+        calibration: store.as_ref().and_then(Store::calibration),
+        clock_failed: !board.crystal,
+        firmware,
+    };
+    defmt::info!(
+        "fingertip {=str}, design {=str} ({=u64:016x}), reset by {}",
+        env!("CARGO_PKG_VERSION"),
+        constants.name,
+        constants.hash,
+        defmt::Display2Format(&reset_cause)
+    );
+    let clock = board.clock;
+    let waiting = OUTBOX.init_with(|| Waiting {
+        frames: RefCell::new(Outbox::new(FRAMES.take().each_mut())),
+        more: Signal::new(),
+    });
+    spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
+    spawner.spawn(listen(board.ears, clock).expect("spawned once"));
+    spawner.spawn(remember(store, clock).expect("spawned once"));
+    let transducer = board.port.map(chosen::transducer);
+    signal(clock, transducer, waiting, board.watchdog, &beginning).await
+}
+
+/// Turns samples into reports, and answers commands. Period: one sample, 1 ms of a converter. Deadline: the next one;
+/// when late, samples are lost, which is reported and counted. Feeds the watchdog between samples or the reasons why
+/// there are none, as long as the other tasks report too; who does not is left for the next run to say. Without a
+/// transducer it measures nothing and says so at the same pace.
+async fn signal(
+    clock: Clock,
+    transducer: Option<impl Driver>,
+    waiting: &'static Waiting,
+    mut watchdog: Watchdog,
+    beginning: &Beginning,
+) -> ! {
+    let mut station = Station::<ImageDesign>::new(beginning);
+    let mut crumb = Breadcrumb {
+        detail: Stage::Running as u32,
+        ..beginning.start.crumb
+    };
+    let mut log = Log::default();
+    let mut pace = Pace::new(transducer.is_some());
+    let mut keeper = transducer.map(|transducer| Keeper::new(transducer, Delay));
+    let (mut last_sample, mut next_meal, mut next_note) = (None, 0, 0);
+    loop {
+        pace.wait().await;
+        let sample = match &mut keeper {
+            Some(keeper) => keeper.next().await,
+            None => Err(Fault::ResetLoop),
+        };
+        let now = clock.now();
+        if now.0 >= next_meal && waiting.frames.borrow().is_empty() {
+            // All that was put there before was taken.
+            alive(SEND, clock);
+        }
+        if let Ok(sample) = sample {
+            let measured = now.0.saturating_sub(u64::from(sample.age));
+            let lost = missing(last_sample.replace(measured), measured);
+            station.counters.samples_lost = station.counters.samples_lost.saturating_add(lost);
+        }
+        let report = station.step(now, sample, |message| waiting.put(message));
+        log.report(&report);
+        if let Ok(request) = REQUESTS.try_receive()
+            && let Some(to_store) = station.request(now, request, |message| waiting.put(message))
+        {
+            // The station asks for one at a time.
+            let _ = TO_STORE.try_send(to_store);
+        }
+        if now.0 < next_meal {
+            continue;
+        }
+        next_meal = now.0.saturating_add(MEALS);
+        if let Ok((result, sequence)) = STORED.try_receive() {
+            station.stored(now, result, sequence, |message| waiting.put(message));
+        }
+        station.counters.frames_dropped = waiting.frames.borrow().dropped();
+        station.counters.commands_refused = REFUSED.load(Ordering::Relaxed);
+        match ROSTER.lock(|roster| roster.borrow().late(now)) {
+            None => watchdog.pet(),
+            Some(task) => retained::blame(LastFault::Late, task as u32),
+        }
+        if now.0 >= next_note {
+            next_note = now.0.saturating_add(NOTES);
+            crumb.good = now.0 >= GOOD_RUN;
+            crumb.zero = station.zero();
+            retained::write(&crumb);
+        }
+    }
+}
+
+/// Samples missing between the last one and the one measured at this time.
+fn missing(last: Option<u64>, measured: u64) -> u32 {
+    last.map_or(0, |last| {
+        let passed = u32::try_from(measured.saturating_sub(last)).unwrap_or(u32::MAX);
+        // Rounded, because the time of a block is known to a conversion or two.
+        (passed.saturating_add(PERIOD / 2) / PERIOD).saturating_sub(1)
+    })
+}
+
+/// Sends frames. Period: as they come. Deadline: a period on average (a report takes 0.5 ms on the line); when late,
+/// the queue drops its oldest, and the signal task is none the later for it.
+#[embassy_executor::task]
+async fn send(mut line: Line, waiting: &'static Waiting, mut frame: &'static mut Encoded) {
+    loop {
+        waiting.more.wait().await;
+        while waiting.frames.borrow_mut().take(&mut frame) {
+            // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
+            let _ = line.write(frame.as_slice()).await;
+        }
+    }
+}
+
+/// Takes commands. Period: as they come. Deadline: the ring of bytes is full, 2.8 ms of a line that never pauses; when
+/// late, bytes are lost, which is counted. Work is bounded by the rate of the line, and other tasks run in between.
+#[embassy_executor::task]
+async fn listen(mut ears: Ears, clock: Clock) {
+    let mut deframer = Deframer::default();
+    let mut bytes = [0; 32];
+    loop {
+        alive(LISTEN, clock);
+        let heard = match with_timeout(IDLE, ears.read(&mut bytes)).await {
+            Ok(Ok(length)) => bytes.get(..length).unwrap_or(&[]),
+            Ok(Err(_lost)) => {
+                refuse();
+                &[]
+            }
+            Err(_idle) => continue,
+        };
+        for &byte in heard {
+            let taken = match deframer.push(byte) {
+                None => continue,
+                Some(body) => body.and_then(|body| command::read_body(&body)),
+            };
+            if !taken.is_ok_and(|request| REQUESTS.try_send(request).is_ok()) {
+                refuse();
+            }
+        }
+        embassy_futures::yield_now().await;
+    }
+}
+
+fn refuse() {
+    // Only this task counts, and one core has no exclusive access to lose.
+    REFUSED.store(
+        REFUSED.load(Ordering::Relaxed).saturating_add(1),
+        Ordering::Relaxed,
+    );
+}
+
+/// Stores the calibration. Period: when asked for. Deadline: none; other tasks run meanwhile. Without a store every save
+/// fails.
+#[embassy_executor::task]
+async fn remember(mut store: Option<Store<Memory>>, clock: Clock) {
+    loop {
+        alive(REMEMBER, clock);
+        if let Ok(ToStore(calibration)) = with_timeout(IDLE, TO_STORE.receive()).await {
+            let result = match &mut store {
+                Some(store) => store.save(calibration).await,
+                None => Err(StoreError::Failed),
+            };
+            let sequence = store.as_ref().map_or(0, Store::sequence);
+            STORED.send((result, sequence)).await;
+        }
+    }
+}
+
+/// What goes to the debugger: every change of status, and one report in [`LOGGED`].
+#[derive(Default)]
+struct Log {
+    reports: u32,
+    status: Option<Status>,
+}
+
+impl Log {
+    fn report(&mut self, report: &Report) {
+        let status = report.status();
+        if self.status != Some(status) {
+            self.status = Some(status);
+            defmt::info!("{=u64} us: {}", report.time.0, defmt::Display2Format(&status));
+        }
+        self.reports += 1;
+        if self.reports < LOGGED {
+            return;
+        }
+        self.reports = 0;
+        if let Ok(measurement) = report.outcome {
+            defmt::info!(
+                "{=u64} us: {=i32} Pa over rest, {=i32} uN, {=i32} nm",
+                report.time.0,
+                measurement.pressure_rise.0 >> ImageDesign::PRESSURE_FRACTION_BITS,
+                measurement.force.0,
+                measurement.indentation.0
+            );
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! The serial line, both ways: frames on the [`wire`], what the board sends ([`telemetry`], from an [`outbox`]) and what the
+//! host may ask ([`command`]). `PROTOCOL.md` beside this file is the page to write a client from.
+
+pub mod command;
+pub mod outbox;
+pub mod telemetry;
+pub mod wire;

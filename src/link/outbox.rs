@@ -1,0 +1,120 @@
+//! Frames waiting for the line. They are numbered and built where they wait, and handed over without being copied; when
+//! there is no room the oldest goes, and is counted.
+
+use crate::link::telemetry::{self, Message};
+use crate::link::wire::Encoded;
+
+/// Room for `FRAMES` waiting frames, at least one.
+#[derive(Debug)]
+pub struct Outbox<'a, const FRAMES: usize> {
+    frames: [&'a mut Encoded; FRAMES],
+    /// Place of the oldest one waiting.
+    oldest: usize,
+    waiting: usize,
+    sequence: u16,
+    dropped: u32,
+}
+
+impl<'a, const FRAMES: usize> Outbox<'a, FRAMES> {
+    /// Nothing waits.
+    pub const fn new(frames: [&'a mut Encoded; FRAMES]) -> Self {
+        Self {
+            frames,
+            oldest: 0,
+            waiting: 0,
+            sequence: 0,
+            dropped: 0,
+        }
+    }
+
+    /// Puts a message behind the others.
+    #[inline(never)] // several places speak; one copy of the encoder is enough
+    pub fn put(&mut self, message: &Message) {
+        if self.waiting == FRAMES {
+            self.oldest = (self.oldest + 1) % FRAMES;
+            self.waiting -= 1;
+            self.dropped = self.dropped.saturating_add(1);
+        }
+        let place = (self.oldest + self.waiting) % FRAMES;
+        if let Some(frame) = self.frames.get_mut(place) {
+            telemetry::write(frame, self.sequence, self.dropped as u16, message);
+            self.sequence = self.sequence.wrapping_add(1);
+            self.waiting += 1;
+        }
+    }
+
+    /// Exchanges `frame`, which was sent, for the oldest one; whether there was any.
+    #[allow(clippy::mut_mut)] // frames change hands, not their bytes
+    pub fn take(&mut self, frame: &mut &'a mut Encoded) -> bool {
+        if self.waiting == 0 {
+            return false;
+        }
+        if let Some(oldest) = self.frames.get_mut(self.oldest) {
+            core::mem::swap(oldest, frame);
+        }
+        self.oldest = (self.oldest + 1) % FRAMES;
+        self.waiting -= 1;
+        true
+    }
+
+    /// Whether nothing waits.
+    pub const fn is_empty(&self) -> bool {
+        self.waiting == 0
+    }
+
+    /// Frames dropped since reset.
+    pub const fn dropped(&self) -> u32 {
+        self.dropped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::telemetry::{Frame, decode};
+    use crate::signal::report::Report;
+    use crate::status::Fault;
+    use crate::units::Microseconds;
+    use proptest::prelude::*;
+    use std::collections::VecDeque;
+
+    fn message(time: u64) -> Message {
+        Message::Report {
+            report: Report {
+                time: Microseconds(time),
+                outcome: Err(Fault::Zeroing),
+            },
+            pressure_fraction_bits: 0,
+        }
+    }
+
+    proptest! {
+        /// Beside a queue of whole frames with the same rule.
+        #[test]
+        fn frames_come_out_in_order_whole_and_numbered_the_oldest_dropped(taken in prop::collection::vec(any::<bool>(), 1..200)) {
+            let mut bytes: [Encoded; 5] = core::array::from_fn(|_| Encoded::NOTHING);
+            let [a, b, c, d, mut hand] = bytes.each_mut();
+            let mut outbox = Outbox::new([a, b, c, d]);
+            let (mut expected, mut put, mut dropped) = (VecDeque::new(), 0_u16, 0_u16);
+            for take in taken {
+                if take {
+                    prop_assert_eq!(outbox.is_empty(), expected.is_empty());
+                    prop_assert_eq!(outbox.take(&mut hand), !expected.is_empty());
+                    if let Some(frame) = expected.pop_front() {
+                        let (_, stuffed) = hand.as_slice().split_last().expect("never empty");
+                        prop_assert_eq!(decode(stuffed), Ok(frame));
+                    }
+                } else {
+                    outbox.put(&message(u64::from(put)));
+                    if expected.len() == 4 {
+                        let _ = expected.pop_front();
+                        dropped += 1;
+                    }
+                    expected.push_back(Frame { sequence: put, dropped, message: message(u64::from(put)) });
+                    put += 1;
+                }
+                prop_assert_eq!(outbox.dropped(), u32::from(dropped));
+            }
+        }
+    }
+}

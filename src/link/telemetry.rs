@@ -1,0 +1,308 @@
+//! What the board says: a report each period, a hello once a second, an answer to each command. `PROTOCOL.md` beside
+//! this file has the layout of every body.
+//!
+//! A frame of another version, an unknown kind, code or length is refused as a whole: none of it is a number.
+
+use crate::link::command::{CommandKind, Outcome};
+use crate::link::wire::{DecodeError, Deframer, Encoded, PROTOCOL_VERSION, Reader, unstuff};
+use crate::signal::report::{Measurement, Report, Sigma};
+use crate::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings, code_of, named_by};
+use crate::units::Microseconds;
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
+
+const HEADER: usize = 14;
+const READING: usize = HEADER + 28;
+const FAULT: usize = HEADER + 1;
+const HELLO: usize = HEADER + 47;
+const ANSWER: usize = HEADER + 6;
+
+/// Who is speaking, once a second and when asked.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Hello {
+    /// When.
+    pub time: Microseconds,
+    /// Version of the firmware: major, minor, patch.
+    pub firmware: [u8; 3],
+    /// Why the chip was reset last.
+    pub reset_cause: ResetCause,
+    /// Hash of the design whose tables are in the image.
+    pub design_hash: u64,
+    /// Version of those tables' layout.
+    pub table_version: u32,
+    /// From one report on the wire to the next, microseconds.
+    pub report_period: u32,
+    /// What became of the stored calibration.
+    pub stored: Stored,
+    /// What ended the run before this one.
+    pub last_fault: LastFault,
+    /// Resets in a row that nobody asked for.
+    pub resets_in_a_row: u8,
+    /// Which task, line or address, as `last_fault` says.
+    pub last_fault_detail: u32,
+    /// Number of the stored calibration.
+    pub stored_sequence: u32,
+    /// Samples lost since reset.
+    pub samples_lost: u32,
+    /// Wild samples replaced since reset.
+    pub samples_rejected: u32,
+    /// Frames dropped since reset because the line was not free.
+    pub frames_dropped: u32,
+    /// What came over the line since reset and was no command: frames, and stretches that were lost.
+    pub commands_refused: u32,
+}
+
+/// What came of a command.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Answer {
+    /// When.
+    pub time: Microseconds,
+    /// Which command.
+    pub command: CommandKind,
+    /// Its sequence number, as it came.
+    pub command_sequence: u16,
+    /// What came of it.
+    pub outcome: Outcome,
+    /// Of a self-test: what it found, one bit each.
+    pub findings: u16,
+}
+
+/// What one frame says.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Message {
+    /// A report of the signal path.
+    Report {
+        /// The report.
+        report: Report,
+        /// `k`: a count of its pressure rise is `1 / 2^k` pascal. 0 to 31; a fault carries none and reads 0.
+        pressure_fraction_bits: u8,
+    },
+    /// Who is speaking.
+    Hello(Hello),
+    /// What came of a command.
+    Answer(Answer),
+}
+
+/// A message and its place in the stream.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Frame {
+    /// Counts frames, wraps.
+    pub sequence: u16,
+    /// Frames dropped since reset, wraps.
+    pub dropped: u16,
+    /// What it says.
+    pub message: Message,
+}
+
+/// The bytes of a frame, ready for the wire.
+pub fn encode(frame: &Frame) -> Encoded {
+    let mut encoded = Encoded::NOTHING;
+    write(&mut encoded, frame.sequence, frame.dropped, &frame.message);
+    encoded
+}
+
+/// The same, where the bytes are to be sent from.
+pub fn write(body: &mut Encoded, sequence: u16, dropped: u16, message: &Message) {
+    body.begin();
+    let mut header = |kind: u8, time: Microseconds| {
+        body.put([PROTOCOL_VERSION, kind]);
+        body.put(sequence.to_le_bytes());
+        body.put(time.0.to_le_bytes());
+        body.put(dropped.to_le_bytes());
+    };
+    match message {
+        Message::Report {
+            report,
+            pressure_fraction_bits,
+        } => match report.outcome {
+            Ok(measurement) => {
+                header(1, report.time);
+                body.put(measurement.warnings.bits().to_le_bytes());
+                body.put([*pressure_fraction_bits, code_of(&Touch::CODES, measurement.touch)]);
+                body.put(measurement.pressure_rise.0.to_le_bytes());
+                body.put(measurement.force.0.to_le_bytes());
+                body.put(measurement.indentation.0.to_le_bytes());
+                body.put(measurement.sigma.pressure_rise.0.to_le_bytes());
+                body.put(measurement.sigma.force.0.to_le_bytes());
+                body.put(measurement.sigma.indentation.0.to_le_bytes());
+            }
+            Err(fault) => {
+                header(2, report.time);
+                body.put([code_of(&Fault::CODES, fault)]);
+            }
+        },
+        Message::Hello(hello) => {
+            header(3, hello.time);
+            write_hello(body, hello);
+        }
+        Message::Answer(answer) => {
+            header(4, answer.time);
+            body.put([answer.command.code()]);
+            body.put(answer.command_sequence.to_le_bytes());
+            body.put([code_of(&Outcome::CODES, answer.outcome)]);
+            body.put(answer.findings.to_le_bytes());
+        }
+    }
+    body.finish();
+}
+
+fn write_hello(body: &mut Encoded, hello: &Hello) {
+    body.put(hello.firmware);
+    body.put([code_of(&ResetCause::CODES, hello.reset_cause)]);
+    body.put(hello.design_hash.to_le_bytes());
+    body.put(hello.table_version.to_le_bytes());
+    body.put(hello.report_period.to_le_bytes());
+    body.put([
+        code_of(&Stored::CODES, hello.stored),
+        code_of(&LastFault::CODES, hello.last_fault),
+        hello.resets_in_a_row,
+    ]);
+    for number in [
+        hello.last_fault_detail,
+        hello.stored_sequence,
+        hello.samples_lost,
+        hello.samples_rejected,
+        hello.frames_dropped,
+        hello.commands_refused,
+    ] {
+        body.put(number.to_le_bytes());
+    }
+}
+
+/// The frame in the bytes between two zeros (the zeros themselves left out).
+///
+/// # Errors
+/// [`DecodeError`] for anything that [`encode`] would not have written.
+pub fn decode(stuffed: &[u8]) -> Result<Frame, DecodeError> {
+    read_body(&unstuff(stuffed)?)
+}
+
+fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
+    if body.len() < HEADER {
+        return Err(DecodeError::Short);
+    }
+    let mut fields = Reader(body);
+    let [version, kind] = fields.take()?;
+    if version != PROTOCOL_VERSION {
+        return Err(DecodeError::Version(version));
+    }
+    let sequence = u16::from_le_bytes(fields.take()?);
+    let time = Microseconds(u64::from_le_bytes(fields.take()?));
+    let dropped = u16::from_le_bytes(fields.take()?);
+    let expected = match kind {
+        1 => READING,
+        2 => FAULT,
+        3 => HELLO,
+        4 => ANSWER,
+        _ => return Err(DecodeError::Kind(kind)),
+    };
+    if body.len() != expected {
+        return Err(DecodeError::Length);
+    }
+    let message = match kind {
+        1 => {
+            let (measurement, pressure_fraction_bits) = read_measurement(&mut fields)?;
+            Message::Report {
+                report: Report {
+                    time,
+                    outcome: Ok(measurement),
+                },
+                pressure_fraction_bits,
+            }
+        }
+        2 => {
+            let [code] = fields.take()?;
+            let fault = named_by(&Fault::CODES, code).ok_or(DecodeError::Field(14))?;
+            Message::Report {
+                report: Report {
+                    time,
+                    outcome: Err(fault),
+                },
+                pressure_fraction_bits: 0,
+            }
+        }
+        3 => Message::Hello(read_hello(&mut fields, time)?),
+        _ => {
+            let [command] = fields.take()?;
+            let command_sequence = u16::from_le_bytes(fields.take()?);
+            let [outcome] = fields.take()?;
+            Message::Answer(Answer {
+                time,
+                command: CommandKind::from_code(command).ok_or(DecodeError::Field(14))?,
+                command_sequence,
+                outcome: named_by(&Outcome::CODES, outcome).ok_or(DecodeError::Field(17))?,
+                findings: u16::from_le_bytes(fields.take()?),
+            })
+        }
+    };
+    Ok(Frame {
+        sequence,
+        dropped,
+        message,
+    })
+}
+
+fn read_measurement(fields: &mut Reader<'_>) -> Result<(Measurement, u8), DecodeError> {
+    let bits = u16::from_le_bytes(fields.take()?);
+    let warnings = Warnings::from_bits(bits).ok_or(DecodeError::Field(14))?;
+    let [pressure_fraction_bits, touch] = fields.take()?;
+    if pressure_fraction_bits > 31 {
+        return Err(DecodeError::Field(16));
+    }
+    let touch = named_by(&Touch::CODES, touch).ok_or(DecodeError::Field(17))?;
+    let mut number = || fields.take().map(i32::from_le_bytes);
+    let measurement = Measurement {
+        pressure_rise: PressureRise(number()?),
+        force: Micronewtons(number()?),
+        indentation: Nanometres(number()?),
+        sigma: Sigma {
+            pressure_rise: PressureRise(number()?),
+            force: Micronewtons(number()?),
+            indentation: Nanometres(number()?),
+        },
+        touch,
+        warnings,
+    };
+    Ok((measurement, pressure_fraction_bits))
+}
+
+fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<Hello, DecodeError> {
+    let firmware = fields.take()?;
+    let [reset_cause] = fields.take()?;
+    let design_hash = u64::from_le_bytes(fields.take()?);
+    let table_version = u32::from_le_bytes(fields.take()?);
+    let report_period = u32::from_le_bytes(fields.take()?);
+    let [stored, last_fault, resets_in_a_row] = fields.take()?;
+    let mut number = || fields.take().map(u32::from_le_bytes);
+    Ok(Hello {
+        time,
+        firmware,
+        reset_cause: named_by(&ResetCause::CODES, reset_cause).ok_or(DecodeError::Field(17))?,
+        design_hash,
+        table_version,
+        report_period,
+        stored: named_by(&Stored::CODES, stored).ok_or(DecodeError::Field(34))?,
+        last_fault: named_by(&LastFault::CODES, last_fault).ok_or(DecodeError::Field(35))?,
+        resets_in_a_row,
+        last_fault_detail: number()?,
+        stored_sequence: number()?,
+        samples_lost: number()?,
+        samples_rejected: number()?,
+        frames_dropped: number()?,
+        commands_refused: number()?,
+    })
+}
+
+/// Frames out of a stream of bytes that come one at a time.
+#[derive(Debug, Default)]
+pub struct Decoder(Deframer);
+
+impl Decoder {
+    /// Takes the next byte; at the zero that closes a frame, what the frame says. Zeros alone say nothing.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Frame, DecodeError>> {
+        let body = self.0.push(byte)?;
+        Some(body.and_then(|body| read_body(&body)))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,151 @@
+//! What is known of this one fingertip beside its design: values that the calibration record stores.
+
+use crate::signal::scale::Scale;
+use crate::signal::temperature;
+use crate::units::{Centidegrees, Millipascals, Pressure};
+use model_tables::constants::Quantity;
+use model_tables::units::PressureRise;
+
+/// Largest gain trim that is believed, parts in a million: 10 %.
+pub const LARGEST_GAIN: i32 = 100_000;
+
+/// The calibration of one fingertip; the default is none.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Calibration {
+    /// The zero, seen untouched; in the transducer's own quantity.
+    pub zero: Option<Millipascals>,
+    /// The transducer's temperature when that zero was stored.
+    pub temperature: Option<Centidegrees>,
+    /// What temperature adds to the zero, millipascals a kelvin, at most
+    /// [`LARGEST_COEFFICIENT`](temperature::LARGEST_COEFFICIENT) either way.
+    pub coefficient: i32,
+    /// Added to the pressure rise, parts in a million of it, at most [`LARGEST_GAIN`] either way.
+    pub gain: i32,
+}
+
+impl Calibration {
+    /// Whether every value is one that can be.
+    pub fn is_plausible(&self, range: [i32; 2]) -> bool {
+        let span = i64::from(range[1]) - i64::from(range[0]);
+        // Gauge or absolute, a fingertip rests within its transducer's range or some of it and an atmosphere beside.
+        let beyond = 1000 * (span + 110_000);
+        self.zero.is_none_or(|zero| i64::from(zero.0).abs() <= beyond)
+            && self.coefficient.unsigned_abs() <= temperature::LARGEST_COEFFICIENT.unsigned_abs()
+            && self.gain.unsigned_abs() <= LARGEST_GAIN.unsigned_abs()
+    }
+
+    /// This with a new zero; where the old one was at another temperature, the two give the coefficient. Not of an absolute
+    /// transducer: between its two zeros the air changed too, and what of the difference is temperature cannot be told.
+    #[must_use]
+    pub fn rezeroed(self, zero: Millipascals, temperature: Option<Centidegrees>, quantity: Quantity) -> Self {
+        let coefficient = match (self.zero, self.temperature, temperature) {
+            (Some(before), Some(then), Some(now)) if quantity == Quantity::Gauge => {
+                temperature::coefficient([before, zero], [then, now]).unwrap_or(self.coefficient)
+            }
+            _ => self.coefficient,
+        };
+        Self {
+            zero: Some(zero),
+            temperature,
+            coefficient,
+            ..self
+        }
+    }
+
+    /// The zero in counts of `1 / 2^fraction_bits` pascal.
+    pub fn zero_counts(&self, scale: Scale) -> Option<Pressure> {
+        self.zero.map(|zero| scale.pressure(zero))
+    }
+}
+
+/// The gain trim, ready to be applied.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Gain(i32);
+
+impl Gain {
+    /// A gain of `1 + trim / 10^6`, `trim` at most [`LARGEST_GAIN`] either way.
+    pub const fn new(trim: i32) -> Self {
+        // 1.1 * 2^24.
+        Self((((1_000_000 + trim as i64) << 24) / 1_000_000) as i32)
+    }
+
+    /// A rise times the gain, held at the ends of what a rise can be.
+    #[inline]
+    pub const fn apply_to(self, rise: PressureRise) -> PressureRise {
+        // 2^31 * 2^25.
+        PressureRise::held((rise.0 as i64 * self.0 as i64) >> 24)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gain_is_a_trim_in_parts_per_million() {
+        let apply = |trim, rise| Gain::new(trim).apply_to(PressureRise(rise)).0;
+        assert_eq!(apply(0, 123_456_789), 123_456_789);
+        assert_eq!(apply(0, i32::MIN), -i32::MAX);
+        assert!((apply(25_000, 1_000_000) - 1_025_000).abs() <= 1);
+        assert_eq!(apply(LARGEST_GAIN, i32::MAX), i32::MAX);
+    }
+
+    #[test]
+    fn a_second_zero_at_another_temperature_gives_the_coefficient() {
+        let rezeroed = |calibration: Calibration, zero, temperature| {
+            calibration.rezeroed(
+                Millipascals(zero),
+                Some(Centidegrees(temperature)),
+                Quantity::Gauge,
+            )
+        };
+        let cold = rezeroed(Calibration::default(), 2_000_000, 2_000);
+        assert_eq!(cold.coefficient, 0);
+        let warm = rezeroed(cold, 2_020_000, 3_000);
+        assert_eq!(
+            (warm.coefficient, warm.temperature),
+            (2_000, Some(Centidegrees(3_000)))
+        );
+        let same = rezeroed(warm, 2_021_000, 3_010);
+        assert_eq!(same.coefficient, 2_000);
+    }
+
+    #[test]
+    fn two_zeros_of_an_absolute_transducer_say_nothing_of_temperature() {
+        let zeroed = |calibration: Calibration, zero, temperature| {
+            calibration.rezeroed(
+                Millipascals(zero),
+                Some(Centidegrees(temperature)),
+                Quantity::Absolute,
+            )
+        };
+        // 10 K and 3 hPa of weather apart.
+        let cold = zeroed(Calibration::default(), 101_300_000, 2_000);
+        let warm = zeroed(cold, 101_600_000, 3_000);
+        assert_eq!(warm.coefficient, 0);
+        assert_eq!(warm.zero, Some(Millipascals(101_600_000)));
+    }
+
+    #[test]
+    fn values_that_cannot_be_are_not_believed() {
+        let range = [0, 100_000];
+        let calibration = Calibration::default();
+        assert!(calibration.is_plausible(range));
+        for wrong in [
+            Calibration {
+                zero: Some(Millipascals(211_000_000)),
+                ..calibration
+            },
+            Calibration {
+                gain: LARGEST_GAIN + 1,
+                ..calibration
+            },
+            Calibration {
+                coefficient: i32::MIN,
+                ..calibration
+            },
+        ] {
+            assert!(!wrong.is_plausible(range), "{wrong:?}");
+        }
+    }
+}

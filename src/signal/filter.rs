@@ -1,0 +1,197 @@
+//! Pressure rise -> the same with less noise and without wild samples, exactly one block later.
+//!
+//! The block average is the main filter. This one adds the shortest symmetric kernel, 1-2-1 over 4: white noise
+//! falls to sqrt(6)/4 = 0.61 of itself, a ramp passes unchanged, and the delay is one block at every
+//! frequency, so a time stamp can take it back exactly.
+//!
+//! The block that is reported has one neighbour on each side, which tells a wild sample (flipped bits) from a press
+//! without any further delay: a fingertip does not leap off its line and back onto it within two blocks. Such a sample
+//! is replaced by what its neighbours say, and counted. Where a leap may be a press or not, or is faster than any
+//! press, there is [`Fault::Jump`] and no number.
+
+use crate::status::{Fault, Warnings};
+use crate::units::Pressure;
+use model_tables::constants::DesignConstants;
+use model_tables::units::PressureRise;
+
+/// By how many blocks the output lags the newest input; one, because it is about the one before.
+pub const GROUP_DELAY: u32 = 1;
+
+/// A bend of three blocks that noise does not explain, in grains of the transducer: a second difference has 2.4 times the
+/// noise of a block, so white noise of a whole grain gets there once in a thousand blocks, which then are not averaged;
+/// a converter's, a tenth of that, never.
+const LEAP_GRAINS: i64 = 8;
+
+/// The fastest press there is takes this long over the whole table, microseconds: 2.5 mm at 0.6 m/s.
+const FASTEST_PRESS: u64 = 4_000;
+
+/// Blocks without a number after a leap that no press makes. One that comes back within them leaves no trace.
+const JUMP_HOLD: u8 = 8;
+
+/// How far a rise may leap or bend from one block to the next, counts.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Leaps {
+    /// Above: not noise.
+    pub noise: i64,
+    /// Above: no press.
+    pub press: i64,
+}
+
+impl Leaps {
+    /// The leaps of a design whose blocks come every `period` microseconds.
+    pub const fn of(constants: &DesignConstants, fraction_bits: u32, period: u32) -> Self {
+        let noise =
+            Pressure::from_millipascals(constants.transducer.grain() * LEAP_GRAINS, fraction_bits).0 as i64;
+        let span = constants.maximum_pressure.saturating_sub(constants.rest_pressure);
+        // Below 2^31 * 2^32 / 4000 before the unit, which is at most 2^16 and clamped.
+        let press = span as i64 * period as i64 * 1000 / FASTEST_PRESS as i64;
+        let press = Pressure::from_millipascals(press, fraction_bits).0 as i64;
+        Self {
+            noise,
+            press: if press > 2 * noise { press } else { 2 * noise },
+        }
+    }
+}
+
+/// One block as the filter keeps it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Block {
+    rise: PressureRise,
+    warnings: Warnings,
+}
+
+/// The filter stage: the last three blocks.
+#[derive(Clone, Debug)]
+pub struct Filter {
+    leaps: Leaps,
+    /// Oldest first.
+    history: [Block; 3],
+    /// How many of them there are, the newest ones.
+    filled: u8,
+    /// Blocks left of a [`JUMP_HOLD`].
+    hold: u8,
+    /// Whether the last sample came as evenly as the one before it.
+    even: bool,
+    rejected: u32,
+}
+
+impl Filter {
+    /// A filter that has seen nothing yet.
+    pub const fn new(leaps: Leaps) -> Self {
+        let none = Block {
+            rise: PressureRise(0),
+            warnings: Warnings::NONE,
+        };
+        Self {
+            leaps,
+            history: [none; 3],
+            filled: 0,
+            hold: 0,
+            even: false,
+            rejected: 0,
+        }
+    }
+
+    /// Wild samples replaced so far.
+    pub const fn rejected(&self) -> u32 {
+        self.rejected
+    }
+
+    /// The filtered rise of the block before this one. What qualifies any of the three qualifies the result. `even`: the
+    /// last three are equally far apart in time; if not the one in the middle stands for itself, for an average would
+    /// be of another time.
+    ///
+    /// # Errors
+    /// [`Fault::Settling`] for the first two blocks after the start or a gap, [`Fault::Jump`] where the rise leaps as
+    /// no press does.
+    #[inline]
+    pub fn step(
+        &mut self,
+        rise: PressureRise,
+        warnings: Warnings,
+        even: bool,
+    ) -> Result<(PressureRise, Warnings), Fault> {
+        let newest = Block { rise, warnings };
+        let [before, oldest, middle] = self.history;
+        self.history = [oldest, middle, newest];
+        let in_line = core::mem::replace(&mut self.even, even) && even;
+        if self.filled < 2 {
+            self.filled += 1;
+            return Err(Fault::Settling);
+        }
+        // At the start and after a gap the line before is taken to be level.
+        let before = if self.filled == 2 { oldest } else { before };
+        self.filled = 3;
+        let bend = leap(middle, newest) - leap(oldest, middle);
+        let leapt = bend.abs() > self.leaps.noise || leap(oldest, middle).abs() > self.leaps.press;
+        if leapt || self.hold > 0 {
+            return self.leapt(before, even, in_line);
+        }
+        Ok(smooth(oldest, middle, newest, even))
+    }
+
+    /// The same where the line of samples bends by more than noise, or leaps.
+    #[cold]
+    fn leapt(&mut self, before: Block, even: bool, in_line: bool) -> Result<(PressureRise, Warnings), Fault> {
+        let [oldest, middle, newest] = self.history;
+        let Leaps { noise, press } = self.leaps;
+        let (run_up, rising, leaving) = (leap(before, oldest), leap(oldest, middle), leap(middle, newest));
+        let (bent, bends) = (rising - run_up, leaving - rising);
+        // The newest lies on the line of the two before the middle, and the middle does not: that one is wild. (Of
+        // samples that come unevenly the line cannot be told.)
+        let on_line = (rising + leaving - 2 * run_up).abs() <= noise;
+        let wild =
+            in_line && bends.abs() > noise && 2 * bent.abs() > noise && (bent > 0) != (bends > 0) && on_line;
+        if wild {
+            let mean = (i64::from(oldest.rise.0) + i64::from(newest.rise.0)) >> 1;
+            self.history[1] = Block {
+                rise: PressureRise(mean as i32),
+                warnings: oldest.warnings.and(newest.warnings),
+            };
+            self.rejected = self.rejected.saturating_add(1);
+        } else if rising.abs() > press {
+            self.hold = JUMP_HOLD;
+        }
+        if self.hold > 0 {
+            self.hold -= 1;
+            return Err(Fault::Jump);
+        }
+        if wild || bends.abs() <= noise {
+            return Ok(smooth(oldest, self.history[1], newest, even));
+        }
+        // A press that began between the samples slows down or goes on, or gets faster once where a block averages over its
+        // begin from a level; what turns, or is faster than any press, is neither on the line before nor on a new one.
+        let begins = run_up.abs() <= noise && leaving.abs() <= press;
+        let goes_on = leaving.abs() <= noise
+            || (rising > 0) == (leaving > 0) && (leaving.abs() <= rising.abs() || begins);
+        if 2 * bent.abs() > noise && !goes_on {
+            return Err(Fault::Jump);
+        }
+        // A corner, or a wild newest, which only the next block will tell: the middle stands for itself.
+        Ok((middle.rise, oldest.warnings.and(middle.warnings)))
+    }
+
+    /// A gap: what was before it is not next to what comes after.
+    pub fn interrupt(&mut self) {
+        self.filled = 0;
+        self.hold = 0;
+    }
+}
+
+/// Below 2^33.
+fn leap(from: Block, to: Block) -> i64 {
+    i64::from(to.rise.0) - i64::from(from.rise.0)
+}
+
+fn smooth(oldest: Block, middle: Block, newest: Block, even: bool) -> (PressureRise, Warnings) {
+    let warnings = oldest.warnings.and(middle.warnings).and(newest.warnings);
+    if !even {
+        return (middle.rise, warnings);
+    }
+    // Four words of 31 bits and the sign: 34 bits; a quarter of it fits the word again.
+    let sum = i64::from(oldest.rise.0) + 2 * i64::from(middle.rise.0) + i64::from(newest.rise.0);
+    (PressureRise(((sum + 2) >> 2) as i32), warnings)
+}
+
+#[cfg(test)]
+mod tests;

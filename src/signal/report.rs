@@ -1,0 +1,104 @@
+//! What the signal path gives: values with a status, or the reason why there are none.
+
+use crate::status::{Fault, Status, Touch, Warnings};
+use crate::units::Microseconds;
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
+
+/// Force and indentation at a pressure rise, with what qualifies them.
+///
+/// | status | what the fields mean |
+/// |---|---|
+/// | ok | all hold, within their 1-sigma |
+/// | warning: saturated | force and indentation are lower bounds, and so is the rise beyond the transducer's range |
+/// | warning: below zero | force and indentation are 0; a touch may be hidden |
+/// | warning: zero unverified | all may be offset by an unknown rise, which the 1-sigma allows for; never "untouched" |
+/// | warning: leak suspected, bubble suspected | rise and touch hold; force and indentation are for more liquid than there is |
+/// | warning: calibration refused, zero aged, temperature | all hold within their 1-sigma, which is wider than it need be |
+/// | warning: clock | all hold; times are a percent off |
+/// | fault | there is no measurement: no field, touch included, says anything |
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Measurement {
+    /// Pressure over the zero, filtered.
+    pub pressure_rise: PressureRise,
+    /// Force on the fingertip.
+    pub force: Micronewtons,
+    /// Indentation of its pole.
+    pub indentation: Nanometres,
+    /// One standard deviation of the three: the transducer's noise and resolution, and what drift may have done
+    /// since the zero was last known. What the model leaves out is not in it.
+    pub sigma: Sigma,
+    /// Whether something presses.
+    pub touch: Touch,
+    /// What qualifies the others.
+    pub warnings: Warnings,
+}
+
+/// One standard deviation of each value, >= 0, and above 0 for force and indentation; the end of the word also stands for
+/// more.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Sigma {
+    /// Of the pressure rise.
+    pub pressure_rise: PressureRise,
+    /// Of the force.
+    pub force: Micronewtons,
+    /// Of the indentation.
+    pub indentation: Nanometres,
+}
+
+/// One report of the signal path.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Report {
+    /// The instant the values belong to: the middle of the samples they are made of.
+    pub time: Microseconds,
+    /// The values, or the reason why there are none.
+    pub outcome: Result<Measurement, Fault>,
+}
+
+impl Report {
+    /// How far to believe the report.
+    pub fn status(&self) -> Status {
+        match self.outcome {
+            Ok(Measurement { warnings, .. }) if warnings == Warnings::NONE => Status::Ok,
+            Ok(Measurement { warnings, .. }) => Status::Warning(warnings),
+            Err(fault) => Status::Fault(fault),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(outcome: Result<Measurement, Fault>) -> Report {
+        Report {
+            time: Microseconds(0),
+            outcome,
+        }
+    }
+
+    fn qualified(warnings: Warnings) -> Report {
+        report(Ok(Measurement {
+            warnings,
+            ..Measurement::default()
+        }))
+    }
+
+    #[test]
+    fn a_status_reads_as_scripts_expect_it() {
+        assert_eq!(qualified(Warnings::NONE).status().to_string(), "ok");
+        assert_eq!(
+            qualified(Warnings::SATURATED).status().to_string(),
+            "warning: saturated"
+        );
+        assert_eq!(
+            qualified(Warnings::ZERO_UNVERIFIED.and(Warnings::SATURATED))
+                .status()
+                .to_string(),
+            "warning: saturated; zero unverified"
+        );
+        assert_eq!(
+            report(Err(Fault::SensorOpen)).status().to_string(),
+            "fault: sensor open"
+        );
+    }
+}

@@ -1,0 +1,446 @@
+//! Codes of the converter -> the sum of one block of them, or why the transducer cannot be read.
+//!
+//! The sum is the block's average without a division: later scales are per block. Averaging is what brings
+//! the converter's 12 bits and the transducer's noise down to the resolution wanted, and it has no gain error
+//! and a delay of half a block.
+//!
+//! A block is read where the converter's DMA wrote it, two codes a word: copying it would cost more than adding it up.
+
+use crate::status::Fault;
+use core::sync::atomic::{AtomicU32, Ordering};
+use model_tables::constants::TransducerKind;
+
+/// Highest code of the 12-bit converter, at its reference.
+pub const FULL_SCALE: u16 = 4095;
+
+/// Codes in a block; every board delivers one block a [`PERIOD`].
+pub const BLOCK_LENGTH: usize = 100;
+
+/// From one block to the next, microseconds.
+pub const PERIOD: u32 = 1000;
+
+/// A block as DMA writes it: the earlier code of two in the lower half of a word, 12 bits each. Atomic, because the DMA may write
+/// while it is read; then [`Ring::still_holds`] says so.
+pub type Block = [AtomicU32; BLOCK_LENGTH / 2];
+
+/// Codes of one block added up: 0 to 100 * 4095 = 409 500, which is below 2^19.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub struct CountSum(pub u32);
+
+impl CountSum {
+    /// The sum when every code of the block is [`FULL_SCALE`].
+    pub const FULL_SCALE: u32 = FULL_SCALE as u32 * BLOCK_LENGTH as u32;
+}
+
+/// Codes between which a connected transducer stays, the ends excluded.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Window {
+    /// At or below: short to ground, or no supply.
+    pub short: u16,
+    /// At or above: broken wire, held up by the pull-up on the board.
+    pub open: u16,
+}
+
+impl Window {
+    /// Half way from each end of the transducer's output to its rail.
+    ///
+    /// # Panics
+    /// At compile time, for a transducer that the converter cannot read.
+    pub const fn of(kind: &TransducerKind) -> Self {
+        let TransducerKind::Ratiometric {
+            output: [low, high], ..
+        } = kind
+        else {
+            panic!("only a ratiometric transducer has a window of codes")
+        };
+        Self {
+            short: code_of(*low / 2),
+            open: code_of(*high + (65536 - *high) / 2),
+        }
+    }
+}
+
+/// The code of a share of the reference in `1 / 65536`; at most 65536 * 4095 < 2^28 on the way.
+const fn code_of(share: u32) -> u16 {
+    (share * FULL_SCALE as u32 / 65536) as u16
+}
+
+/// The codes of a supply between half the reference and all of it. With so much supply, the window of the output
+/// still holds: a share of the supply is less of the reference, but by no more than half.
+const SUPPLY: Window = Window {
+    short: FULL_SCALE / 2,
+    open: FULL_SCALE,
+};
+
+/// Two halves of a word.
+const fn halves_of([low, high]: [u16; 2]) -> u32 {
+    (high as u32) << 16 | low as u32
+}
+
+/// Words added up before the halves of their sum are taken apart: 10 * 4095 stays below 2^16.
+const WORDS: usize = 10;
+
+/// Bit 15 of the half-words of the earlier and the later codes.
+const EARLIER: u32 = 1 << 15;
+const LATER: u32 = 1 << 31;
+
+/// The windows of the earlier and the later codes of a block's words, as a pass over it wants them. Added to a code, each
+/// sets bit 15 exactly from the window's edge on: codes have 12 bits, so no half reaches the next.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Edges {
+    from_open: u32,
+    above_short: u32,
+}
+
+impl Edges {
+    /// All codes are of the output.
+    pub const fn of_output(window: Window) -> Self {
+        Self::of([window, window])
+    }
+
+    /// Every second code, the later one of two, is of the supply.
+    pub const fn of_output_and_supply(window: Window) -> Self {
+        Self::of([window, SUPPLY])
+    }
+
+    const fn of([earlier, later]: [Window; 2]) -> Self {
+        // The edges are held where the addition makes sense.
+        const fn open(window: Window) -> u16 {
+            let end = FULL_SCALE + 1;
+            0x8000 - if window.open < end { window.open } else { end }
+        }
+        const fn short(window: Window) -> u16 {
+            let end = FULL_SCALE;
+            0x7FFF - if window.short < end { window.short } else { end }
+        }
+        Self {
+            from_open: halves_of([open(earlier), open(later)]),
+            above_short: halves_of([short(earlier), short(later)]),
+        }
+    }
+}
+
+/// What a pass over a block finds, for the earlier and the later codes of its words apart.
+struct Found {
+    totals: [u32; 2],
+    /// [`EARLIER`], [`LATER`]: some of these codes are at or above their window's end, ...
+    open: u32,
+    /// ... or at or below its start.
+    short: u32,
+}
+
+/// Adds up a block, two codes at a time, each against its own window.
+#[inline]
+fn add_up(block: &Block, edges: Edges) -> Found {
+    let (mut totals, mut open, mut inside) = ([0_u32; 2], 0_u32, u32::MAX);
+    for words in block.as_chunks::<WORDS>().0 {
+        let mut halves = 0_u32;
+        let mut take = |word: &AtomicU32| {
+            let codes = word.load(Ordering::Relaxed);
+            halves = halves.wrapping_add(codes);
+            open |= codes.wrapping_add(edges.from_open);
+            inside &= codes.wrapping_add(edges.above_short);
+        };
+        // Written out, as a loop would stay one where the compiler is told to save space.
+        let [a, b, c, d, e, f, g, h, i, j] = words;
+        take(a);
+        take(b);
+        take(c);
+        take(d);
+        take(e);
+        take(f);
+        take(g);
+        take(h);
+        take(i);
+        take(j);
+        totals[0] += halves & 0xFFFF;
+        totals[1] += halves >> 16;
+    }
+    Found {
+        totals,
+        open: open & (EARLIER | LATER),
+        short: !inside & (EARLIER | LATER),
+    }
+}
+
+/// The sum of a block.
+///
+/// # Errors
+/// [`Fault::SensorOpen`] or [`Fault::SensorShort`] when even one code lies outside the window: a wire that
+/// comes and goes within a block would otherwise pull the average without a trace (one code at the rail by
+/// 1/100 of the range).
+#[inline]
+pub fn sum(block: &Block, edges: Edges) -> Result<CountSum, Fault> {
+    let Found { totals, open, short } = add_up(block, edges);
+    if open != 0 {
+        Err(Fault::SensorOpen)
+    } else if short != 0 {
+        Err(Fault::SensorShort)
+    } else {
+        Ok(CountSum(totals[0] + totals[1]))
+    }
+}
+
+/// The sum of a block whose every second code is of the transducer's supply, as it would be if that were the
+/// converter's reference: so it cancels.
+///
+/// # Errors
+/// As [`sum`]; [`Fault::SensorSupply`] when even one code of the supply is not between half the reference and all of
+/// it.
+#[inline]
+pub fn sum_of_supply(block: &Block, edges: Edges) -> Result<CountSum, Fault> {
+    let Found {
+        totals: [output, supply],
+        open,
+        short,
+    } = add_up(block, edges);
+    if (open | short) & LATER != 0 {
+        Err(Fault::SensorSupply)
+    } else if open & EARLIER != 0 || output >= supply {
+        Err(Fault::SensorOpen)
+    } else if short & EARLIER != 0 {
+        Err(Fault::SensorShort)
+    } else {
+        // Below 50 * 4095 * 409 500 < 2^37, and the supply is above 50 * 2047.
+        let scaled = u64::from(output) * u64::from(CountSum::FULL_SCALE) + u64::from(supply / 2);
+        Ok(CountSum((scaled / u64::from(supply)) as u32))
+    }
+}
+
+/// Where a converter is in a ring of two blocks that its DMA fills for ever from the front, and which of them can be
+/// read.
+#[derive(Clone, Debug, Default)]
+pub struct Ring {
+    /// Codes written at the last look, below [`Ring::LENGTH`].
+    last: usize,
+}
+
+/// A block that is complete.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Complete {
+    /// Its place in the ring, 0 or 1.
+    pub half: usize,
+    /// Conversions since.
+    pub since: u32,
+}
+
+impl Ring {
+    /// Codes in the ring.
+    pub const LENGTH: usize = 2 * BLOCK_LENGTH;
+
+    /// A block must be begun to be read before the next one is this far, conversions: what remains of a [`PERIOD`] is
+    /// for the reading.
+    const LATEST: usize = BLOCK_LENGTH * 3 / 4;
+
+    /// The block that is complete, at a look once a [`PERIOD`]; `position` is how many codes of the ring are written.
+    ///
+    /// # Errors
+    /// [`Fault::ConverterStalled`] when it stands still, [`Fault::SamplesLost`] when the last look was too long ago or
+    /// this one comes too late.
+    pub fn look(&mut self, position: usize) -> Result<Complete, Fault> {
+        let position = position % Self::LENGTH;
+        let last = core::mem::replace(&mut self.last, position);
+        let (before, now) = (last / BLOCK_LENGTH, position / BLOCK_LENGTH);
+        let since = position % BLOCK_LENGTH;
+        if position == last {
+            Err(Fault::ConverterStalled)
+        } else if before == now || since > Self::LATEST {
+            Err(Fault::SamplesLost)
+        } else {
+            Ok(Complete {
+                half: before,
+                since: since as u32,
+            })
+        }
+    }
+
+    /// Whether the block of the last look is not being written again, at a `position` less than a ring later.
+    pub fn still_holds(&self, position: usize) -> bool {
+        self.last / BLOCK_LENGTH == position % Self::LENGTH / BLOCK_LENGTH
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// NXP MPX5100: 4 % to 94 % of the supply.
+    const MPX5100: TransducerKind = TransducerKind::Ratiometric {
+        output: [2621, 61604],
+        supply_measured: false,
+    };
+
+    fn block(codes: &[u16; BLOCK_LENGTH]) -> Block {
+        core::array::from_fn(|i| AtomicU32::new(u32::from(codes[2 * i]) | u32::from(codes[2 * i + 1]) << 16))
+    }
+
+    #[test]
+    fn the_window_lies_half_way_to_the_rails() {
+        // 2 % and 97 % of 4095: 81.9 and 3972.2.
+        assert_eq!(
+            Window::of(&MPX5100),
+            Window {
+                short: 81,
+                open: 3972
+            }
+        );
+    }
+
+    #[test]
+    fn a_block_at_full_scale_is_the_documented_sum() {
+        let everything = Window { short: 0, open: 4096 };
+        assert_eq!(
+            sum(&block(&[4095; BLOCK_LENGTH]), Edges::of_output(everything)),
+            Ok(CountSum(409_500))
+        );
+    }
+
+    #[test]
+    fn one_code_at_a_rail_is_enough_for_a_fault() {
+        let edges = Edges::of_output(Window::of(&MPX5100));
+        let mut codes = [2000; BLOCK_LENGTH];
+        assert_eq!(sum(&block(&codes), edges), Ok(CountSum(200_000)));
+        for place in 0..BLOCK_LENGTH {
+            for (code, expected) in [
+                (81, Err(Fault::SensorShort)),
+                (82, Ok(CountSum(198_082))),
+                (3971, Ok(CountSum(201_971))),
+                (3972, Err(Fault::SensorOpen)),
+            ] {
+                codes[place] = code;
+                assert_eq!(sum(&block(&codes), edges), expected, "{code} at {place}");
+            }
+            codes[place] = 2000;
+        }
+    }
+
+    #[test]
+    fn a_supply_that_is_off_or_beyond_the_reference_is_a_reason() {
+        let mut codes = [1000; BLOCK_LENGTH];
+        for (supply, expected) in [
+            (0, Err(Fault::SensorSupply)),
+            (2047, Err(Fault::SensorSupply)),
+            (2048, Ok(CountSum(199_951))),
+            (4094, Ok(CountSum(100_024))),
+            (4095, Err(Fault::SensorSupply)),
+        ] {
+            codes
+                .iter_mut()
+                .skip(1)
+                .step_by(2)
+                .for_each(|code| *code = supply);
+            let sum = sum_of_supply(&block(&codes), Edges::of_output_and_supply(Window::of(&MPX5100)));
+            // 1000 / 2048 and 1000 / 4094 of 409 500.
+            assert_eq!(sum, expected, "{supply}");
+        }
+    }
+
+    proptest! {
+        /// A supply that moves takes the output with it, and nothing is left of it.
+        #[test]
+        fn a_measured_supply_cancels(share in 0.05_f64..0.95, supply in 0.51_f64..0.99, sag in 0.0_f64..0.01) {
+            let mut codes = [0; BLOCK_LENGTH];
+            for (i, pair) in codes.chunks_exact_mut(2).enumerate() {
+                let supply = 4095.0 * (supply - sag * i as f64 / 50.0);
+                pair[0] = (share * supply).round() as u16;
+                pair[1] = supply.round() as u16;
+            }
+            let edges = Edges::of_output_and_supply(Window::of(&MPX5100));
+                let CountSum(sum) = sum_of_supply(&block(&codes), edges).expect("all is within");
+            // Half a code of each, of at least half the reference.
+            let off = f64::from(sum) / f64::from(CountSum::FULL_SCALE) - share;
+            prop_assert!(off.abs() <= 1.01 / (0.5 * 4095.0), "{off}");
+        }
+
+        #[test]
+        fn a_block_with_supply_has_a_sum_or_a_reason(
+            codes in prop::array::uniform32((0_u16..4096, 0_u16..4096)),
+        ) {
+            let mut values = [2000; BLOCK_LENGTH];
+            values.iter_mut().skip(1).step_by(2).for_each(|supply| *supply = 3000);
+            for (pair, (output, supply)) in values.chunks_exact_mut(2).zip(codes) {
+                pair.copy_from_slice(&[output, supply]);
+            }
+            let window = Window::of(&MPX5100);
+            let of = |half: usize| values.iter().skip(half).step_by(2).copied();
+            let total = |half| of(half).map(u64::from).sum::<u64>();
+            match sum_of_supply(&block(&values), Edges::of_output_and_supply(window)) {
+                Ok(CountSum(sum)) => {
+                    prop_assert!(of(1).all(|code| code > 2047 && code < 4095));
+                    prop_assert!(of(0).all(|code| code > window.short && code < window.open));
+                    prop_assert_eq!(u64::from(sum), (total(0) * 409_500 + total(1) / 2) / total(1));
+                }
+                Err(Fault::SensorSupply) => prop_assert!(of(1).any(|code| code <= 2047 || code >= 4095)),
+                Err(Fault::SensorOpen) => {
+                    prop_assert!(of(0).any(|code| code >= window.open) || total(0) >= total(1));
+                }
+                Err(fault) => {
+                    prop_assert_eq!(fault, Fault::SensorShort);
+                    prop_assert!(of(0).any(|code| code <= window.short));
+                }
+            }
+        }
+
+        #[test]
+        fn every_block_has_a_sum_or_a_reason(
+            codes in prop::array::uniform32(0_u16..4096),
+            short in 0_u16..5000,
+            open in 0_u16..5000,
+        ) {
+            let window = Window { short, open };
+            let mut values = [1000; BLOCK_LENGTH];
+            for (value, code) in values[40..72].iter_mut().zip(codes) {
+                *value = code;
+            }
+            let is_open = |code: &u16| *code >= open.min(4096);
+            let is_short = |code: &u16| *code <= short.min(4095);
+            match sum(&block(&values), Edges::of_output(window)) {
+                Ok(CountSum(total)) => {
+                    prop_assert_eq!(total, values.iter().map(|&code| u32::from(code)).sum::<u32>());
+                    prop_assert!(!values.iter().any(|code| is_open(code) || is_short(code)));
+                }
+                Err(Fault::SensorOpen) => prop_assert!(values.iter().any(is_open)),
+                Err(fault) => {
+                    prop_assert_eq!(fault, Fault::SensorShort);
+                    prop_assert!(values.iter().any(is_short) && !values.iter().any(is_open));
+                }
+            }
+        }
+
+        /// A converter that runs, or stops now and then, under a reader that looks at any time.
+        #[test]
+        fn a_block_is_complete_and_new_or_there_is_a_reason(
+            looks in prop::collection::vec((0_usize..450, 0_usize..80), 1..200),
+        ) {
+            let mut ring = Ring::default();
+            let (mut position, mut read) = (0_usize, None);
+            for (step, reading) in looks {
+                let before = position;
+                position += step;
+                match ring.look(position) {
+                    Ok(Complete { half, since }) => {
+                        // The block that ended last: whole, and never handed out before.
+                        let number = position / BLOCK_LENGTH - 1;
+                        prop_assert_eq!(half, number % 2);
+                        prop_assert_eq!(since as usize, position % BLOCK_LENGTH);
+                        prop_assert!(read.is_none_or(|read| read < number));
+                        read = Some(number);
+                        // Its first code is overwritten one block after its last was written.
+                        prop_assert_eq!(ring.still_holds(position + reading), position + reading < (number + 2) * BLOCK_LENGTH);
+                    }
+                    Err(Fault::ConverterStalled) => prop_assert_eq!((position - before) % Ring::LENGTH, 0),
+                    Err(fault) => prop_assert_eq!(fault, Fault::SamplesLost),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_look_a_period_never_loses_a_block() {
+        let mut ring = Ring::default();
+        // The looks jitter by 50 conversions.
+        let looks = (1..1000).map(|n| n * BLOCK_LENGTH + 10 + n * 7919 % 50);
+        assert!(looks.into_iter().all(|position| ring.look(position).is_ok()));
+    }
+}
