@@ -9,6 +9,7 @@ use super::truth::Truth;
 use crate::design_file::Accuracy;
 use crate::table::{Constant, Layout};
 use crate::units::PressureRise;
+use std::cell::Cell;
 
 /// Samples of a segment that a fit sees; the certificate sees every input.
 const SAMPLES: usize = 41;
@@ -33,6 +34,17 @@ pub(super) struct Candidate<'a> {
     pub(super) truth: &'a Truth,
     pub(super) segmentation: Segmentation,
     pub(super) error: f64,
+    pub(super) work: &'a Work,
+}
+
+/// Sums that a search rounded so far, one segment of one output each.
+#[derive(Default)]
+pub(super) struct Work(Cell<u32>);
+
+impl Work {
+    pub(super) fn rounded(&self) -> u32 {
+        self.0.get()
+    }
 }
 
 impl Candidate<'_> {
@@ -136,6 +148,7 @@ impl Candidate<'_> {
                     ..tolerance
                 };
                 let samples = self.windows(layout, output, shift, tolerance, span, before)?;
+                self.work.0.set(self.work.rounded() + 1);
                 round(&samples, layout.powers.terms(), layout.constant, MARGIN)
             };
             let (closer, wider) = (CLOSER[first..].iter(), CLOSER[..first].iter().rev());

@@ -122,6 +122,18 @@ pub(super) fn certify_by(
             }
         }
     }
+    // Most of the tables that miss the accuracy show it here.
+    let percents = [
+        accuracy.force_percent_of_reading,
+        accuracy.indentation_percent_of_reading,
+    ];
+    if tallies
+        .iter()
+        .zip(percents)
+        .any(|(tally, percent)| tally.misses(percent))
+    {
+        return None;
+    }
     let mut flagged = false;
     for part in &parts {
         flagged |= part.is_flagged();

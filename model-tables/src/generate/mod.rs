@@ -18,6 +18,7 @@ mod truth;
 
 use crate::curve::{Contact, Curve};
 use crate::design_file::Accuracy;
+use candidate::Work;
 use truth::Truth;
 
 pub use certify::{Certificate, Errors, Spread};
@@ -166,6 +167,7 @@ fn search<T>(
     let [coarsest, finest] = fraction_bits(curve, end, accuracy, resolution);
     let mut failure = None;
     let mut smallest: Option<search::Found<T>> = None;
+    let work = Work::default();
     // Two units at a time: segments of two octaves can lie two ways. Where the first that serve leave the segments of first
     // contact so few inputs that many are needed, the next may do with fewer.
     for first in (coarsest..=finest).step_by(2) {
@@ -180,7 +182,7 @@ fn search<T>(
                 failure = failure.or(Some(NoTables::TooWide { counts }));
             }
         }
-        match search::smallest(&truths, accuracy, &mut accept) {
+        match search::smallest(&truths, accuracy, &work, &mut accept) {
             Ok(found) => match smallest {
                 Some(before) if before.tables.bytes() <= found.tables.bytes() => return Ok(before),
                 None if found.tables.bytes() > MANY => smallest = Some(found),

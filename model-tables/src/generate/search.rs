@@ -1,6 +1,6 @@
 //! The search: the fewest bytes that meet the accuracy within the instructions wanted, and among equals the fewest instructions.
 
-use super::candidate::{Candidate, Shifts, Tolerance, counts, factors};
+use super::candidate::{Candidate, Shifts, Tolerance, Work, counts, factors};
 use super::minimax::{MOST, Sample, fit};
 use super::owned::OwnedTables;
 use super::shape::{Segmentation, Shape, biases, instructions};
@@ -42,6 +42,9 @@ const USUAL: Effort = Effort {
     patience: 4,
     every_shift: true,
 };
+/// Sums that a search rounds before it looks at no further size: some seconds. Designs that get tables take some dozens; those that
+/// are hardly stretched, or have a transducer of 0.01 Pa, up to 2400.
+const MOST_ROUNDED: u32 = 4_000;
 /// Part of a unit that rounding can add to an error.
 const ROUNDING: f64 = 0.6;
 
@@ -59,6 +62,7 @@ pub(super) struct Found<T> {
 pub(super) fn smallest<T>(
     truths: &[Truth],
     accuracy: &Accuracy,
+    work: &Work,
     mut accept: impl FnMut(&OwnedTables, &Truth) -> Option<T>,
 ) -> Result<Found<T>, f64> {
     let sizes = |shapes: &[Shape]| {
@@ -88,6 +92,9 @@ pub(super) fn smallest<T>(
             if unrounded.iter().filter(|&&other| other == shape).count() >= effort.patience {
                 continue;
             }
+            if work.rounded() > MOST_ROUNDED {
+                break;
+            }
             let mut hopeful = Vec::new();
             for truth in truths {
                 for bias in biases(shape, truth.maximum, segments as u32) {
@@ -102,6 +109,7 @@ pub(super) fn smallest<T>(
                         truth,
                         segmentation,
                         error: 0.0,
+                        work,
                     };
                     if candidate.segmentation.spans.len() != segments || !candidate.fits() {
                         continue;

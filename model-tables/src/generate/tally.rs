@@ -161,6 +161,11 @@ impl Tally {
         }
     }
 
+    /// Whether an error so far exceeds what is allowed, percent.
+    pub(super) fn misses(&self, allowed_percent: f64) -> bool {
+        100.0 * self.reading.max.max(self.below / self.from) > allowed_percent
+    }
+
     /// The inputs of a part, without evaluating all of them.
     pub(super) fn bound(&mut self, part: &OutputPart) {
         let Range { first, last } = part.range;
