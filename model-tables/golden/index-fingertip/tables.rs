@@ -5,7 +5,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
     name: "index-fingertip",
     hash: 0x57e21f1b2d57bec1,
     table_version: 5,
-    certificate: 0x9928aa73102f4e82,
+    certificate: 0xb1e0773982b614a1,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::curve::Contact;
-use crate::design_file::DesignFile;
+use crate::design_file::{DEFAULT_MODEL_PERCENT, DesignFile};
 use crate::random::Random;
 use crate::units::PressureRise;
 
@@ -72,6 +72,7 @@ fn accuracy(percent: f64) -> Accuracy {
         force_percent_of_reading: percent,
         indentation_percent_of_reading: percent,
         from_percent_of_full_scale: 1.0,
+        model_percent: DEFAULT_MODEL_PERCENT,
     }
 }
 
