@@ -1,11 +1,13 @@
 // Tables of the design `index-fingertip`, 128 bytes. Generated: change the design, not this file.
 
+/// Its `name`.
+pub const NAME: &str = "index-fingertip";
+
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    name: "index-fingertip",
     hash: 0x57e21f1b2d57bec1,
     table_version: 5,
-    certificate: 0xb1e0773982b614a1,
+    certificate: 0xcd8fc3466c5e2b90,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {

@@ -1,8 +1,10 @@
 // Tables of the design `skin-analogue`, 112 bytes. Generated: change the design, not this file.
 
+/// Its `name`.
+pub const NAME: &str = "skin-analogue";
+
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    name: "skin-analogue",
     hash: 0x021e38b343300df4,
     table_version: 5,
     certificate: 0x7983f97064e31bac,

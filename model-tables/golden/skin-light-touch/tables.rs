@@ -1,8 +1,10 @@
 // Tables of the design `skin-light-touch`, 128 bytes. Generated: change the design, not this file.
 
+/// Its `name`.
+pub const NAME: &str = "skin-light-touch";
+
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    name: "skin-light-touch",
     hash: 0xcf52ef64f58d3e8b,
     table_version: 5,
     certificate: 0x116569d925b98743,

@@ -1,6 +1,8 @@
 //! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
 
 use super::finite;
+use fingertip::signal::contact::contact;
+use fingertip::signal::design::{Design, LoadedDesign};
 use fingertip::status::{Status, Warnings};
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{GenerateError, Generated, from_design, from_design_or_worse};
@@ -53,20 +55,14 @@ pub(super) fn refusal(file: &Path, error: GenerateError) -> Refusal {
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let generated = generated(file, arguments.allow_worse)?;
-    let tables = &generated.certified.tables;
-    let bits = tables.layout.pressure_fraction_bits;
-    let lowest_rest = generated.transducer().lowest_rest(bits);
+    let block = generated.binary();
+    let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
+    let bits = design.parameters().pressure_fraction_bits;
     let mut rows = Rows::new(COLUMNS);
     for &pascals in &arguments.pressure_rise_pa {
         let rise = PressureRise::from_pascals(pascals, bits);
-        let reading = tables.lookup(rise);
-        let status = if reading.saturated {
-            Status::Warning(Warnings::SATURATED)
-        } else if rise < lowest_rest {
-            Status::Warning(Warnings::BELOW_ZERO)
-        } else {
-            Status::Ok
-        };
+        let reading = contact(&design, rise, Warnings::NONE);
+        let status = Status::qualified(reading.warnings);
         rows.push(vec![
             Cell::Number(pascals),
             Cell::Number(reading.force.newtons()),
