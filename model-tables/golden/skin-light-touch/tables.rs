@@ -5,9 +5,9 @@ pub const NAME: &str = "skin-light-touch";
 
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    hash: 0x43755a609c58964e,
+    hash: 0xcf52ef64f58d3e8b,
     table_version: 5,
-    certificate: 0xb75104fdc102d0e9,
+    certificate: 0x116569d925b98743,
     rest_pressure: 1811,
     maximum_pressure: 4133,
     transducer: model_tables::constants::Transducer {

@@ -10,6 +10,7 @@ use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::block::write::TipData;
 use crate::constants::DesignConstants;
+use crate::model::own_error::OwnError;
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
 
@@ -229,7 +230,37 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
              states = {}\n\
              force_percent = {:.1e}\n\
              indentation_percent = {:.1e}\n",
-            model.mesh, model.states, model.force_percent, model.indentation_percent
+            model.better, model.states, model.force_percent, model.indentation_percent
+        )?;
+    }
+    if let Some(error) = &generated.membrane_error {
+        writeln!(
+            out,
+            "[model.membrane] # the error of the membrane itself, at the pressure rises of a solid"
+        )?;
+        match error {
+            OwnError::Compared(found) => writeln!(
+                out,
+                "against = \"{}\"\n\
+                 states = {}\n\
+                 force_percent = {:.1e}\n\
+                 indentation_percent = {:.1e}",
+                found.better, found.states, found.force_percent, found.indentation_percent
+            )?,
+            OwnError::Estimated { percent, .. } => writeln!(
+                out,
+                "# No solid has this rest state: thickness over radius.\n\
+                 estimated_percent = {percent:.1e}"
+            )?,
+            OwnError::Unknown { .. } => {}
+        }
+    }
+    if let (Some(accuracy), Some(_)) = (&generated.design.accuracy, generated.own_error()) {
+        writeln!(
+            out,
+            "# The largest error of the model itself that the design allows.\n\
+             model_percent_allowed = {:?}\n",
+            accuracy.model_percent
         )?;
     }
     writeln!(

@@ -72,6 +72,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     Ok(CommandAnswer {
         rows,
-        notes: Vec::new(),
+        notes: generated.own_error().iter().map(ToString::to_string).collect(),
     })
 }

@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     let certificate = &generated.certified.certificate;
     let name = &generated.design.name;
-    let notes = vec![
+    let mut notes = vec![
         format!(
             "{name}: {} bytes of tables; over all {} inputs the errors stay within {:.4} % (force) and {:.4} % \
              (indentation) of reading",
@@ -54,5 +54,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         format!("{name}: {}", generated.choice()),
         format!("{name}: solved, fitted and certified in {seconds:.1} s"),
     ];
+    notes.extend(generated.own_error().map(|error| format!("{name}: {error}")));
     Ok(CommandAnswer { rows, notes })
 }

@@ -41,6 +41,20 @@ pub enum GenerateError {
         /// The transducer's key that says so, and its value in pascals.
         key: (&'static str, f64),
     },
+    /// The membrane is further off the solid than `accuracy.model_percent` allows.
+    CoarseMembrane {
+        /// By how much, in words.
+        error: String,
+        /// What is allowed, percent.
+        allowed: f64,
+    },
+    /// The mesh is further off a finer one than `accuracy.model_percent` allows.
+    CoarseMesh {
+        /// By how much, in words.
+        error: String,
+        /// What is allowed, percent.
+        allowed: f64,
+    },
     /// The data that the tables are to come from end before `max_indentation_mm`.
     BeyondData {
         /// The indentation asked for, millimetres.
@@ -114,6 +128,16 @@ impl fmt::Display for GenerateError {
                 "the whole press raises the pressure by {rise:.3} Pa, and up to {least:.3} Pa is noise \
                  ({BELOW_ZERO_DEVIATIONS} times transducer.{key} = {value}): choose a finer transducer, or a design \
                  whose pressure rises more"
+            ),
+            Self::CoarseMembrane { error, allowed } => write!(
+                f,
+                "{error}, over accuracy.model_percent = {allowed}: choose model.kind = \"auto\" (model.axes = \"mid\" keeps the \
+                 semi-axes of a membrane), or allow more"
+            ),
+            Self::CoarseMesh { error, allowed } => write!(
+                f,
+                "{error}, over accuracy.model_percent = {allowed}: give more elements with model.through and model.along, or \
+                 allow more"
             ),
             Self::BeyondData { asked, deepest } => write!(
                 f,

@@ -11,6 +11,7 @@ use crate::constants::{BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{DataCurve, DesignFile, Supply, TransducerKindSection, TransducerSection, Transfer};
 use crate::model::Fingertip;
+use crate::model::own_error::{Comparison, OwnError};
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
@@ -52,21 +53,11 @@ pub struct Generated {
     pub end: Contact,
     /// Tables and certificate.
     pub certified: Certified,
-    /// How far the curve is from the model's own limit; nothing where it is of data.
-    pub model_error: Option<Convergence>,
-}
-
-/// A curve against states of the same model on a finer mesh, half way between those that it was made from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Convergence {
-    /// The finer mesh, in words.
-    pub mesh: String,
-    /// States compared.
-    pub states: usize,
-    /// Largest error of the force at a pressure rise, percent of reading, as the tables' errors are.
-    pub force_percent: f64,
-    /// The same of the indentation.
-    pub indentation_percent: f64,
+    /// The curve against states of the same model on a finer mesh, half way between those that it was made from; nothing where it
+    /// is of data.
+    pub model_error: Option<Comparison>,
+    /// The membrane against the solid of the same wall; nothing where the model is a solid, or there is none.
+    pub membrane_error: Option<OwnError>,
 }
 
 /// Reads a design file and makes its tables. Build scripts call this.
@@ -104,6 +95,19 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         end,
         rung,
     } = solve(&design)?;
+    let from = accuracy.from_percent_of_full_scale / 100.0;
+    let (mut model_error, mut membrane_error) = (None, None);
+    if let Some(mut rung) = rung {
+        model_error = convergence(&design, &rung, &curve, end, from);
+        if matches!(rung, Fingertip::Membrane(_)) {
+            membrane_error = Some(OwnError::of(&mut rung, &design, end.indentation, from));
+        }
+    }
+    is_near_enough(
+        model_error.as_ref(),
+        membrane_error.as_ref(),
+        accuracy.model_percent,
+    )?;
     let mut allowed = accuracy;
     let mut doubled = 0;
     let certified = loop {
@@ -116,8 +120,6 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
             found => break found.map_err(GenerateError::NoTables)?,
         }
     };
-    let from = accuracy.from_percent_of_full_scale / 100.0;
-    let model_error = rung.and_then(|rung| convergence(&design, &rung, &curve, end, from));
     Ok(Generated {
         design,
         transducer,
@@ -125,6 +127,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         end,
         certified,
         model_error,
+        membrane_error,
     })
 }
 
@@ -161,6 +164,27 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
     })
 }
 
+/// Refuses a model that is further off than `accuracy.model_percent` allows.
+fn is_near_enough(
+    mesh: Option<&Comparison>,
+    membrane: Option<&OwnError>,
+    allowed: f64,
+) -> Result<(), GenerateError> {
+    if let Some(found) = membrane
+        && found.percent().is_some_and(|percent| percent > allowed)
+    {
+        let error = found.to_string();
+        return Err(GenerateError::CoarseMembrane { error, allowed });
+    }
+    match mesh {
+        Some(found) if found.percent() > allowed => {
+            let error = OwnError::Compared(found.clone()).to_string();
+            Err(GenerateError::CoarseMesh { error, allowed })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Refuses a press that never leaves what the firmware takes for noise around zero.
 fn is_felt(transducer: &TransducerSection, rise: f64) -> Result<(), GenerateError> {
     let (resolution, noise) = (transducer.resolution_pa, transducer.noise_pa);
@@ -183,15 +207,15 @@ fn convergence(
     curve: &Curve,
     end: Contact,
     from: f64,
-) -> Option<Convergence> {
-    let (mut press, mesh) = rung.finer(design).ok()?;
+) -> Option<Comparison> {
+    let (mut press, better) = rung.finer(design).ok()?;
     let checked = match rung {
         Fingertip::Membrane(_) => CHECKED,
         Fingertip::Solid(_) => CHECKED_SOLID,
     };
     let gain = design.calibration.pressure_gain;
-    let mut found = Convergence {
-        mesh,
+    let mut found = Comparison {
+        better,
         states: 0,
         force_percent: 0.0,
         indentation_percent: 0.0,
@@ -278,6 +302,13 @@ fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Resul
 }
 
 impl Generated {
+    /// The error of the model itself: of a membrane against the solid, of a solid against a finer mesh; nothing where the curve is of
+    /// data.
+    pub fn own_error(&self) -> Option<OwnError> {
+        let mesh = || self.model_error.clone().map(OwnError::Compared);
+        self.membrane_error.clone().or_else(mesh)
+    }
+
     /// First eight bytes of the design's hash, big-endian: [`crate::constants::DesignConstants::hash`].
     pub fn hash(&self) -> u64 {
         let [a, b, c, d, e, f, g, h, ..] = self.design.hash();
