@@ -74,6 +74,7 @@ pub mod membrane;
 pub mod model;
 #[cfg(feature = "std")]
 pub mod monotone;
+pub mod object;
 #[cfg(feature = "std")]
 pub mod random;
 pub mod solid;

@@ -57,6 +57,9 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
             )?;
         }
     }
+    if let Some(object) = &file.object {
+        object.print(out)?;
+    }
     if let Some(depth) = file.max_indentation_mm {
         writeln!(out, "\n[press]\nmax_indentation_mm = {depth:?}")?;
     }

@@ -4,8 +4,8 @@ use super::calibration::Calibration;
 use super::error::Problem;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::{
-    Accuracy, DEFAULT_ELEMENTS, DesignFile, MembraneSection, ModelSection, RestSection, Supply,
-    TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air,
+    Accuracy, DEFAULT_ELEMENTS, DesignFile, MembraneSection, ModelSection, ObjectSection, RestSection,
+    Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air,
 };
 use crate::constants::Quantity;
 use crate::material::Law;
@@ -48,6 +48,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
             .unwrap_or(RestSection::Unstretched),
     };
     let compliance = root.sub("fluid")?.map(fluid).transpose()?;
+    let object = root.sub("object")?.map(ObjectSection::parse).transpose()?;
     let press = root.sub("press")?.map(press).transpose()?;
     let transducer = root.sub("transducer")?.map(transducer).transpose()?;
     let accuracy = root.sub("accuracy")?.map(accuracy).transpose()?;
@@ -72,6 +73,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         rest,
         model,
         compliance_mm3_per_kpa: compliance.unwrap_or(0.0),
+        object,
         max_indentation_mm: press,
         transducer,
         accuracy,
