@@ -1,7 +1,8 @@
 //! `designer solve`: pressed states.
 
 use super::model::{self, Model};
-use super::{Field, bench, finite, read, refuse_plain, warn, warn_of_instability};
+use super::{Field, bench, finite, mesh_error, read, refuse_plain, warn, warn_of_instability};
+use model_tables::curve::Contact;
 use model_tables::design_file::DesignFile;
 use model_tables::material::stability::Margin;
 use model_tables::membrane::press::Press;
@@ -112,13 +113,18 @@ fn solid(
     let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
     let mut rows = Rows::new(COLUMNS);
     let mut deepest = 0.0_f64;
-    // States on the way serve all that follow, in whatever order.
+    let mut contacts = Vec::new();
     for &asked in &arguments.indentation_mm {
         let depth = bench::depth(calibration, asked);
         let state = press
             .at_indentation(depth)
             .map_err(|error| refuse(error.into()))?;
         deepest = deepest.max(depth);
+        contacts.push(Contact {
+            indentation: depth,
+            pressure_rise: state.pressure_rise,
+            force: state.force,
+        });
         rows.push(vec![
             Cell::Number(asked),
             Cell::Number(calibration.pressure_read(state.pressure) * 1e-3),
@@ -133,10 +139,18 @@ fn solid(
             Cell::Empty,
         ]);
     }
+    let mut notes: Vec<String> = model.note.iter().cloned().collect();
+    notes.push(mesh_error::note(&model.design, elements, &contacts));
+    notes.extend(press.other_state().map(|other| {
+        format!(
+            "other states exist: one at {:.6} mm has a pressure rise of {:.6} kPa and a force of {:.6} N; these are \
+             the states that a press from rest passes",
+            calibration.indentation_read(other.indentation) * 1e3,
+            calibration.pressure_read(other.pressure_rise) * 1e-3,
+            other.force
+        )
+    }));
     let mut rung = Fingertip::Solid(Box::new(press));
     bench::warn_of_strain(&arguments.design, design_file, &mut rung, deepest);
-    Ok(CommandAnswer {
-        rows,
-        notes: model.note.iter().cloned().collect(),
-    })
+    Ok(CommandAnswer { rows, notes })
 }
