@@ -8,7 +8,7 @@ use super::element::{self, Material};
 use super::fluid;
 use super::front::Fronts;
 use super::mesh::{CUBIC_PRESSURES, Elements, Mesh, NODES};
-use super::plate;
+use super::object::{Action, Surface};
 use super::state::{Balance, Fluid, State};
 use crate::material::Law;
 
@@ -48,6 +48,8 @@ pub struct Wall {
     assembly: Assembly,
     /// Contact pressure over penetration.
     contact_stiffness: f64,
+    /// What touches the outer surface.
+    pub surface: Surface,
     /// Undeformed radii and heights of each column's outer edge.
     outer: Vec<[[f64; 3]; 2]>,
     fronts: Fronts,
@@ -55,8 +57,8 @@ pub struct Wall {
     forces: Vec<[f64; 2]>,
     /// Derivative of the volume by the nodes: zero but for the inner ones.
     by_node: Vec<[f64; 2]>,
-    /// The plate's stiffness on each column, in the latest factors.
-    by_depth: Vec<[[f64; 3]; 3]>,
+    /// The object's stiffness on each column's outer edge, in the latest factors.
+    by_edge: Vec<[[f64; 6]; 6]>,
     /// Negative pivots of each column.
     negative: Vec<usize>,
     /// Newton's step, and the part of it that goes with the fluid's pressure.
@@ -88,7 +90,8 @@ impl Wall {
             assembly: Assembly::new(&mesh, &material),
             forces: step.nodes.clone(),
             by_node: step.nodes.clone(),
-            by_depth: vec![[[0.0; 3]; 3]; elements.along],
+            by_edge: vec![[[0.0; 6]; 6]; elements.along],
+            surface: Surface::Plate,
             negative: Vec::with_capacity(elements.along),
             by_pressure: step.clone(),
             step,
@@ -234,15 +237,13 @@ impl Wall {
                     self.forces[inner[i]][c] -= state.fluid * by_node[c][i];
                 }
             }
-            let z = outer.map(|node| state.nodes[node][1]);
-            if z.iter().all(|z| *z < plate - self.mesh.thickness) {
+            let Some(action) = self.action(state, column, plate) else {
                 continue;
-            }
-            let action = plate::action(self.contact_stiffness, &self.outer[column], &z, plate);
+            };
             balance.force += action.force;
             balance.contact_energy += action.energy;
-            for i in 0..3 {
-                self.forces[outer[i]][1] += action.first[i];
+            for (i, force) in action.first.into_iter().enumerate() {
+                self.forces[outer[i % 3]][i / 3] += force;
             }
         }
         self.hold();
@@ -259,6 +260,14 @@ impl Wall {
         }
         balance.residual = largest / self.mesh.thickness;
         balance
+    }
+
+    /// The object's action on a column's outer edge, if it is near.
+    fn action(&self, state: &State, column: usize, apex: f64) -> Option<Action> {
+        let place = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
+        let (stiffness, near) = (self.contact_stiffness, self.mesh.thickness);
+        self.surface
+            .action(stiffness, &self.outer[column], &place, apex, near)
     }
 
     /// Takes the forces out that act on what is held: the rim, and the pole sideways.
@@ -302,7 +311,7 @@ impl Wall {
         for node in &mut self.by_node[..self.mesh.stride()] {
             node[0] = 0.0;
         }
-        self.by_depth.fill([[0.0; 3]; 3]);
+        self.by_edge.fill([[0.0; 6]; 6]);
     }
 
     /// Factors the linear equations at a state: those of the wall as they were set up, the plate's of now.
@@ -312,20 +321,28 @@ impl Wall {
         let local = edge_nodes(&self.mesh, 0, self.mesh.layers() - 1);
         let mut first = from;
         for column in 0..self.mesh.elements.along {
-            let z = edge_nodes(&self.mesh, column, self.mesh.layers() - 1).map(|node| state.nodes[node][1]);
-            let now = plate::action(self.contact_stiffness, &self.outer[column], &z, plate).second;
-            if now == self.by_depth[column] {
+            let mut now = self.action(state, column, plate).unwrap_or_default().second;
+            if column == 0 {
+                // The pole is held sideways.
+                now[0] = [0.0; 6];
+                for row in &mut now {
+                    row[0] = 0.0;
+                }
+            }
+            if now == self.by_edge[column] {
                 continue;
             }
             first = first.min(column);
             let front = self.fronts.column(column);
-            for i in 0..3 {
-                for j in i..3 {
-                    let [row, other] = [i, j].map(|i| 2 * local[i] + 1);
-                    front[Fronts::place(station, row, other)] += now[i][j] - self.by_depth[column][i][j];
+            for i in 0..6 {
+                for j in 0..6 {
+                    let [row, other] = [i, j].map(|i| 2 * local[i % 3] + i / 3);
+                    if row <= other {
+                        front[Fronts::place(station, row, other)] += now[i][j] - self.by_edge[column][i][j];
+                    }
                 }
             }
-            self.by_depth[column] = now;
+            self.by_edge[column] = now;
         }
         self.negative.truncate(first);
         self.fronts.eliminate(first, &mut self.negative)?;
@@ -380,20 +397,21 @@ impl Wall {
         self.follow_pressure();
         self.step.nodes.fill([0.0; 2]);
         let outer = self.mesh.layers() - 1;
-        for (column, by_depth) in self.by_depth.iter().enumerate() {
+        for (column, by_edge) in self.by_edge.iter().enumerate() {
             let nodes = edge_nodes(&self.mesh, column, outer);
-            for (node, row) in nodes.iter().zip(by_depth) {
-                self.step.nodes[*node][1] -= row.iter().sum::<f64>();
+            for (i, row) in by_edge.iter().enumerate() {
+                self.step.nodes[nodes[i % 3]][i / 3] -= row[3..].iter().sum::<f64>();
             }
         }
         self.fronts.solve(self.step.nodes.as_flattened_mut());
         self.assembly.pressures(&mut self.step, false);
         self.border(fluid, 0.0)?;
         let mut force = 0.0;
-        for (column, by_depth) in self.by_depth.iter().enumerate() {
+        for (column, by_edge) in self.by_edge.iter().enumerate() {
             let nodes = edge_nodes(&self.mesh, column, outer);
-            for (node, row) in nodes.iter().zip(by_depth) {
-                force += row.iter().sum::<f64>() * (1.0 + self.step.nodes[*node][1]);
+            for (i, row) in by_edge.iter().enumerate() {
+                let of_plate = if i < 3 { 0.0 } else { 1.0 };
+                force += row[3..].iter().sum::<f64>() * (of_plate + self.step.nodes[nodes[i % 3]][i / 3]);
             }
         }
         Some(Tangent {

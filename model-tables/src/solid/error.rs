@@ -21,6 +21,15 @@ pub enum SolidError {
         /// The greatest that inflation passes.
         greatest: f64,
     },
+    /// What touches has no axial symmetry.
+    NotAxisymmetric,
+    /// A cup does not touch the pole first.
+    CupTooTight {
+        /// Its radius, metres.
+        radius: f64,
+        /// The least that touches the pole first, metres.
+        least: f64,
+    },
     /// The rest state was not found.
     RestUnsolved {
         /// What failed.
@@ -66,6 +75,16 @@ impl fmt::Display for SolidError {
                 "no rest state has a pressure of {} kPa: inflation reaches {:.6} kPa and softens there; ask for less",
                 asked * 1e-3,
                 greatest * 1e-3
+            ),
+            Self::NotAxisymmetric => write!(
+                f,
+                "object.shape = \"cylinder\" has no axial symmetry, as the model has: give a ball, a cup or a punch"
+            ),
+            Self::CupTooTight { radius, least } => write!(
+                f,
+                "a cup of radius {:.6} mm touches the tip beside its pole first: object.radius_mm has to be at most -{:.6}",
+                radius * 1e3,
+                least * 1e3
             ),
             Self::RestUnsolved { failure } => {
                 write!(

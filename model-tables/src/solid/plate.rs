@@ -10,7 +10,7 @@ use core::f64::consts::PI;
 /// Gauss points of each part of an edge that touches.
 pub const POINTS: usize = 6;
 /// Gauss points of order twelve on `[-1, 1]`.
-const PLACES: [f64; POINTS] = [
+pub const PLACES: [f64; POINTS] = [
     -0.932_469_514_203_152,
     -0.661_209_386_466_264_5,
     -0.238_619_186_083_196_9,
@@ -19,7 +19,7 @@ const PLACES: [f64; POINTS] = [
     0.932_469_514_203_152,
 ];
 /// Their weights.
-const WEIGHTS: [f64; POINTS] = [
+pub const WEIGHTS: [f64; POINTS] = [
     0.171_324_492_379_170_3,
     0.360_761_573_048_138_6,
     0.467_913_934_572_691,
@@ -48,7 +48,7 @@ pub fn action(stiffness: f64, undeformed: &[[f64; 3]; 2], z: &[f64; 3], plate: f
     // The penetration is `c + b x + a x^2`.
     let (c, b) = (z[1] - plate, 0.5 * (z[2] - z[0]));
     let a = 0.5 * (z[0] + z[2]) - z[1];
-    let (cuts, count) = cuts(a, b, c);
+    let (cuts, count) = cuts([a, b, c]);
     for part in cuts[..count].windows(2) {
         let (middle, half) = (0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0]));
         if c + middle * (b + middle * a) <= 0.0 {
@@ -73,8 +73,8 @@ pub fn action(stiffness: f64, undeformed: &[[f64; 3]; 2], z: &[f64; 3], plate: f
     action
 }
 
-/// Where `[-1, 1]` is to be cut so that `c + b x + a x^2` keeps its sign in between, ends included, and how many cuts there are.
-fn cuts(a: f64, b: f64, c: f64) -> ([f64; 4], usize) {
+/// Where `[-1, 1]` is to be cut so that `a x^2 + b x + c` keeps its sign in between, ends included, and how many cuts there are.
+pub(super) fn cuts([a, b, c]: [f64; 3]) -> ([f64; 4], usize) {
     let mut cuts = [-1.0; 4];
     let mut count = 1;
     let discriminant = b * b - 4.0 * a * c;
@@ -94,7 +94,7 @@ fn cuts(a: f64, b: f64, c: f64) -> ([f64; 4], usize) {
 }
 
 /// Undeformed area per unit of the edge's coordinate.
-fn area([r, z]: &[[f64; 3]; 2], x: f64) -> f64 {
+pub(super) fn area([r, z]: &[[f64; 3]; 2], x: f64) -> f64 {
     let dot = |n: [f64; 3], y: &[f64; 3]| n[0] * y[0] + n[1] * y[1] + n[2] * y[2];
     let (n, dn) = (shape(x), slope(x));
     2.0 * PI * dot(n, r) * libm::hypot(dot(dn, r), dot(dn, z))

@@ -3,6 +3,7 @@
 use super::equilibrium::Wall;
 use super::inflation;
 use super::mesh::Elements;
+use super::object::Surface;
 use super::path::{Other, Path, Stop};
 use super::section::{self, Station};
 use super::state::Fluid;
@@ -11,6 +12,7 @@ use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};
 use crate::limit::Limit;
 use crate::material::{Hyperelastic as _, Law};
+use crate::object::{Object, Shape};
 use crate::solid::SolidError;
 use core::f64::consts::PI;
 
@@ -169,6 +171,26 @@ impl Press {
             rest,
             limit: None,
         })
+    }
+
+    /// The same fingertip, not yet pressed, with an object in the plate's place. The indentation is then the travel of the object's
+    /// apex from first touch, the force the axial one.
+    ///
+    /// # Errors
+    /// [`SolidError::NotAxisymmetric`], and [`SolidError::CupTooTight`] for a cup that would touch beside the pole first.
+    pub fn touching(mut self, object: &Object) -> Result<Self, SolidError> {
+        self.wall.surface = Surface::new(object.shape, self.length).ok_or(SolidError::NotAxisymmetric)?;
+        let rest = self.path.rest();
+        if let Shape::Cup { radius } = object.shape {
+            let least = section::least_cup(&self.wall, &rest.state) * self.length;
+            if radius < least {
+                return Err(SolidError::CupTooTight { radius, least });
+            }
+        }
+        self.path = Path::new(rest.state.clone(), rest.balance.volume, rest.energy, self.height);
+        self.asked = self.path.rest().clone();
+        self.limit = None;
+        Ok(self)
     }
 
     /// The rest state.

@@ -1,0 +1,223 @@
+//! Objects other than a plate against the solid: independent reference states, energy, limits of the shapes, refusals.
+
+mod domes;
+
+use domes::dome;
+use model_tables::material::Law;
+use model_tables::material::preset::AGILUS30;
+use model_tables::object::{Friction, Object, Shape};
+use model_tables::solid::SolidError;
+use model_tables::solid::mesh::Elements;
+use model_tables::solid::press::{FULL, Press, PressedState};
+use serde::Deserialize;
+
+const FINE: Elements = Elements {
+    through: 2,
+    along: 60,
+};
+
+#[derive(Deserialize)]
+struct Reference {
+    dome: Dome,
+    material: Constants,
+    cases: Vec<Case>,
+}
+
+#[derive(Deserialize)]
+struct Dome {
+    radial_mm: f64,
+    axial_mm: f64,
+    wall_mm: f64,
+}
+
+#[derive(Deserialize)]
+struct Constants {
+    c1_pa: f64,
+    c2_pa: f64,
+}
+
+#[derive(Deserialize)]
+struct Case {
+    object: Touched,
+    points: Vec<Point>,
+}
+
+#[derive(Deserialize)]
+struct Touched {
+    radius_mm: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[expect(non_snake_case, reason = "the names in the file")]
+struct Point {
+    H_mm: f64,
+    P_kPa: f64,
+    F_N: f64,
+    strain_energy_mJ: f64,
+}
+
+fn frictionless(shape: Shape) -> Object {
+    Object {
+        shape,
+        friction: Friction::NONE,
+    }
+}
+
+fn ball(radius_mm: f64) -> Object {
+    frictionless(Shape::Ball {
+        radius: 1e-3 * radius_mm,
+    })
+}
+
+fn cup(radius_mm: f64) -> Object {
+    frictionless(Shape::Cup {
+        radius: 1e-3 * radius_mm,
+    })
+}
+
+fn punch(radius_mm: f64, rim_mm: f64) -> Object {
+    frictionless(Shape::Punch {
+        radius: 1e-3 * radius_mm,
+        rim: 1e-3 * rim_mm,
+    })
+}
+
+/// The printed dome, 9 x 7 x 1 mm, against an object.
+fn printed(object: &Object, elements: Elements) -> Result<Press, SolidError> {
+    Press::new(&dome(9.0, 7.0, 1.0, AGILUS30), elements)
+        .expect("a rest state")
+        .touching(object)
+}
+
+/// States at depths in millimetres.
+fn states<const N: usize>(object: &Object, elements: Elements, depths_mm: [f64; N]) -> [PressedState; N] {
+    let mut press = printed(object, elements).expect("an object");
+    depths_mm.map(|depth| press.at_indentation(1e-3 * depth).expect("a state"))
+}
+
+/// Every state of the independent solution, with what its pressure and force, and its energy, may be off by indentation.
+fn agrees(elements: Elements, allowed: impl Fn(f64) -> f64) {
+    let Reference {
+        dome: outer,
+        material,
+        cases,
+    } = serde_json::from_str(include_str!("reference/object.json")).expect("the file's form");
+    assert!(cases.len() >= 4);
+    let law = Law::MooneyRivlin {
+        c1: material.c1_pa,
+        c2: material.c2_pa,
+    };
+    let design = dome(outer.radial_mm, outer.axial_mm, outer.wall_mm, law);
+    for case in cases {
+        let object = case.object.radius_mm.map_or(Object::PLATE, ball);
+        let mut press = Press::new(&design, elements)
+            .expect("a rest state")
+            .touching(&object)
+            .expect("a ball");
+        for point in case.points {
+            let found = press.at_indentation(point.H_mm * 1e-3).expect("a state");
+            let pressure = found.pressure / (point.P_kPa * 1e3) - 1.0;
+            let force = found.force / point.F_N - 1.0;
+            let energy = found.energy / (point.strain_energy_mJ * 1e-3) - 1.0;
+            let name = format!(
+                "{object:?} at {} mm: {pressure:+.5} {force:+.5} {energy:+.5}",
+                point.H_mm
+            );
+            println!("{name}");
+            let allowed = allowed(point.H_mm);
+            assert!(pressure.abs() < allowed && force.abs() < allowed, "{name}");
+            assert!(energy.abs() < allowed + 0.003, "{name}");
+        }
+    }
+}
+
+#[test]
+fn sixty_elements_along_agree_with_reference_balls_within_half_a_percent() {
+    agrees(FINE, |_| 0.005);
+}
+
+#[test]
+fn twenty_four_elements_along_agree_with_reference_balls_within_a_percent() {
+    agrees(FULL, |depth| if depth < 0.5 { 0.02 } else { 0.01 });
+}
+
+/// Strain energy against the work of object and fluid along the path.
+#[test]
+fn energy_closes_against_every_object() {
+    for object in [ball(3.0), ball(20.0), cup(20.0), punch(3.0, 0.3)] {
+        for state in states(&object, FULL, [0.3, 1.0, 1.8]) {
+            let part = state.energy / state.work - 1.0;
+            assert!(part.abs() < 2e-3, "{object:?} {}: {part:e}", state.indentation);
+        }
+    }
+}
+
+/// A ball dips in less than a plate at one depth, a cup more; either goes to the plate with its radius.
+#[test]
+fn balls_and_cups_meet_at_the_plate() {
+    let force = |object: &Object| states(object, FULL, [1.5])[0].force;
+    let plate = force(&Object::PLATE);
+    let mut before = 0.0;
+    for radius in [3.0, 8.0, 50.0, 1e5] {
+        let found = force(&ball(radius));
+        assert!(
+            found > before && found < plate * (1.0 + 1e-5),
+            "{radius}: {found} {plate}"
+        );
+        before = found;
+    }
+    let mut before = f64::INFINITY;
+    for radius in [20.0, 50.0, 1e5] {
+        let found = force(&cup(radius));
+        assert!(
+            found < before && found > plate * (1.0 - 1e-5),
+            "{radius}: {found} {plate}"
+        );
+        before = found;
+    }
+    assert!((before / plate - 1.0).abs() < 1e-4);
+}
+
+/// A coin is a plate until its rim is reached; then it is less than one.
+#[test]
+fn a_punch_is_a_plate_up_to_its_rim() {
+    let [before, after] = states(&punch(5.0, 0.2), FULL, [1.0, 2.0]);
+    let [plate_before, plate_after] = states(&Object::PLATE, FULL, [1.0, 2.0]);
+    assert!(before.contact_radius < 4e-3);
+    assert!((before.force / plate_before.force - 1.0).abs() < 1e-6);
+    assert!(after.force < 0.97 * plate_after.force);
+    assert!(after.contact_radius < 5e-3 && plate_after.contact_radius > 5e-3);
+}
+
+#[test]
+fn what_cannot_be_pressed_is_refused_by_name() {
+    let pen = frictionless(Shape::Cylinder { radius: 5e-3 });
+    let text = printed(&pen, FULL).expect_err("no axial symmetry").to_string();
+    assert!(
+        text.contains("object.shape = \"cylinder\" has no axial symmetry"),
+        "{text}"
+    );
+    // The crown's radius of curvature is 81 / 7 mm.
+    let error = printed(&cup(11.0), FULL).expect_err("too tight");
+    let SolidError::CupTooTight { least, .. } = error else {
+        panic!("{error}");
+    };
+    assert!((least - 81e-3 / 7.0).abs() < 2e-5, "{least}");
+    assert!(printed(&cup(11.6), FULL).is_ok());
+}
+
+/// Newton iterations and factorisations of a press onto a ball, over those onto a plate.
+#[test]
+fn a_ball_costs_little_more_than_a_plate() {
+    let cost = |object: &Object| {
+        let mut press = printed(object, FULL).expect("an object");
+        press.contact_at(2.0e-3).expect("a state");
+        (press.iterations() as f64, press.factorisations() as f64)
+    };
+    let (plate, ball) = (cost(&Object::PLATE), cost(&ball(8.0)));
+    println!("{plate:?} {ball:?}");
+    assert!(
+        ball.0 < 1.3 * plate.0 && ball.1 < 1.3 * plate.1,
+        "{plate:?} {ball:?}"
+    );
+}
