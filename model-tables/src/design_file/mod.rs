@@ -259,11 +259,6 @@ impl DesignFile {
         Sha256::digest(self.canonical()).into()
     }
 
-    /// What touches, in SI units.
-    pub fn object(&self) -> Object {
-        self.object.as_ref().map_or(Object::PLATE, ObjectSection::object)
-    }
-
     /// What the model needs of the design as it is calibrated, in SI units.
     pub fn design(&self) -> Design {
         const MM: f64 = 1e-3;
@@ -291,6 +286,7 @@ impl DesignFile {
                     .calibration
                     .compliance_mm3_per_kpa
                     .unwrap_or(self.compliance_mm3_per_kpa),
+            object: self.object.as_ref().map_or(Object::PLATE, ObjectSection::object),
         }
     }
 }

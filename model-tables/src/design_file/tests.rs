@@ -670,7 +670,7 @@ fn object(lines: &str) -> Result<Option<ObjectSection>, String> {
 #[test]
 fn an_object_is_a_plate_a_ball_a_cup_a_cylinder_or_a_punch() {
     assert_eq!(good().object, None);
-    assert_eq!(good().object(), Object::PLATE);
+    assert_eq!(good().design().object, Object::PLATE);
     let mm = |millimetres: f64| millimetres * 1e-3;
     for (lines, shape, friction) in [
         ("", Shape::Plate, Friction::NONE),

@@ -1,7 +1,7 @@
 //! Why the solid gives no answer, in words.
 
 use super::Failure;
-use crate::limit::{Limit, refuse_indentation, refuse_unsolved};
+use crate::limit::{Limit, refuse_cup, refuse_indentation, refuse_unsolved};
 use core::fmt;
 
 /// Why the solid gives no answer.
@@ -80,12 +80,7 @@ impl fmt::Display for SolidError {
                 f,
                 "object.shape = \"cylinder\" has no axial symmetry, as the model has: give a ball, a cup or a punch"
             ),
-            Self::CupTooTight { radius, least } => write!(
-                f,
-                "a cup of radius {:.6} mm touches the tip beside its pole first: object.radius_mm has to be at most -{:.6}",
-                radius * 1e3,
-                least * 1e3
-            ),
+            Self::CupTooTight { radius, least } => refuse_cup(f, radius, least),
             Self::RestUnsolved { failure } => {
                 write!(
                     f,

@@ -6,7 +6,7 @@ use super::mesh::Elements;
 use super::object::Surface;
 use super::path::{Other, Path, Stop};
 use super::section::{self, Station};
-use super::state::Fluid;
+use super::state::{Fluid, State};
 use super::station::Kept;
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};
@@ -112,7 +112,8 @@ impl Press {
     ///
     /// # Errors
     /// [`SolidError::NoStiffness`], [`SolidError::PressureOutOfReach`], [`SolidError::RestUnsolved`],
-    /// [`SolidError::RestNotForSolid`] for a rest state given by the equator or the height, and those of `free`.
+    /// [`SolidError::RestNotForSolid`] for a rest state given by the equator or the height, [`SolidError::NotAxisymmetric`] and
+    /// [`SolidError::CupTooTight`] for what touches, and those of `free`.
     pub fn inflate<E: From<SolidError>>(
         design: &Design,
         elements: Elements,
@@ -140,6 +141,7 @@ impl Press {
             RestBy::PoleStretch(stretch) => inflation::bonded(&mut wall, &mut state, length, stretch, free)?,
             RestBy::EquatorRadius(_) | RestBy::Height(_) => return Err(SolidError::RestNotForSolid.into()),
         }
+        wall.surface = surface(&design.object, &wall, &state, length)?;
         let volume = wall.volume(&state);
         let unit = length * length * length;
         let energy = wall.energy(&state);
@@ -171,26 +173,6 @@ impl Press {
             rest,
             limit: None,
         })
-    }
-
-    /// The same fingertip, not yet pressed, with an object in the plate's place. The indentation is then the travel of the object's
-    /// apex from first touch, the force the axial one.
-    ///
-    /// # Errors
-    /// [`SolidError::NotAxisymmetric`], and [`SolidError::CupTooTight`] for a cup that would touch beside the pole first.
-    pub fn touching(mut self, object: &Object) -> Result<Self, SolidError> {
-        self.wall.surface = Surface::new(object.shape, self.length).ok_or(SolidError::NotAxisymmetric)?;
-        let rest = self.path.rest();
-        if let Shape::Cup { radius } = object.shape {
-            let least = section::least_cup(&self.wall, &rest.state) * self.length;
-            if radius < least {
-                return Err(SolidError::CupTooTight { radius, least });
-            }
-        }
-        self.path = Path::new(rest.state.clone(), rest.balance.volume, rest.energy, self.height);
-        self.asked = self.path.rest().clone();
-        self.limit = None;
-        Ok(self)
     }
 
     /// The rest state.
@@ -354,6 +336,17 @@ impl Press {
         }
         Curve::new(points).map_err(CurveFailure::Shape)
     }
+}
+
+/// The surface of an object in units of `length`, metres, that touches a wall at rest at its pole.
+fn surface(object: &Object, wall: &Wall, rest: &State, length: f64) -> Result<Surface, SolidError> {
+    if let Shape::Cup { radius } = object.shape {
+        let least = section::least_cup(wall, rest) * length;
+        if radius < least {
+            return Err(SolidError::CupTooTight { radius, least });
+        }
+    }
+    Surface::new(object.shape, length).ok_or(SolidError::NotAxisymmetric)
 }
 
 /// A law in other units.

@@ -18,6 +18,7 @@ use model_tables::design::{Design, RestBy};
 use model_tables::material::stability;
 use model_tables::material::{Derivatives, Hyperelastic, Law, Scaled};
 use model_tables::membrane::state::UnitScale;
+use model_tables::object::Object;
 
 /// Components of the state in the free zone: radius, `p`, height, volume.
 pub const STATE: usize = 4;
@@ -285,6 +286,7 @@ mod tests {
             law: Law::MooneyRivlin { c1: 2e5, c2: 4e4 },
             rest: RestBy::PoleStretch(1.3),
             compliance: 0.0,
+            object: Object::PLATE,
         })
         .expect("by pole stretch")
     }
