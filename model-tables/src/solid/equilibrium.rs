@@ -6,11 +6,13 @@ use super::Failure;
 use super::assembly::Assembly;
 use super::element::{self, Material};
 use super::fluid;
+use super::friction::Sliding;
 use super::front::Fronts;
 use super::mesh::{CUBIC_PRESSURES, Elements, Mesh, NODES};
 use super::object::{Action, Surface};
 use super::state::{Balance, Fluid, State};
 use crate::material::Law;
+use crate::object::Friction;
 
 /// Contact stiffness times wall thickness, over the shear modulus: a contact pressure of a tenth of the modulus penetrates
 /// 5e-4 of the wall. Seven times as stiff changes the force by less than 0.1 % and takes a third more iterations.
@@ -26,6 +28,8 @@ const STEP_LIMIT: f64 = 0.5;
 /// Displacement of a node, over the wall thickness, after which the wall's part of the equations is set up anew. What changes with the contact's edge
 /// is the plate's part.
 const RENEWAL: f64 = 0.1;
+/// Smallest part of a step that is taken, with friction.
+const LEAST_DAMPING: f64 = 0.125;
 /// A step that leaves more than this part of the residual is the last with its factors.
 const CONTRACTION: f64 = 0.1;
 
@@ -49,7 +53,9 @@ pub struct Wall {
     /// Contact pressure over penetration.
     contact_stiffness: f64,
     /// What touches the outer surface.
-    pub surface: Surface,
+    surface: Surface,
+    /// Its friction, if it has any.
+    sliding: Option<Sliding>,
     /// Undeformed radii and heights of each column's outer edge.
     outer: Vec<[[f64; 3]; 2]>,
     fronts: Fronts,
@@ -92,6 +98,7 @@ impl Wall {
             by_node: step.nodes.clone(),
             by_edge: vec![[[0.0; 6]; 6]; elements.along],
             surface: Surface::Plate,
+            sliding: None,
             negative: Vec::with_capacity(elements.along),
             by_pressure: step.clone(),
             step,
@@ -184,6 +191,7 @@ impl Wall {
         // Not set up yet.
         let mut moved = f64::INFINITY;
         let mut factors_hold = false;
+        let mut damping: f64 = 1.0;
         for _ in 0..MAX_ITERATIONS {
             let balance = self.balance(state, plate, fluid);
             self.iterations += 1;
@@ -210,13 +218,21 @@ impl Wall {
             } else if !factors_hold || balance.residual > CONTRACTION * before {
                 self.factor(state, plate, usize::MAX).ok_or(Failure::Singular)?;
             }
+            if self.sliding.is_some() {
+                // Points that stick and slide in turn.
+                damping = if balance.residual > before {
+                    (0.5 * damping).max(LEAST_DAMPING)
+                } else {
+                    (2.0 * damping).min(1.0)
+                };
+            }
             before = balance.residual;
             let excess = fluid.excess(&balance, state);
             let largest = self.solve(fluid, excess).ok_or(Failure::Singular)?;
             let limit = STEP_LIMIT * self.mesh.thickness / largest;
             factors_hold = limit >= 1.0;
-            moved += largest * limit.min(1.0);
-            state.add(limit.min(1.0), &self.step);
+            moved += largest * limit.min(damping);
+            state.add(limit.min(damping), &self.step);
         }
         Err(Failure::Stalled { residual: before })
     }
@@ -266,8 +282,66 @@ impl Wall {
     fn action(&self, state: &State, column: usize, apex: f64) -> Option<Action> {
         let place = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
         let (stiffness, near) = (self.contact_stiffness, self.mesh.thickness);
-        self.surface
-            .action(stiffness, &self.outer[column], &place, apex, near)
+        let undeformed = &self.outer[column];
+        let mut action = self.surface.action(stiffness, undeformed, &place, apex, near)?;
+        if let Some(sliding) = &self.sliding {
+            let place = self.over_apex(state, column, apex);
+            sliding.add(column, &self.surface, undeformed, &place, &mut action);
+        }
+        Some(action)
+    }
+
+    /// Radii, and heights over an apex, of a column's outer edge.
+    fn over_apex(&self, state: &State, column: usize, apex: f64) -> [[f64; 3]; 2] {
+        let [r, z] = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
+        [r, z.map(|z| z - apex)]
+    }
+
+    /// Puts an object in the plate's place.
+    pub fn touch(&mut self, surface: Surface, friction: Friction) {
+        self.surface = surface;
+        self.sliding = Sliding::new(friction, self.contact_stiffness, self.mesh.elements.along);
+    }
+
+    /// What touches the outer surface.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// Whether it has friction: a state then depends on those before it.
+    pub fn has_friction(&self) -> bool {
+        self.sliding.is_some()
+    }
+
+    /// Starts a step from a state, in which the points of the outer edges have these anchors. Nothing without friction.
+    pub fn start_sliding(&mut self, state: &State, apex: f64, anchors: &[f64]) {
+        let Some(mut sliding) = self.sliding.take() else {
+            return;
+        };
+        for column in 0..self.mesh.elements.along {
+            sliding.start(
+                column,
+                &self.surface,
+                &self.over_apex(state, column, apex),
+                anchors,
+            );
+        }
+        self.sliding = Some(sliding);
+    }
+
+    /// The anchors at the end of a step in a settled state, and the energy that sliding took in it. Nothing without friction.
+    pub fn finish_sliding(&self, state: &State, apex: f64) -> (Vec<f64>, f64) {
+        let Some(sliding) = &self.sliding else {
+            return (Vec::new(), 0.0);
+        };
+        let (mut anchors, mut dissipated) = (Vec::new(), 0.0);
+        for column in 0..self.mesh.elements.along {
+            let place = self.over_apex(state, column, apex);
+            let (of_edge, by_edge) = sliding.finish(column, &self.surface, &self.outer[column], &place);
+            anchors.extend(of_edge);
+            dissipated += by_edge;
+        }
+        (anchors, dissipated)
     }
 
     /// Takes the forces out that act on what is held: the rim, and the pole sideways.

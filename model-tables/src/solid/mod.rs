@@ -6,7 +6,7 @@
 //! times the contact area: at light touch the wall's bending carries most of it.
 //!
 //! [`mesh`] (the undeformed wall) -> [`element`] (the mechanics of a point) -> [`batch`] (forces and stiffness of four elements side by side,
-//! in [`lanes`]), [`fluid`] (the volume inside) and [`object`] with [`plate`] (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
+//! in [`lanes`]), [`fluid`] (the volume inside) and [`object`] with [`plate`] and `friction` (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
 //! (Newton's method) -> [`inflation`] -> [`path`] (the
 //! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units)
 //! -> [`section`] (what is read off along the meridian).
@@ -23,6 +23,8 @@ pub mod equilibrium;
 mod error;
 #[cfg(feature = "std")]
 pub mod fluid;
+#[cfg(feature = "std")]
+mod friction;
 #[cfg(feature = "std")]
 pub mod front;
 #[cfg(feature = "std")]

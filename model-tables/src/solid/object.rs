@@ -1,4 +1,4 @@
-//! What touches the outer surface: a rigid, frictionless body of revolution on the axis.
+//! What touches the outer surface: a rigid body of revolution on the axis. [`friction`](super::friction) is apart.
 //!
 //! As with the [`plate`], a stiff penalty: the contact pressure is `k d` at a penetration `d` along the object's normal, per undeformed
 //! area. Along an edge of an element the penetration is nearly a parabola, as an edge is short against every radius of curvature but a
@@ -9,6 +9,7 @@
 use super::mesh::{shape, slope};
 use super::plate::{self, PLACES, WEIGHTS};
 use crate::object::Shape;
+use core::f64::consts::FRAC_PI_2;
 
 /// Most parts of an edge, cut where the object's curvature jumps and where the contact ends.
 const MOST_PARTS: usize = 16;
@@ -33,10 +34,10 @@ pub enum Surface {
     },
 }
 
-/// Penetration of a point, with its derivatives by radius and height.
+/// A quantity of a point - its penetration, or its place along the object's meridian - with derivatives by radius and height.
 #[derive(Clone, Copy, Debug)]
-struct Penetration {
-    value: f64,
+pub(super) struct Local {
+    pub(super) value: f64,
     first: [f64; 2],
     /// By radius twice, by both, by height twice.
     second: [f64; 3],
@@ -57,16 +58,32 @@ pub struct Action {
 
 /// Penetration into a circle that is centred at `centre` and passes through the origin below or above it: `sign` is 1 inside a
 /// ball, -1 outside a hollow. Without cancellation where the radius is large.
-fn circle(sign: f64, [r, z]: [f64; 2], [centre_r, centre_z]: [f64; 2], radius: f64) -> Penetration {
+fn circle(sign: f64, [r, z]: [f64; 2], [centre_r, centre_z]: [f64; 2], radius: f64) -> Local {
     let (x, y) = (r - centre_r, z - centre_z);
     let distance = libm::hypot(x, y);
     // radius^2 - distance^2, with y = z - centre_z and |centre_z| the radius.
     let squares = z * (2.0 * centre_z - z) - x * x;
     let (n, m) = (x / distance, y / distance);
-    Penetration {
+    Local {
         value: sign * squares / (radius + distance),
         first: [-sign * n, -sign * m],
         second: [m * m, -n * m, n * n].map(|part| -sign * part / distance),
+    }
+}
+
+/// `start + radius atan(x / y)`: `y` falls with the height (`sign` 1) or grows with it (-1).
+fn angle(sign: f64, x: f64, y: f64, radius: f64, start: f64) -> Local {
+    let squared = x * x + y * y;
+    let over = radius / squared;
+    let twice = 2.0 * over / squared;
+    Local {
+        value: start + radius * libm::atan2(x, y),
+        first: [over * y, sign * over * x],
+        second: [
+            -twice * x * y,
+            sign * 0.5 * twice * (y * y - x * x),
+            twice * x * y,
+        ],
     }
 }
 
@@ -85,8 +102,8 @@ impl Surface {
         })
     }
 
-    fn penetration(&self, at: [f64; 2]) -> Penetration {
-        let flat = |along: usize, value: f64, sign: f64| Penetration {
+    fn penetration(&self, at: [f64; 2]) -> Local {
+        let flat = |along: usize, value: f64, sign: f64| Local {
             value,
             first: if along == 0 { [sign, 0.0] } else { [0.0, sign] },
             second: [0.0; 3],
@@ -102,6 +119,29 @@ impl Surface {
                     flat(0, edge + rim - at[0], -1.0)
                 } else {
                     circle(1.0, at, [edge, rim], rim)
+                }
+            }
+        }
+    }
+
+    /// Where a point is along the object's meridian, from the apex on.
+    pub(super) fn arc(&self, [r, z]: [f64; 2]) -> Local {
+        let straight = |value: f64, first: [f64; 2]| Local {
+            value,
+            first,
+            second: [0.0; 3],
+        };
+        match *self {
+            Self::Plate => straight(r, [1.0, 0.0]),
+            Self::Ball(radius) => angle(1.0, r, radius - z, radius, 0.0),
+            Self::Cup(radius) => angle(-1.0, r, radius + z, radius, 0.0),
+            Self::Punch { flat, rim } => {
+                if r <= flat {
+                    straight(r, [1.0, 0.0])
+                } else if z >= rim {
+                    straight(flat + rim * FRAC_PI_2 + z - rim, [0.0, 1.0])
+                } else {
+                    angle(1.0, r - flat, rim - z, rim, flat)
                 }
             }
         }
@@ -154,7 +194,8 @@ impl Surface {
                     continue;
                 }
                 let weight = stiffness * half * weight * plate::area(undeformed, x);
-                action.add(weight, &n, &penetration);
+                action.energy += 0.5 * weight * penetration.value * penetration.value;
+                action.add(weight, &n, &penetration, penetration.value, 1.0);
             }
         }
         action
@@ -245,20 +286,20 @@ fn parabola(values: &[f64; 3], level: f64) -> [f64; 3] {
 }
 
 /// Radius and height where the shape functions have these values, or their derivatives.
-fn at(n: &[f64; 3], place: &[[f64; 3]; 2]) -> [f64; 2] {
+pub(super) fn at(n: &[f64; 3], place: &[[f64; 3]; 2]) -> [f64; 2] {
     place.map(|y| n[0] * y[0] + n[1] * y[1] + n[2] * y[2])
 }
 
 impl Action {
-    /// Adds that of a point with a weight, where the shape functions have the values `n`.
-    fn add(&mut self, weight: f64, n: &[f64; 3], penetration: &Penetration) {
-        let Penetration { value, first, second } = penetration;
-        self.energy += 0.5 * weight * value * value;
-        self.force += weight * value * first[1];
-        let by = |c: usize, d: usize| weight * (first[c] * first[d] + value * second[c + d]);
+    /// Adds that of a point with a weight, where the shape functions have the values `n`: of a traction against a local quantity, and
+    /// its derivative by that.
+    pub(super) fn add(&mut self, weight: f64, n: &[f64; 3], local: &Local, traction: f64, slope: f64) {
+        let Local { first, second, .. } = local;
+        self.force += weight * traction * first[1];
+        let by = |c: usize, d: usize| weight * (slope * first[c] * first[d] + traction * second[c + d]);
         let by = [[by(0, 0), by(0, 1)], [by(1, 0), by(1, 1)]];
         for i in 0..6 {
-            self.first[i] += weight * value * first[i / 3] * n[i % 3];
+            self.first[i] += weight * traction * first[i / 3] * n[i % 3];
             for j in 0..6 {
                 self.second[i][j] += by[i / 3][j / 3] * n[i % 3] * n[j % 3];
             }

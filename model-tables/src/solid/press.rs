@@ -141,7 +141,10 @@ impl Press {
             RestBy::PoleStretch(stretch) => inflation::bonded(&mut wall, &mut state, length, stretch, free)?,
             RestBy::EquatorRadius(_) | RestBy::Height(_) => return Err(SolidError::RestNotForSolid.into()),
         }
-        wall.surface = surface(&design.object, &wall, &state, length)?;
+        wall.touch(
+            surface(&design.object, &wall, &state, length)?,
+            design.object.friction,
+        );
         let volume = wall.volume(&state);
         let unit = length * length * length;
         let energy = wall.energy(&state);

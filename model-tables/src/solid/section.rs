@@ -74,7 +74,7 @@ pub fn contact_edge(wall: &Wall, state: &State, plate: f64) -> ContactEdge {
         let [r, z] = edge(&wall.mesh, &state.nodes, column, outer);
         let depth = |x: f64| {
             let n = shape(x);
-            wall.surface.depth(dot(&n, &r), dot(&n, &z) - plate)
+            wall.surface().depth(dot(&n, &r), dot(&n, &z) - plate)
         };
         let found = |x: f64| ContactEdge {
             radius: dot(&shape(x), &r),
