@@ -18,7 +18,6 @@ use model_tables::design::{Design, RestBy};
 use model_tables::material::stability;
 use model_tables::material::{Derivatives, Hyperelastic, Law, Scaled};
 use model_tables::membrane::state::UnitScale;
-use model_tables::object::Object;
 
 /// Components of the state in the free zone: radius, `p`, height, volume.
 pub const STATE: usize = 4;
@@ -275,6 +274,7 @@ impl PlainMembrane {
 mod tests {
     use super::*;
     use model_tables::design::Membrane;
+    use model_tables::object::Object;
 
     fn problem() -> PlainMembrane {
         PlainMembrane::new(&Design {
