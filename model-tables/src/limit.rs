@@ -101,3 +101,10 @@ pub(crate) fn refuse_cup(f: &mut fmt::Formatter<'_>, radius: f64, least: f64) ->
         least * 1e3
     )
 }
+
+/// That a cylinder is no body of revolution on the axis.
+pub(crate) fn refuse_cylinder(f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    f.write_str(
+        "object.shape = \"cylinder\" has no axial symmetry, as the model has: give a ball, a cup or a punch",
+    )
+}

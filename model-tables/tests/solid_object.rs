@@ -179,7 +179,7 @@ fn balls_and_cups_meet_at_the_plate() {
         );
         before = found;
     }
-    assert!((before / plate - 1.0).abs() < 1e-4);
+    assert!((before / plate - 1.0).abs() < 5e-4);
 }
 
 /// A coin is a plate until its rim is reached; then it is less than one.
@@ -304,4 +304,63 @@ fn energy_closes_with_friction() {
             assert!(part.abs() < 5e-3, "{object:?} {}: {part:e}", state.indentation);
         }
     }
+}
+
+/// Thin walls ripple under the contact; a press onto a ball or into a cup goes on all the same.
+#[test]
+fn thin_walls_are_pressed_onto_balls_and_cups() {
+    let walls = [
+        (dome(9.0, 7.0, 0.3, Law::NeoHookean { c1: 100e3 }), 7e-3),
+        (dome(12.0, 8.0, 0.5, Law::NeoHookean { c1: 100e3 }), 8e-3),
+    ];
+    for (wall, height) in walls {
+        for (object, deepest) in [
+            (ball(3.0), 0.38),
+            (ball(8.0), 0.38),
+            (ball(50.0), 0.38),
+            (cup(30.0), 0.25),
+        ] {
+            let mut press = Press::new(&touching(wall, &object), FULL).expect("an object");
+            for part in [0.05, 0.5, 1.0] {
+                let state = press
+                    .at_indentation(part * deepest * height)
+                    .unwrap_or_else(|error| panic!("{object:?} {error}"));
+                assert!((state.energy / state.work - 1.0).abs() < 5e-3, "{object:?}");
+            }
+        }
+    }
+}
+
+/// What tables of a plate are worth on a ball of 8 mm radius, at one pressure up to 27 kPa: an independent solution has up to 38 % too much
+/// force and 29 to 33 % too little indentation from 5 kPa on. The README quotes it.
+#[test]
+fn a_plates_tables_read_too_much_force_on_a_ball() {
+    let grid: Vec<f64> = (1..=50).map(|k| 5e-5 * f64::from(k)).collect();
+    let mut press_all = |object: &Object| -> Vec<[f64; 3]> {
+        let mut press = printed(object, FULL).expect("an object");
+        let of = |depth: &f64| {
+            let state = press.at_indentation(*depth).expect("a state");
+            [1e-3 * state.pressure, state.force, *depth]
+        };
+        grid.iter().map(of).collect()
+    };
+    let (plate, ball) = (press_all(&Object::PLATE), press_all(&ball(8.0)));
+    let (mut force, mut indentation) = (0.0_f64, 0.0_f64);
+    for [pressure, of_ball, depth] in ball.into_iter().filter(|state| state[0] > 1.0 && state[0] < 27.0) {
+        let after = plate
+            .iter()
+            .position(|state| state[0] > pressure)
+            .expect("pressed as far");
+        let ([p0, f0, h0], [p1, f1, h1]) = (plate[after - 1], plate[after]);
+        let part = (pressure / p0).ln() / (p1 / p0).ln();
+        force = force.max(100.0 * (f0 * (f1 / f0).powf(part) / of_ball - 1.0));
+        indentation = indentation.max(100.0 * (1.0 - h0 * (h1 / h0).powf(part) / depth));
+    }
+    let quoted = format!("up to {force:.0} % too much force and {indentation:.0} % too little indentation");
+    println!("{quoted}");
+    assert!(
+        (37.0..39.5).contains(&force) && (29.0..34.0).contains(&indentation),
+        "{quoted}"
+    );
+    assert!(include_str!("../../README.md").contains(&quoted), "{quoted}");
 }

@@ -1,7 +1,7 @@
 //! Why the solid gives no answer, in words.
 
 use super::Failure;
-use crate::limit::{Limit, refuse_cup, refuse_indentation, refuse_unsolved};
+use crate::limit::{Limit, refuse_cup, refuse_cylinder, refuse_indentation, refuse_unsolved};
 use core::fmt;
 
 /// Why the solid gives no answer.
@@ -76,10 +76,7 @@ impl fmt::Display for SolidError {
                 asked * 1e-3,
                 greatest * 1e-3
             ),
-            Self::NotAxisymmetric => write!(
-                f,
-                "object.shape = \"cylinder\" has no axial symmetry, as the model has: give a ball, a cup or a punch"
-            ),
+            Self::NotAxisymmetric => refuse_cylinder(f),
             Self::CupTooTight { radius, least } => refuse_cup(f, radius, least),
             Self::RestUnsolved { failure } => {
                 write!(

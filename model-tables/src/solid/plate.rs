@@ -48,7 +48,7 @@ pub fn action(stiffness: f64, undeformed: &[[f64; 3]; 2], z: &[f64; 3], plate: f
     // The penetration is `c + b x + a x^2`.
     let (c, b) = (z[1] - plate, 0.5 * (z[2] - z[0]));
     let a = 0.5 * (z[0] + z[2]) - z[1];
-    let (cuts, count) = cuts([a, b, c]);
+    let (cuts, count) = cuts(a, b, c);
     for part in cuts[..count].windows(2) {
         let (middle, half) = (0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0]));
         if c + middle * (b + middle * a) <= 0.0 {
@@ -73,8 +73,8 @@ pub fn action(stiffness: f64, undeformed: &[[f64; 3]; 2], z: &[f64; 3], plate: f
     action
 }
 
-/// Where `[-1, 1]` is to be cut so that `a x^2 + b x + c` keeps its sign in between, ends included, and how many cuts there are.
-pub(super) fn cuts([a, b, c]: [f64; 3]) -> ([f64; 4], usize) {
+/// Where `[-1, 1]` is to be cut so that `c + b x + a x^2` keeps its sign in between, ends included, and how many cuts there are.
+fn cuts(a: f64, b: f64, c: f64) -> ([f64; 4], usize) {
     let mut cuts = [-1.0; 4];
     let mut count = 1;
     let discriminant = b * b - 4.0 * a * c;

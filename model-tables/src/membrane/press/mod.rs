@@ -132,7 +132,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// apex from first touch.
     ///
     /// # Errors
-    /// [`MembraneError::ObjectNotForMembrane`] for anything but a frictionless plate, ball or cup, and [`MembraneError::CupTooTight`] for a
+    /// [`MembraneError::NotAxisymmetric`] for a cylinder, [`MembraneError::ObjectNotForMembrane`] for anything else but a frictionless plate, ball or cup, and [`MembraneError::CupTooTight`] for a
     /// cup that would touch beside the pole first.
     pub fn touching(mut self, object: &Object) -> Result<Self, MembraneError> {
         let length = self.scale.length;
@@ -140,9 +140,8 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             ObjectShape::Plate => 0.0,
             ObjectShape::Ball { radius } => length / radius,
             ObjectShape::Cup { radius } => -length / radius,
-            ObjectShape::Cylinder { .. } | ObjectShape::Punch { .. } => {
-                return Err(MembraneError::ObjectNotForMembrane);
-            }
+            ObjectShape::Cylinder { .. } => return Err(MembraneError::NotAxisymmetric),
+            ObjectShape::Punch { .. } => return Err(MembraneError::ObjectNotForMembrane),
         };
         if object.friction != Friction::NONE {
             return Err(MembraneError::ObjectNotForMembrane);
