@@ -336,7 +336,7 @@ fn thin_walls_are_pressed_onto_balls_and_cups() {
 #[test]
 fn a_plates_tables_read_too_much_force_on_a_ball() {
     let grid: Vec<f64> = (1..=50).map(|k| 5e-5 * f64::from(k)).collect();
-    let mut press_all = |object: &Object| -> Vec<[f64; 3]> {
+    let press_all = |object: &Object| -> Vec<[f64; 3]> {
         let mut press = printed(object, FULL).expect("an object");
         let of = |depth: &f64| {
             let state = press.at_indentation(*depth).expect("a state");
