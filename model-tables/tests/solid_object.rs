@@ -26,6 +26,7 @@ struct Reference {
 }
 
 #[derive(Deserialize)]
+#[expect(clippy::struct_field_names, reason = "the names in the file")]
 struct Dome {
     radial_mm: f64,
     axial_mm: f64,
