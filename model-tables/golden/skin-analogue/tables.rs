@@ -6,8 +6,8 @@ pub const NAME: &str = "skin-analogue";
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x73a603700cd3b677,
-    table_version: 4,
-    certificate: 0x21a8c7fc0ffa92d6,
+    table_version: 5,
+    certificate: 0xb23bfafa93669e69,
     rest_pressure: 8269,
     maximum_pressure: 16195,
     transducer: model_tables::constants::Transducer {

@@ -189,10 +189,17 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     for byte in generated.design.hash() {
         write!(hash, "{byte:02x}")?;
     }
+    let how = if certificate.every_input_evaluated {
+        "# What holds of the tables of this design. Every representable input was evaluated with the lookup\n\
+         # that runs on the chip, and compared with the curve of the full model."
+    } else {
+        "# What holds of the tables of this design on every representable input, as the lookup that runs on the chip\n\
+         # answers it, compared with the curve of the full model. Largest errors, steps and monotonicity are exact: bounds\n\
+         # of the sums settle all inputs but those evaluated. Mean and root-mean-square errors are of evenly spaced inputs."
+    };
     writeln!(
         out,
-        "# What holds of the tables of this design. Every representable input was evaluated with the lookup\n\
-         # that runs on the chip, and compared with the curve of the full model.\n\
+        "{how}\n\
          design = \"{}\"\n\
          design_sha256 = \"{hash}\"\n\
          table_version = {}\n\
@@ -245,6 +252,11 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
     let bits = tables.layout.pressure_fraction_bits;
     let resolvable = generated.certified.resolvable_percent;
     let held_to = generated.limits().map(Limit::word);
+    let integers = if held_to.contains(&Limit::Integers.word()) {
+        ", or \"integers\" where no tables reach it"
+    } else {
+        ""
+    };
     let touch = tables.lookup(PressureRise::from_pascals(transducer.resolution_pa, bits));
     writeln!(
         out,
@@ -256,7 +268,7 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
          resolution_moves_indentation_nm = {}\n\
          half_step_is_force_percent = {:.6}\n\
          half_step_is_indentation_percent = {:.6}\n\
-         # What the tables are held to: \"accuracy\", or \"transducer\" where more was asked than it can tell.\n\
+         # What the tables are held to: \"accuracy\", or \"transducer\" where more was asked than it can tell{}.\n\
          force_held_to = \"{}\"\n\
          indentation_held_to = \"{}\"",
         transducer.resolution_pa,
@@ -265,6 +277,7 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
         touch.indentation.0,
         resolvable[0],
         resolvable[1],
+        integers,
         held_to[0],
         held_to[1],
     )

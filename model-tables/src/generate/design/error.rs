@@ -1,5 +1,6 @@
 //! Why a design gets no tables.
 
+use crate::constants::BELOW_ZERO_DEVIATIONS;
 use crate::curve::CurveFailure;
 use crate::design_file::DesignFileError;
 use crate::generate::NoTables;
@@ -32,6 +33,15 @@ pub enum GenerateError {
         range: [f64; 2],
         /// The absolute range that those are left of, where `transducer.range_kpa` is one; kilopascals.
         absolute: Option<[f64; 2]>,
+    },
+    /// The whole press raises the pressure by no more than what passes for noise around zero.
+    Unfelt {
+        /// By how much, pascals.
+        rise: f64,
+        /// What passes for noise, pascals.
+        least: f64,
+        /// The transducer's key that says so, and its value in pascals.
+        key: (&'static str, f64),
     },
     /// The data that the tables are to come from end before `max_indentation_mm`.
     BeyondData {
@@ -101,6 +111,16 @@ impl fmt::Display for GenerateError {
                     }
                 }
             }
+            Self::Unfelt {
+                rise,
+                least,
+                key: (key, value),
+            } => write!(
+                f,
+                "the whole press raises the pressure by {rise:.3} Pa, and up to {least:.3} Pa is noise \
+                 ({BELOW_ZERO_DEVIATIONS} times transducer.{key} = {value}): choose a finer transducer, or a design \
+                 whose pressure rises more"
+            ),
             Self::BeyondData { asked, deepest } => write!(
                 f,
                 "press.max_indentation_mm = {asked} is beyond the data in [calibration], which end at {deepest} mm: \

@@ -1,11 +1,13 @@
 //! From a design to its tables: the full model, and every refusal on the way.
 
 mod error;
+mod limit;
 
 pub use error::{GenerateError, State};
+pub use limit::Limit;
 
-use super::{Certified, tables};
-use crate::constants::{Transducer, TransducerKind};
+use super::{Certified, NoTables, tables};
+use crate::constants::{BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{DataCurve, DesignFile, Supply, TransducerKindSection, TransducerSection, Transfer};
 use crate::model::Fingertip;
@@ -18,6 +20,9 @@ const CHECKED_SOLID: usize = 6;
 /// How much deeper than the press the curve goes where it can, so that the last input can be a number that the chip handles in
 /// fewer instructions: the pressure, which grows faster than the indentation, then goes on by as much at least.
 const BEYOND: f64 = 1.0 + 1.0 / 64.0;
+
+/// How often the accuracy is doubled at most where worse is allowed: a thousand times what was asked.
+const MOST_DOUBLINGS: u32 = 10;
 
 /// What tables of a design are made from.
 #[derive(Clone, Debug)]
@@ -77,6 +82,19 @@ pub fn from_design_file(path: &Path) -> Result<Generated, GenerateError> {
 /// # Errors
 /// [`GenerateError`].
 pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
+    make(design, 0)
+}
+
+/// The same, where no tables meet the accuracy with those of the nearest accuracy that some meet: that asked for, doubled as often
+/// as it takes. [`Generated::shortfall`] says what was not reached.
+///
+/// # Errors
+/// [`GenerateError`].
+pub fn from_design_or_worse(design: DesignFile) -> Result<Generated, GenerateError> {
+    make(design, MOST_DOUBLINGS)
+}
+
+fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
     let Solved {
@@ -86,8 +104,18 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
         end,
         rung,
     } = solve(&design)?;
-    let certified =
-        tables(&curve, end, &accuracy, transducer.resolution_pa).map_err(GenerateError::NoTables)?;
+    let mut allowed = accuracy;
+    let mut doubled = 0;
+    let certified = loop {
+        match tables(&curve, end, &allowed, transducer.resolution_pa) {
+            Err(NoTables::Inaccurate { .. }) if doubled < doublings => {
+                allowed.force_percent_of_reading *= 2.0;
+                allowed.indentation_percent_of_reading *= 2.0;
+                doubled += 1;
+            }
+            found => break found.map_err(GenerateError::NoTables)?,
+        }
+    };
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let model_error = rung.and_then(|rung| convergence(&design, &rung, &curve, end, from));
     Ok(Generated {
@@ -126,6 +154,7 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         State::Pressed { indentation },
         rest_pressure + end.pressure_rise,
     )?;
+    is_felt(&transducer, end.pressure_rise)?;
     Ok(Solved {
         transducer,
         rest_pressure,
@@ -133,6 +162,21 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         end,
         rung,
     })
+}
+
+/// Refuses a press that never leaves what the firmware takes for noise around zero.
+fn is_felt(transducer: &TransducerSection, rise: f64) -> Result<(), GenerateError> {
+    let (resolution, noise) = (transducer.resolution_pa, transducer.noise_pa);
+    let key = if noise > resolution {
+        ("noise_pa", noise)
+    } else {
+        ("resolution_pa", resolution)
+    };
+    let least = BELOW_ZERO_DEVIATIONS as f64 * key.1;
+    if rise > least {
+        return Ok(());
+    }
+    Err(GenerateError::Unfelt { rise, least, key })
 }
 
 /// Solves the design again on a finer mesh at some indentations.
@@ -236,70 +280,7 @@ fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Resul
     })
 }
 
-/// What tables are held to.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Limit {
-    /// What `[accuracy]` asks.
-    Accuracy,
-    /// Half of what the transducer tells apart, which is coarser.
-    Transducer,
-}
-
-impl Limit {
-    /// In a word, as the certificate has it.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Accuracy => "accuracy",
-            Self::Transducer => "transducer",
-        }
-    }
-}
-
 impl Generated {
-    /// What force and indentation are held to.
-    pub fn limits(&self) -> [Limit; 2] {
-        self.asked_percent().map(|asked| {
-            if self.floor() > asked {
-                Limit::Transducer
-            } else {
-                Limit::Accuracy
-            }
-        })
-    }
-
-    /// Percent of reading below which tables are waste for the transducer.
-    fn floor(&self) -> f64 {
-        let [force, indentation] = self.certified.resolvable_percent;
-        force.min(indentation)
-    }
-
-    /// What `[accuracy]` asks of force and indentation, percent of reading.
-    pub fn asked_percent(&self) -> [f64; 2] {
-        self.design.accuracy.as_ref().map_or([0.0; 2], |accuracy| {
-            [
-                accuracy.force_percent_of_reading,
-                accuracy.indentation_percent_of_reading,
-            ]
-        })
-    }
-
-    /// One line that justifies how fine the tables are: what was asked, and what the transducer can tell.
-    pub fn choice(&self) -> String {
-        let [force, indentation] = self.asked_percent();
-        let tells = format!(
-            "half of transducer.resolution_pa = {} is {:.4} % of reading where it is least",
-            self.transducer.resolution_pa,
-            self.floor()
-        );
-        if self.limits() == [Limit::Accuracy; 2] {
-            format!("held to the {force} % and {indentation} % that [accuracy] asks; {tells}")
-        } else {
-            format!(
-                "[accuracy] asks {force} % and {indentation} %, but {tells}: the tables stop there, as finer ones would be waste"
-            )
-        }
-    }
-
     /// First eight bytes of the design's hash, big-endian: [`crate::constants::DesignConstants::hash`].
     pub fn hash(&self) -> u64 {
         let [a, b, c, d, e, f, g, h, ..] = self.design.hash();
