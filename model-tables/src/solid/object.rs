@@ -260,7 +260,10 @@ mod tests {
         Surface::Plate,
         Surface::Ball(0.4),
         Surface::Cup(3.0),
-        Surface::Punch { flat: 0.107, rim: 0.05 },
+        Surface::Punch {
+            flat: 0.107,
+            rim: 0.05,
+        },
     ];
 
     fn action(surface: Surface, place: &[[f64; 3]; 2], apex: f64) -> Action {

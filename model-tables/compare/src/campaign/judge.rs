@@ -99,7 +99,9 @@ fn reason(error: &MembraneError, press: Option<&Press>) -> &'static str {
         MembraneError::NotAnIndentation { .. } => return "not-an-indentation",
         MembraneError::LawUnstable { .. } => return "law-unstable",
         MembraneError::Unstretched => return "no-rest-state",
-        MembraneError::NotAxisymmetric | MembraneError::ObjectNotForMembrane | MembraneError::CupTooTight { .. } => {
+        MembraneError::NotAxisymmetric
+        | MembraneError::ObjectNotForMembrane
+        | MembraneError::CupTooTight { .. } => {
             return "object-not-for-membrane";
         }
         MembraneError::Unheld { .. } => return "inflates-by-itself",

@@ -2,11 +2,11 @@
 
 use model_tables::curve::Contact;
 use model_tables::design::{Design, Membrane, RestBy};
-use model_tables::object::Object;
 use model_tables::material::Law;
 use model_tables::material::preset::PRESETS;
 use model_tables::model::ModelError;
 use model_tables::model::choice::Wanted;
+use model_tables::object::Object;
 use model_tables::random::Random;
 use model_tables::solid::SolidError;
 use model_tables::solid::mesh::Elements;
@@ -110,7 +110,9 @@ pub fn draw(index: u64) -> Design {
             compliance
         } else {
             0.0
-        }, object: Object::PLATE, }
+        },
+        object: Object::PLATE,
+    }
 }
 
 fn list(press: &mut Press, depths: &[f64]) -> Result<Vec<Contact>, SolidError> {

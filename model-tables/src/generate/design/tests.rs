@@ -73,10 +73,10 @@ fn tables_of_a_ball_give_its_force_and_indentation() {
     let tables = &generated.certified.tables;
     let bits = tables.layout.pressure_fraction_bits;
     for (pressure, force, indentation) in [
-        (1.38841, 0.138377, 0.5),
-        (3.92468, 0.311663, 1.0),
-        (8.49838, 0.625282, 1.5),
-        (15.9625, 1.24354, 2.0),
+        (1.388_41, 0.138_377, 0.5),
+        (3.924_68, 0.311_663, 1.0),
+        (8.498_38, 0.625_282, 1.5),
+        (15.962_5, 1.243_54, 2.0),
     ] {
         let reading = tables.lookup(PressureRise::from_pascals(1e3 * pressure, bits));
         let (by_force, by_depth) = (
