@@ -100,6 +100,7 @@ impl Breadcrumb {
     pub fn to_words(&self) -> [u32; WORDS] {
         let zero = self.zero.unwrap_or(Zero {
             pressure: Pressure(0),
+            bound: 0,
             verified: false,
         });
         let flags = u32::from(self.good)
@@ -114,7 +115,7 @@ impl Breadcrumb {
             self.design_hash as u32,
             (self.design_hash >> 32) as u32,
             zero.pressure.0 as u32,
-            0,
+            zero.bound as u32,
             0,
         ];
         words[WORDS - 1] = check(&words);
@@ -123,7 +124,7 @@ impl Breadcrumb {
 
     /// What was kept; nothing when the words are none that [`Breadcrumb::to_words`] gives.
     pub fn from_words(words: &[u32; WORDS]) -> Option<Self> {
-        let [magic, flags, detail, low, high, zero, _, sum] = *words;
+        let [magic, flags, detail, low, high, zero, bound, sum] = *words;
         if magic != MAGIC || sum != check(words) {
             return None;
         }
@@ -136,6 +137,7 @@ impl Breadcrumb {
             design_hash: u64::from(high) << 32 | u64::from(low),
             zero: flag(1).then_some(Zero {
                 pressure: Pressure(zero as i32),
+                bound: bound as i32,
                 verified: flag(2),
             }),
         })
@@ -223,6 +225,7 @@ mod tests {
         design_hash: 0x0123_4567_89AB_CDEF,
         zero: Some(Zero {
             pressure: Pressure(-42),
+            bound: 7,
             verified: true,
         }),
     };
@@ -292,14 +295,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_kept_is_found(fault in 0..LastFault::CODES.len(), detail in any::<u32>(), resets in any::<u8>(), flags in any::<[bool; 3]>(), hash in any::<u64>(), zero in any::<i32>()) {
+        fn what_is_kept_is_found(fault in 0..LastFault::CODES.len(), detail in any::<u32>(), resets in any::<u8>(), flags in any::<[bool; 3]>(), hash in any::<u64>(), zero in any::<[i32; 2]>()) {
             let crumb = Breadcrumb {
                 fault: LastFault::CODES[fault].0,
                 detail,
                 resets,
                 good: flags[0],
                 design_hash: hash,
-                zero: flags[1].then_some(Zero { pressure: Pressure(zero), verified: flags[2] }),
+                zero: flags[1].then_some(Zero { pressure: Pressure(zero[0]), bound: zero[1], verified: flags[2] }),
             };
             prop_assert_eq!(Breadcrumb::from_words(&crumb.to_words()), Some(crumb));
         }

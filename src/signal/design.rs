@@ -1,12 +1,11 @@
 //! The fingertip that a signal path is for: folded into the code of an image, or loaded at run time.
 
-use crate::signal::drift::Pace;
 use crate::signal::filter::Leaps;
 use crate::signal::fluid::Fall;
 use crate::signal::scale::Scale;
-use crate::signal::tare::gates::Gates;
 use crate::signal::touch::Thresholds;
 use crate::signal::uncertainty::Uncertainty;
+use crate::signal::zero::limits::Limits;
 use crate::transducer;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
@@ -31,20 +30,16 @@ pub struct Parameters {
     pub pressure_fraction_bits: u32,
     /// The last rise that the tables cover; beyond it they are saturated.
     pub last_rise: PressureRise,
-    /// Below this rise a reading is flagged.
-    pub lowest_rest: PressureRise,
     /// From one sample to the next, microseconds.
     pub period: u32,
     /// Of the transducer's pressure.
     pub scale: Scale,
     /// Of a zero, without a stored calibration.
-    pub gates: Gates,
+    pub limits: Limits,
     /// Of the filter.
     pub leaps: Leaps,
     /// Of a touch.
     pub thresholds: Thresholds,
-    /// Of the zero's drift.
-    pub pace: Pace,
     /// Of the zero, when it is a leak.
     pub fall: Fall,
     /// Of a rise.
@@ -58,19 +53,17 @@ impl Parameters {
     /// For more than 16 fraction bits: at compile time for an image; loaded tables have no more.
     pub const fn of(constants: DesignConstants, fraction_bits: u32, last_rise: PressureRise) -> Self {
         let period = transducer::period(&constants.transducer.kind);
-        let gates = Gates::of(&constants, fraction_bits);
+        let limits = Limits::of(&constants, fraction_bits);
         Self {
             pressure_fraction_bits: fraction_bits,
             last_rise,
-            lowest_rest: constants.transducer.lowest_rest(fraction_bits),
             period,
             scale: Scale::of(fraction_bits),
-            gates,
+            limits,
             leaps: Leaps::of(&constants, fraction_bits, period),
             thresholds: Thresholds::of(&constants, fraction_bits),
-            pace: Pace::of(&constants, fraction_bits, gates.travel()),
-            fall: Fall::of(&constants, fraction_bits, gates.far),
-            uncertainty: Uncertainty::of(&constants, fraction_bits, gates.reach()),
+            fall: Fall::of(&constants, fraction_bits, &limits),
+            uncertainty: Uncertainty::of(&constants, fraction_bits),
             constants,
         }
     }

@@ -1,0 +1,172 @@
+//! The value of a zero and the levels between which the true one lies.
+
+use crate::signal::zero::Zero;
+use crate::signal::zero::limits::{FRACTION, Limits};
+use crate::units::Pressure;
+
+/// Longest time that counts for rates of seconds, microseconds; drift counts for 38 h at once. So no product leaves its word.
+const LONGEST: u64 = 1 << 28;
+const LONGEST_DRIFT: u64 = 1 << 37;
+
+/// Levels are counts with [`FRACTION`] more bits.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) struct Interval {
+    /// What reads as no rise.
+    value: i64,
+    /// The true zero is not below: the word of who said that nothing presses, and drift since.
+    low: i64,
+    /// Nor above: the lowest quiet level since then, and drift since.
+    high: i64,
+    /// Where someone last saw it untouched.
+    witnessed: i64,
+    /// The last quiet level that did not look like a touch: it may be the zero.
+    looked: i64,
+    /// How far below the witnessed zero a quiet level lay that drift does not explain: there the word is void.
+    fallen: i64,
+    /// Someone saw it untouched.
+    pub(super) verified: bool,
+}
+
+const fn level(pressure: i32) -> i64 {
+    (pressure as i64) << FRACTION
+}
+
+const fn counts(level: i64) -> i32 {
+    (level >> FRACTION) as i32
+}
+
+/// The same, rounded up.
+const fn counts_above(level: i64) -> i32 {
+    counts(level.saturating_add((1 << FRACTION) - 1))
+}
+
+const fn travelled(rate: i64, passed: u64, longest: u64) -> i64 {
+    rate * (if passed < longest { passed } else { longest }) as i64
+}
+
+impl Interval {
+    /// A zero of this value; nobody saw it.
+    pub(super) const fn unverified(value: Pressure, high: i32, limits: &Limits) -> Self {
+        let value = level(value.0);
+        Self {
+            value,
+            low: value.saturating_sub(level(limits.level)),
+            high: level(high),
+            witnessed: value,
+            looked: value,
+            fallen: 0,
+            verified: false,
+        }
+    }
+
+    /// The verified zero from before a reset.
+    pub(super) const fn kept(zero: Zero) -> Self {
+        let (value, bound) = (level(zero.pressure.0), level(zero.bound));
+        Self {
+            value,
+            low: value.saturating_sub(bound),
+            high: value.saturating_add(bound),
+            witnessed: value,
+            looked: value,
+            fallen: 0,
+            verified: true,
+        }
+    }
+
+    /// What reads as no rise.
+    #[inline]
+    pub(super) const fn value(&self) -> Pressure {
+        Pressure(counts(self.value))
+    }
+
+    /// How far the true zero may be from the value, or from a level that may be the zero: counts, >= 0.
+    pub(super) fn bound(&self) -> i32 {
+        let up = self.high.saturating_sub(self.value);
+        let down = self.value.max(self.looked).saturating_sub(self.low);
+        counts_above(up.max(down).max(self.fallen)).max(0)
+    }
+
+    /// How far the true zero may be above the value, beyond what a quiet window leaves open: counts, >= 0.
+    pub(super) fn above(&self, limits: &Limits) -> i32 {
+        let open = self.value.saturating_add(level(limits.level));
+        counts(self.high.saturating_sub(open)).max(0)
+    }
+
+    /// Time passes: what is not seen drifts.
+    pub(super) fn drift(&mut self, limits: &Limits, passed: u64) {
+        let drift = travelled(limits.drift, passed, LONGEST_DRIFT);
+        self.low = self.low.saturating_sub(drift);
+        self.high = self.high.saturating_add(drift);
+    }
+
+    /// A quiet window at this pressure, so long after the one before.
+    pub(super) fn look(&mut self, limits: &Limits, pressure: Pressure, passed: u64) {
+        let (seen, margin, touch) = (level(pressure.0), level(limits.level), level(limits.bound));
+        let over = seen.saturating_sub(self.high);
+        if seen < self.low.saturating_sub(margin) {
+            self.fallen = self.fallen.max(self.witnessed.saturating_sub(seen));
+        }
+        if over > touch {
+            return;
+        }
+        self.looked = seen;
+        // Nothing presses with less than nothing: the true zero is not higher than what is seen. But the air may rise.
+        let air = travelled(limits.air, passed, LONGEST);
+        let evident = seen.saturating_add(margin);
+        self.high = evident.min(self.high.saturating_add(air));
+        let follows = travelled(limits.follows, passed, LONGEST);
+        let rise = seen.saturating_sub(self.value);
+        let followed = self.value.saturating_add(rise.clamp(-follows, follows));
+        self.value = followed.min(evident);
+        if !limits.absolute {
+            // A wall that creeps back lies below its rest for a while: neither goes there.
+            self.high = self.high.max(self.low.saturating_add(margin));
+            self.value = self.value.max(self.low);
+            // Nor without bound where a slow press looks like drift.
+            self.value = self.value.min(self.witnessed.saturating_add(touch));
+        }
+    }
+
+    /// The zero that this level makes when someone says that nothing presses. What lies over all that is known stays in the
+    /// bound.
+    pub(super) fn taken(&self, limits: &Limits, pressure: Pressure) -> Self {
+        let (seen, margin) = (level(pressure.0), level(limits.level));
+        let known = seen.min(self.high.saturating_sub(margin));
+        let mut taken = Self {
+            value: seen,
+            low: known.saturating_sub(margin),
+            high: self.high.min(seen.saturating_add(margin)),
+            witnessed: known,
+            looked: seen,
+            fallen: 0,
+            verified: true,
+        };
+        taken.verified = taken.bound() <= limits.bound;
+        taken
+    }
+
+    /// Someone vouches for the value.
+    pub(super) fn vouched(&self, limits: &Limits) -> Self {
+        let seen = self.value();
+        Self {
+            high: self.value.saturating_add(level(limits.level)),
+            ..*self
+        }
+        .taken(limits, seen)
+    }
+
+    /// This zero with what happened since `then`, when another took its place: so long ago. `now` is that other one.
+    pub(super) fn since(&self, limits: &Limits, then: &Self, now: &Self, passed: u64) -> Self {
+        let followed = now.value.saturating_sub(then.value);
+        let mut aged = Self {
+            value: self.value.saturating_add(followed),
+            looked: self.looked.saturating_add(followed),
+            ..*self
+        };
+        aged.drift(limits, passed);
+        Self {
+            high: now.high,
+            ..aged
+        }
+    }
+}
