@@ -145,12 +145,10 @@ impl Breadcrumb {
 
     /// What the run before left, and what this run starts with. `found` is what the memory holds.
     pub fn start(found: Option<Self>, cause: ResetCause, design_hash: u64) -> Start {
-        // After power was off the memory says nothing, whatever it looks like.
-        let asked = matches!(
-            cause,
-            ResetCause::PowerOn | ResetCause::BrownOut | ResetCause::Pin
-        );
-        let before = found.filter(|_| cause != ResetCause::PowerOn).unwrap_or_default();
+        // Memory that fits its check was never without power: what looks like a power-on was a supply that sagged, and
+        // a board that sags again and again is one that resets again and again.
+        let asked = cause == ResetCause::Pin || cause == ResetCause::PowerOn && found.is_none();
+        let before = found.unwrap_or_default();
         let (fault, detail) = match (before.fault, cause) {
             (LastFault::None, ResetCause::Watchdog) => (LastFault::Hang, before.detail),
             (LastFault::None, _) => (LastFault::None, 0),
@@ -271,13 +269,27 @@ mod tests {
 
     #[test]
     fn power_and_the_button_start_afresh() {
-        let start = Breadcrumb::start(Some(CRUMB), ResetCause::PowerOn, CRUMB.design_hash);
+        let start = Breadcrumb::start(None, ResetCause::PowerOn, CRUMB.design_hash);
         assert_eq!(
             (start.fault, start.kept, start.crumb.resets),
             (LastFault::None, None, 0)
         );
         let start = Breadcrumb::start(Some(CRUMB), ResetCause::Pin, CRUMB.design_hash);
         assert_eq!((start.fault, start.crumb.resets), (LastFault::Late, 0));
+    }
+
+    #[test]
+    fn a_supply_that_sags_keeps_the_zero_and_is_counted() {
+        for cause in [ResetCause::PowerOn, ResetCause::BrownOut] {
+            let mut found = Some(Breadcrumb { resets: 0, ..CRUMB });
+            for reset in 1..=RESET_LIMIT {
+                let start = Breadcrumb::start(found, cause, CRUMB.design_hash);
+                assert_eq!((start.crumb.resets, start.give_up), (reset, false));
+                assert!(reset > 1 || start.kept == CRUMB.zero);
+                found = Some(start.crumb);
+            }
+            assert!(Breadcrumb::start(found, cause, CRUMB.design_hash).give_up);
+        }
     }
 
     #[test]

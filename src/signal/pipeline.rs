@@ -14,7 +14,7 @@ use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, Touch, Warnings};
 use crate::transducer::driver::Sample;
 use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
-use model_tables::units::Nanometres;
+use model_tables::units::{Nanometres, PressureRise};
 
 /// The signal path of one fingertip.
 #[derive(Clone, Debug)]
@@ -111,8 +111,9 @@ impl<D: Design> Pipeline<D> {
         }
         let Pressure(pressure) = self.parameters().scale.pressure(sample.pressure);
         let pressure = Pressure(pressure.saturating_sub(self.temperature.correction()));
+        let before = self.zero.zero();
         if let Some(level) = self.zero.step(time, pressure) {
-            self.look(time, level);
+            self.look(time, level, before);
         }
         let (rise, zero) = self.zero.rise(pressure)?;
         if self.zero.take_moved() {
@@ -145,9 +146,13 @@ impl<D: Design> Pipeline<D> {
         })
     }
 
-    /// A quiet window ended at this pressure.
+    /// A quiet window ended at this pressure; the zero from before it moved with it.
     #[cold]
-    fn look(&mut self, time: Microseconds, level: Pressure) {
+    fn look(&mut self, time: Microseconds, level: Pressure, before: Option<Zero>) {
+        if let (Some(before), Some(now)) = (before, self.zero()) {
+            let shift = PressureRise(before.pressure.0.saturating_sub(now.pressure.0));
+            self.filter.shift(self.gain.apply_to(shift).0);
+        }
         let lowest = self.zero.lowest().0;
         self.fluid.look(time, level.0.saturating_sub(lowest));
         if let Ok((rise, _)) = self.zero.rise(level)
@@ -265,3 +270,5 @@ mod air;
 mod everyday;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod worlds;

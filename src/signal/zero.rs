@@ -52,12 +52,13 @@ pub enum StartUp {
 
 impl StartUp {
     /// Someone switched the power on or pressed the button, and can be asked to leave the fingertip alone; a watchdog
-    /// and a supply that sags ask nobody. `kept` is the zero from before the reset, if it survived. An absolute transducer
+    /// and a supply that sags ask nobody. `kept` is the zero from before the reset, if it survived: then power was never
+    /// off for long, whatever the cause says. An absolute transducer
     /// could not verify another one, so a verified one is kept whatever the cause.
     pub const fn after(cause: ResetCause, kept: Option<Zero>, quantity: Quantity) -> Self {
         match (cause, kept) {
             (_, Some(zero)) if zero.verified && matches!(quantity, Quantity::Absolute) => Self::Kept(zero),
-            (ResetCause::BrownOut, Some(zero)) if zero.verified => Self::Kept(zero),
+            (ResetCause::PowerOn | ResetCause::BrownOut, Some(zero)) if zero.verified => Self::Kept(zero),
             (ResetCause::PowerOn | ResetCause::Pin | ResetCause::BrownOut, _) => Self::Measured,
             (_, Some(zero)) => Self::Kept(zero),
             (_, None) => Self::Stored,

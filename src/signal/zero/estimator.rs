@@ -260,7 +260,7 @@ impl Estimator {
         Ok(())
     }
 
-    /// Whether there is another zero than at the last call.
+    /// Whether another zero was taken since the last call.
     #[inline]
     pub fn take_moved(&mut self) -> bool {
         core::mem::take(&mut self.moved)
@@ -277,13 +277,10 @@ impl Estimator {
         if seen.is_some() && self.zeroed {
             let looked = self.looked.replace(time).unwrap_or(time);
             let passed = time.0.saturating_sub(looked.0);
-            let before = self.interval.value();
             self.interval.drift(&self.limits, passed);
             if let Some(Seen { level, .. }) = quiet {
                 self.interval.look(&self.limits, level, passed);
             }
-            // The filter takes a smaller step for noise.
-            self.moved |= self.interval.value().0.abs_diff(before.0) > self.limits.bound.unsigned_abs();
             self.judge_bound();
         }
         if let Some(mut measuring) = self.measuring {
@@ -378,7 +375,7 @@ impl Estimator {
     fn judge_bound(&mut self) {
         self.above = self.interval.above(&self.limits);
         self.bound = if self.interval.verified {
-            self.interval.bound()
+            self.interval.bound(&self.limits)
         } else {
             self.limits.reach()
         };

@@ -79,11 +79,13 @@ impl Interval {
         Pressure(counts(self.value))
     }
 
-    /// How far the true zero may be from the value, or from a level that may be the zero: counts, >= 0.
-    pub(super) fn bound(&self) -> i32 {
+    /// How far the true zero may be from the value, and how far it may have moved since someone saw it: counts, >= 0.
+    pub(super) fn bound(&self, limits: &Limits) -> i32 {
         let up = self.high.saturating_sub(self.value);
-        let down = self.value.max(self.looked).saturating_sub(self.low);
-        counts_above(up.max(down).max(self.fallen)).max(0)
+        let down = self.value.saturating_sub(self.low);
+        let risen = self.looked.saturating_sub(self.witnessed);
+        let moved = risen.saturating_add(level(limits.level)).max(self.fallen);
+        counts_above(up.max(down).max(moved)).max(0)
     }
 
     /// How far the true zero may be above the value, beyond what a quiet window leaves open: counts, >= 0.
@@ -125,6 +127,12 @@ impl Interval {
             // Nor without bound where a slow press looks like drift.
             self.value = self.value.min(self.witnessed.saturating_add(touch));
         }
+        // Nor so far up that the drift that may be in it is too much, as long as there is a value for which it is not.
+        let apart = self.high.saturating_sub(self.low);
+        if apart <= touch.saturating_mul(2) {
+            let highest = self.low.saturating_add(touch.saturating_sub(margin));
+            self.value = self.value.min(highest.max(self.low.saturating_add(apart / 2)));
+        }
     }
 
     /// The zero that this level makes when someone says that nothing presses. What lies over all that is known stays in the
@@ -141,7 +149,7 @@ impl Interval {
             fallen: 0,
             verified: true,
         };
-        taken.verified = taken.bound() <= limits.bound;
+        taken.verified = taken.bound(limits) <= limits.bound;
         taken
     }
 

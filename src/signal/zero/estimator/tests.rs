@@ -187,9 +187,8 @@ const KEPT: Zero = Zero {
 #[test]
 fn only_a_person_who_starts_it_is_asked_for_a_new_zero() {
     let after = |cause, kept| StartUp::after(cause, kept, Quantity::Gauge);
-    for cause in [ResetCause::PowerOn, ResetCause::Pin] {
-        assert_eq!(after(cause, Some(KEPT)), StartUp::Measured, "{cause}");
-    }
+    assert_eq!(after(ResetCause::PowerOn, None), StartUp::Measured);
+    assert_eq!(after(ResetCause::Pin, Some(KEPT)), StartUp::Measured);
     for cause in [
         ResetCause::Watchdog,
         ResetCause::Software,
@@ -200,7 +199,9 @@ fn only_a_person_who_starts_it_is_asked_for_a_new_zero() {
         assert_eq!(after(cause, Some(KEPT)), StartUp::Kept(KEPT), "{cause}");
     }
     // A motor that stalls in a grasp is when a battery sags.
-    assert_eq!(after(ResetCause::BrownOut, Some(KEPT)), StartUp::Kept(KEPT));
+    for cause in [ResetCause::PowerOn, ResetCause::BrownOut] {
+        assert_eq!(after(cause, Some(KEPT)), StartUp::Kept(KEPT));
+    }
     let unverified = Zero {
         verified: false,
         ..KEPT
