@@ -11,6 +11,12 @@ pub enum EndsBy {
     FluidDrained,
     /// The inner surface of a solid wall reaches the base plane.
     WallTouchesBase,
+    /// The material law softens at strains that a solid wall reaches, and nothing more is in balance.
+    MaterialSoftens,
+    /// A solid wall folds onto itself.
+    WallFolds,
+    /// The path of a solid from rest ends: the next state in balance lies elsewhere, and the wall would snap there.
+    NoFurtherState,
 }
 
 impl EndsBy {
@@ -20,6 +26,9 @@ impl EndsBy {
             Self::BulgeTouchesBase => "bulge-touches-base",
             Self::FluidDrained => "fluid-drained",
             Self::WallTouchesBase => "wall-touches-base",
+            Self::MaterialSoftens => "material-softens",
+            Self::WallFolds => "wall-folds",
+            Self::NoFurtherState => "no-further-state",
         }
     }
 }

@@ -6,14 +6,16 @@ mod domes;
 use common::AGILUS30;
 use domes::dome;
 use model_tables::design::{Design, RestBy};
+use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::press;
 use model_tables::solid::SolidError;
-use model_tables::solid::equilibrium::{Fluid, State, Wall};
+use model_tables::solid::equilibrium::Wall;
 use model_tables::solid::inflation::mid_surface;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::{COARSE, FULL, Press};
+use model_tables::solid::state::{Fluid, State};
 use serde::Deserialize;
 
 fn printed_fingertip() -> Design {
@@ -378,7 +380,10 @@ fn a_law_that_softens_is_refused_by_name() {
     let mut press = Press::new(&dome(9.0, 7.0, 1.0, softening), COARSE).expect("a rest state");
     assert!(press.contact_at(0.5e-3).is_ok());
     let error = press.contact_at(3e-3).expect_err("beyond the law");
-    assert!(error.to_string().contains("the material law softens"), "{error}");
+    assert!(error.to_string().contains("material-softens"), "{error}");
+    let limit = press.limit().expect("the last state is an end");
+    assert_eq!(limit.ends_by, EndsBy::MaterialSoftens);
+    assert!(press.contact_at(limit.indentation).is_ok());
 }
 
 /// Any order of asking gives the same states.

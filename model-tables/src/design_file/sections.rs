@@ -131,10 +131,18 @@ fn material(mut section: Section<'_>) -> Result<Law, Fault> {
         "neo-hookean" => Law::NeoHookean {
             c1: section.needed_number("c1_pa", STIFFNESS)?,
         },
-        "mooney-rivlin" => Law::MooneyRivlin {
-            c1: section.needed_number("c1_pa", STIFFNESS)?,
-            c2: section.needed_number("c2_pa", HIGHER)?,
-        },
+        "mooney-rivlin" => {
+            let c1 = section.needed_number("c1_pa", STIFFNESS)?;
+            let c2 = section.needed_number("c2_pa", HIGHER)?;
+            if c1 + c2 <= 0.0 {
+                // Its shear modulus is 2 (C1 + C2).
+                return Err(section.refuse(
+                    "c2_pa",
+                    "more than -c1_pa, or the material has no stiffness at rest",
+                ));
+            }
+            Law::MooneyRivlin { c1, c2 }
+        }
         "yeoh" => Law::Yeoh {
             c1: section.needed_number("c1_pa", STIFFNESS)?,
             c2: section.needed_number("c2_pa", HIGHER)?,

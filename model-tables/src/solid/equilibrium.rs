@@ -3,11 +3,13 @@
 //! Dimensionless: lengths in outer radial semi-axes, stresses in shear moduli.
 
 use super::Failure;
-use super::element::{self, Element, Material};
+use super::assembly::Assembly;
+use super::element::{self, Material};
 use super::fluid;
-use super::front::{Fronts, SIDES};
-use super::mesh::{CUBIC_PRESSURES, Elements, FUNCTIONS, Mesh, NODES, PRESSURES};
+use super::front::Fronts;
+use super::mesh::{CUBIC_PRESSURES, Elements, Mesh, NODES};
 use super::plate;
+use super::state::{Balance, Fluid, State};
 use crate::material::Law;
 
 /// Contact stiffness times wall thickness, over the shear modulus: a contact pressure of a tenth of the modulus penetrates
@@ -17,78 +19,34 @@ const CONTACT_STIFFNESS: f64 = 200.0;
 const RELATIVE_TOLERANCE: f64 = 1e-8;
 /// The same in moduli times radius times thickness (volume: square radii times thickness), where there is hardly a force.
 const TOLERANCE: f64 = 1e-10;
-/// Iterations after which a state counts as lost.
-const MAX_ITERATIONS: usize = 30;
+/// Iterations, those with earlier factors among them, after which a state counts as lost.
+const MAX_ITERATIONS: usize = 60;
 /// Largest displacement of a node in an iteration, over the wall thickness.
 const STEP_LIMIT: f64 = 0.5;
+/// Displacement of a node, over the wall thickness, after which the wall's part of the equations is set up anew. What changes with the contact's edge
+/// is the plate's part.
+const RENEWAL: f64 = 0.1;
+/// A step that leaves more than this part of the residual is the last with its factors.
+const CONTRACTION: f64 = 0.1;
+/// A step that leaves more than this part although the plate's part is of its own state is the last with the wall's.
+const WALL_CONTRACTION: f64 = 0.5;
 
-/// Unknowns of a state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State {
-    /// Radius and height of every node, in the mesh's order, with the amplitudes of cubic functions.
-    pub nodes: Vec<[f64; 2]>,
-    /// Terms of the pressure in each element.
-    pub pressures: Vec<[f64; CUBIC_PRESSURES]>,
-    /// Gauge pressure of the fluid.
-    pub fluid: f64,
+/// Which part of the factors is of the latest iterate.
+#[derive(PartialEq)]
+enum Renewed {
+    Nothing,
+    /// What the plate adds.
+    Plate,
+    All,
 }
 
-impl State {
-    /// Takes over another state of the same mesh, without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.nodes.copy_from_slice(&other.nodes);
-        self.pressures.copy_from_slice(&other.pressures);
-        self.fluid = other.fluid;
-    }
-
-    /// Adds a multiple of another vector of unknowns.
-    pub fn add(&mut self, factor: f64, other: &Self) {
-        for (x, y) in self.nodes.iter_mut().zip(&other.nodes) {
-            x[0] += factor * y[0];
-            x[1] += factor * y[1];
-        }
-        for (x, y) in self.pressures.iter_mut().zip(&other.pressures) {
-            for (x, y) in x.iter_mut().zip(y) {
-                *x += factor * y;
-            }
-        }
-        self.fluid += factor * other.fluid;
-    }
-
-    /// All zero.
-    pub fn clear(&mut self) {
-        self.nodes.fill([0.0; 2]);
-        self.pressures.fill([0.0; CUBIC_PRESSURES]);
-        self.fluid = 0.0;
-    }
-}
-
-/// The equation of the fluid: `by_volume (V - volume) + by_pressure (P - pressure) = 0`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fluid {
-    /// Weight of the volume.
-    pub by_volume: f64,
-    /// Volume to have, `V` over `by_volume`'s unit.
-    pub volume: f64,
-    /// Weight of the pressure: the compliance, where volume is kept.
-    pub by_pressure: f64,
-    /// Pressure to have.
-    pub pressure: f64,
-}
-
-/// What a converged state comes with.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Balance {
-    /// Volume of the fluid.
-    pub volume: f64,
-    /// Force on the plate.
+/// How a state follows the plate, at a fixed equation of the fluid.
+#[derive(Clone, Debug)]
+pub struct Tangent {
+    /// Derivatives of the unknowns by the indentation.
+    pub state: State,
+    /// Derivative of the plate's force.
     pub force: f64,
-    /// Energy in the contact.
-    pub contact_energy: f64,
-    /// Least determinant or hoop stretch at a Gauss point outside the crease; positive.
-    pub least: f64,
-    /// Largest entry of the residual, in units of the tolerance's scale.
-    pub residual: f64,
 }
 
 /// A wall, and room to solve it.
@@ -98,20 +56,26 @@ pub struct Wall {
     pub mesh: Mesh,
     /// Its material, in shear moduli.
     pub material: Material,
-    /// Which unknown of a column each unknown of its elements is, innermost element first.
-    places: Vec<Vec<usize>>,
+    assembly: Assembly,
     /// Contact pressure over penetration.
     contact_stiffness: f64,
     /// Undeformed radii and heights of each column's outer edge.
     outer: Vec<[[f64; 3]; 2]>,
     fronts: Fronts,
-    element: Element,
-    /// Derivative of the volume by the inner nodes.
-    volume_by_node: Vec<[f64; 2]>,
+    /// Forces on the nodes, unbalanced.
+    forces: Vec<[f64; 2]>,
+    /// Derivative of the volume by the nodes: zero but for the inner ones.
+    by_node: Vec<[f64; 2]>,
+    /// The plate's stiffness on each column, in the latest factors.
+    by_depth: Vec<[[f64; 3]; 3]>,
+    /// Negative pivots of each column.
+    negative: Vec<usize>,
     /// Newton's step, and the part of it that goes with the fluid's pressure.
     step: State,
     by_pressure: State,
-    /// Newton iterations so far.
+    /// Factorisations so far.
+    pub factorisations: u64,
+    /// Newton iterations so far, with the factors of their own state or of one before.
     pub iterations: u64,
 }
 
@@ -119,7 +83,7 @@ impl Wall {
     /// A wall of outer semi-axes 1 and `height`, with a law in shear moduli.
     pub fn new(height: f64, thickness: f64, law: Law, elements: Elements) -> Self {
         let mesh = Mesh::new(height, thickness, elements);
-        let Layout { station, own } = layout(&mesh);
+        let material = Material::new(law, mesh.is_cubic());
         let outer = (0..elements.along)
             .map(|column| edge(&mesh, &mesh.nodes, column, mesh.layers() - 1))
             .collect();
@@ -131,14 +95,17 @@ impl Wall {
         Self {
             contact_stiffness: CONTACT_STIFFNESS / thickness,
             outer,
-            fronts: Fronts::new(station, own, elements.along),
-            element: Element::default(),
-            volume_by_node: vec![[0.0; 2]; mesh.stations()],
+            fronts: Fronts::new(2 * mesh.stride(), elements.along),
+            assembly: Assembly::new(&mesh, &material),
+            forces: step.nodes.clone(),
+            by_node: step.nodes.clone(),
+            by_depth: vec![[[0.0; 3]; 3]; elements.along],
+            negative: Vec::with_capacity(elements.along),
             by_pressure: step.clone(),
             step,
+            factorisations: 0,
             iterations: 0,
-            material: Material::new(law, mesh.is_cubic()),
-            places: (0..elements.through).map(|layer| places(&mesh, layer)).collect(),
+            material,
             mesh,
         }
     }
@@ -167,270 +134,297 @@ impl Wall {
 
     /// Strain energy of the wall.
     pub fn energy(&self, state: &State) -> f64 {
+        self.assembly.energy(&self.material, state)
+    }
+
+    /// The deformations at the Gauss points, with those in the crease or without.
+    fn deformations<'a>(
+        &'a self,
+        state: &'a State,
+        crease: bool,
+    ) -> impl Iterator<Item = element::Deformation> + 'a {
         let through = self.mesh.elements.through;
-        self.mesh
-            .points
-            .iter()
-            .enumerate()
-            .map(|(e, points)| {
-                let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
-                element::energy(&self.material, points, &positions)
-            })
-            .sum()
+        self.mesh.points.iter().enumerate().flat_map(move |(e, points)| {
+            let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
+            let outside = points.iter().filter(move |point| crease || !point.in_crease);
+            outside.map(move |point| element::deformation(&point.gradient, &positions))
+        })
     }
 
     /// The largest `I1` outside the crease.
     pub fn largest_invariant(&self, state: &State) -> f64 {
-        let through = self.mesh.elements.through;
-        let mut largest = 3.0_f64;
-        for (e, points) in self.mesh.points.iter().enumerate() {
-            let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
-            for point in points.iter().filter(|point| !point.in_crease) {
-                largest = largest.max(element::first_invariant(element::deformation(point, &positions)));
-            }
-        }
-        largest
+        self.deformations(state, false)
+            .map(element::first_invariant)
+            .fold(3.0, f64::max)
     }
 
     /// Whether the law softens anywhere in a state.
     pub fn softens(&self, state: &State) -> bool {
+        self.deformations(state, true)
+            .any(|deformation| element::softens(&self.material.law, deformation))
+    }
+
+    /// Whether the latest settled state is a minimum of the energy, the fluid's included, among its neighbours: by the latest factors.
+    pub fn is_stable(&mut self, fluid: &Fluid) -> bool {
+        // In the crease at the rim the surface may roll over the base, of no consequence for the rest.
         let through = self.mesh.elements.through;
-        self.mesh.points.iter().enumerate().any(|(e, points)| {
-            let positions = positions(&self.mesh, &state.nodes, e / through, e % through);
-            points
-                .iter()
-                .any(|point| element::softens(&self.material.law, element::deformation(point, &positions)))
-        })
+        let columns = self.mesh.points.chunks(through);
+        let outside = columns.take_while(|column| !column.iter().flatten().any(|point| point.in_crease));
+        match self.negative.iter().take(outside.count()).sum() {
+            0 => true,
+            1 => {
+                // A direction in which the energy falls is no way out where the fluid's volume closes it.
+                self.follow_pressure();
+                fluid.by_pressure + fluid.by_volume * self.change(&self.by_pressure) < 0.0
+            }
+            _ => false,
+        }
     }
 
     /// Solves for the state in balance with a plate at a height and the fluid's equation, starting from `state`.
     ///
+    /// The equations are factored where the factors of an iteration before bring the residual down too slowly: first with the plate's part of now,
+    /// and where that is still slow, as where the law softens, all of them.
+    ///
     /// # Errors
     /// [`Failure`]; `state` is then of no use.
     pub fn settle(&mut self, state: &mut State, plate: f64, fluid: &Fluid) -> Result<Balance, Failure> {
-        let mut residual = f64::INFINITY;
+        let mut before = f64::INFINITY;
+        // Not set up yet.
+        let mut moved = f64::INFINITY;
+        let mut renewed = Renewed::Nothing;
+        let mut shortened = false;
         for _ in 0..MAX_ITERATIONS {
-            let balance = self.assemble(state, plate);
+            let balance = self.balance(state, plate, fluid);
             self.iterations += 1;
-            let excess = fluid.by_volume * (balance.volume - fluid.volume)
-                + fluid.by_pressure * (state.fluid - fluid.pressure);
-            residual = balance.residual.max(excess.abs() / self.mesh.thickness);
-            if !residual.is_finite() {
+            if !balance.residual.is_finite() {
                 return Err(Failure::Singular);
             }
             let force = balance.force / self.mesh.thickness;
-            if residual < TOLERANCE + RELATIVE_TOLERANCE * force {
+            if balance.residual < TOLERANCE + RELATIVE_TOLERANCE * force {
                 // Admissible only right side out: the equations go on beyond.
-                return if balance.least > 0.0 {
-                    Ok(Balance { residual, ..balance })
+                let least = self.deformations(state, false).map(element::least);
+                return if least.fold(f64::INFINITY, f64::min) > 0.0 {
+                    Ok(balance)
                 } else {
                     Err(Failure::InsideOut)
                 };
             }
+            let contraction = balance.residual / before;
+            before = balance.residual;
+            renewed = if moved > RENEWAL * self.mesh.thickness
+                || renewed == Renewed::Plate && contraction > WALL_CONTRACTION
+            {
+                self.set_up(state);
+                self.factor(state, plate, 0).ok_or(Failure::Singular)?;
+                // Good enough also where the contact's edge moves on.
+                self.follow_pressure();
+                moved = 0.0;
+                Renewed::All
+            } else if shortened || contraction > CONTRACTION {
+                self.factor(state, plate, usize::MAX).ok_or(Failure::Singular)?;
+                Renewed::Plate
+            } else {
+                Renewed::Nothing
+            };
+            let excess = fluid.excess(&balance, state);
             let largest = self.solve(fluid, excess).ok_or(Failure::Singular)?;
-            state.add((STEP_LIMIT * self.mesh.thickness / largest).min(1.0), &self.step);
+            let limit = STEP_LIMIT * self.mesh.thickness / largest;
+            shortened = limit < 1.0;
+            moved += largest * limit.min(1.0);
+            state.add(limit.min(1.0), &self.step);
         }
-        Err(Failure::Stalled { residual })
+        Err(Failure::Stalled { residual: before })
     }
 
-    /// Sets up the linear equations at a state.
-    fn assemble(&mut self, state: &State, plate: f64) -> Balance {
-        let Self {
-            mesh,
-            material,
-            places,
-            contact_stiffness,
-            outer,
-            fronts,
-            element,
-            volume_by_node,
-            ..
-        } = self;
-        let Elements { through, along } = mesh.elements;
-        let layers = mesh.layers();
-        let Layout { station, own } = layout(mesh);
-        let size = 2 * station + own;
-        let starts = starts(mesh);
-        let mut balance = Balance {
-            least: f64::INFINITY,
-            ..Balance::default()
-        };
-        // Forces on the column's nodes and volumes of its elements; the right station's go on to the next column.
-        fronts.clear();
-        volume_by_node.fill([0.0; 2]);
-        for column in 0..along {
-            let mut front = fronts.column(column);
-            for layer in 0..through {
-                let index = column * through + layer;
-                let positions = positions(mesh, &state.nodes, column, layer);
-                let (points, pressures) = (&mesh.points[index], &state.pressures[index]);
-                let least = if mesh.is_cubic() {
-                    element.assemble::<FUNCTIONS, CUBIC_PRESSURES>(material, points, &positions, pressures)
-                } else {
-                    element.assemble::<NODES, PRESSURES>(material, points, &positions, pressures)
-                };
-                balance.least = balance.least.min(least);
-                let places = &places[layer];
-                for (i, &place) in places.iter().enumerate() {
-                    let row = front.row(place);
-                    for (&place, stiffness) in places.iter().zip(&element.stiffness[i]) {
-                        row[place] += stiffness;
-                    }
-                    row[size] -= element.residual[i];
+    /// Forces, volumes and the plate's action in a state; what is left unbalanced goes to the right-hand side.
+    fn balance(&mut self, state: &State, plate: f64, fluid: &Fluid) -> Balance {
+        let mut balance = Balance::default();
+        self.forces.fill([0.0; 2]);
+        let excess = self.assembly.forces(&self.material, state, &mut self.forces);
+        for column in 0..self.mesh.elements.along {
+            let [inner, outer] =
+                [0, self.mesh.layers() - 1].map(|layer| edge_nodes(&self.mesh, column, layer));
+            let [r, z] = edge(&self.mesh, &state.nodes, column, 0);
+            let (volume, by_node) = fluid::volume(&r, &z);
+            balance.volume += volume;
+            for i in 0..3 {
+                for c in 0..2 {
+                    self.forces[inner[i]][c] -= state.fluid * by_node[c][i];
                 }
             }
-            let [r, z] = edge(mesh, &state.nodes, column, 0);
-            let share = fluid::share(&r, &z);
-            balance.volume += share.volume;
-            let inner: [usize; 6] = core::array::from_fn(|i| starts[i % 3] + i / 3);
-            for i in 0..6 {
-                volume_by_node[2 * column + i % 3][i / 3] += share.first[i];
-                let row = front.row(inner[i]);
-                row[size] += state.fluid * share.first[i];
-                row[size + 1] += share.first[i];
-                for j in 0..6 {
-                    row[inner[j]] -= state.fluid * share.second[i][j];
-                }
+            let z = outer.map(|node| state.nodes[node][1]);
+            if z.iter().all(|z| *z < plate - self.mesh.thickness) {
+                continue;
             }
-            let [_, z] = edge(mesh, &state.nodes, column, layers - 1);
-            let action = plate::action(*contact_stiffness, &outer[column], &z, plate);
+            let action = plate::action(self.contact_stiffness, &self.outer[column], &z, plate);
             balance.force += action.force;
             balance.contact_energy += action.energy;
             for i in 0..3 {
-                let row = front.row(starts[i] + 2 * layers - 1);
-                row[size] -= action.first[i];
-                for j in 0..3 {
-                    row[starts[j] + 2 * layers - 1] += action.second[i][j];
-                }
+                self.forces[outer[i]][1] += action.first[i];
             }
         }
-        for layer in 0..mesh.stride() {
-            fronts.hold_first(2 * layer);
+        self.hold();
+        let mut largest = excess.max(fluid.excess(&balance, state).abs());
+        for x in self.forces.as_flattened() {
+            largest = if x.is_nan() {
+                f64::NAN
+            } else {
+                largest.max(x.abs())
+            };
         }
-        balance.residual = residual(fronts, station, own, along) / mesh.thickness;
+        if excess.is_nan() {
+            largest = f64::NAN;
+        }
+        balance.residual = largest / self.mesh.thickness;
         balance
     }
 
-    /// Newton's step at the assembled state; the largest displacement in it.
-    fn solve(&mut self, fluid: &Fluid, excess: f64) -> Option<f64> {
-        self.fronts.eliminate()?;
-        let Self {
-            fronts,
-            step,
-            by_pressure,
-            ..
-        } = self;
+    /// Takes the forces out that act on what is held: the rim, and the pole sideways.
+    fn hold(&mut self) {
         let stride = self.mesh.stride();
-        let Layout { station, .. } = layout(&self.mesh);
-        let through = self.mesh.elements.through;
-        let terms = terms(&self.mesh);
-        fronts.solutions(|column, i, x: [f64; SIDES]| {
-            for (part, x) in [&mut *step, &mut *by_pressure].into_iter().zip(x) {
-                if i < 2 * station {
-                    let at = 2 * column + i / station;
-                    part.nodes[at * stride + (i % station) / 2][i % 2] = x;
-                } else {
-                    let p = i - 2 * station;
-                    part.pressures[column * through + p / terms][p % terms] = x;
+        let rim = self.forces.len() - stride;
+        for node in &mut self.forces[rim..] {
+            *node = [0.0; 2];
+        }
+        for node in &mut self.forces[..stride] {
+            node[0] = 0.0;
+        }
+    }
+
+    /// Sets up the linear equations of wall and fluid at a state.
+    fn set_up(&mut self, state: &State) {
+        let station = 2 * self.mesh.stride();
+        self.fronts.clear();
+        self.assembly.stiffness(&self.material, state, &mut self.fronts);
+        self.by_node.fill([0.0; 2]);
+        for column in 0..self.mesh.elements.along {
+            let [nodes, local] = [column, 0].map(|column| edge_nodes(&self.mesh, column, 0));
+            let front = self.fronts.column(column);
+            let [r, z] = edge(&self.mesh, &state.nodes, column, 0);
+            let share = fluid::share(&r, &z);
+            for i in 0..6 {
+                self.by_node[nodes[i % 3]][i / 3] += share.first[i];
+                for j in 0..6 {
+                    let [row, other] = [i, j].map(|i| 2 * local[i % 3] + i / 3);
+                    if row <= other {
+                        front[Fronts::place(station, row, other)] -= state.fluid * share.second[i][j];
+                    }
                 }
             }
-        });
-        let volumes = [&self.step, &self.by_pressure].map(|part| {
-            self.volume_by_node
-                .iter()
-                .enumerate()
-                .map(|(station, d)| {
-                    let x = part.nodes[station * stride];
-                    d[0] * x[0] + d[1] * x[1]
-                })
-                .sum::<f64>()
-        });
-        let pressure =
-            -(excess + fluid.by_volume * volumes[0]) / (fluid.by_volume * volumes[1] + fluid.by_pressure);
-        if !pressure.is_finite() {
-            return None;
         }
+        for layer in 0..self.mesh.stride() {
+            self.fronts.hold_first(2 * layer);
+        }
+        let rim = self.by_node.len() - self.mesh.stride();
+        self.by_node[rim..].fill([0.0; 2]);
+        for node in &mut self.by_node[..self.mesh.stride()] {
+            node[0] = 0.0;
+        }
+        self.by_depth.fill([[0.0; 3]; 3]);
+    }
+
+    /// Factors the linear equations at a state: those of the wall as they were set up, the plate's of now.
+    fn factor(&mut self, state: &State, plate: f64, from: usize) -> Option<()> {
+        self.factorisations += 1;
+        let station = 2 * self.mesh.stride();
+        let local = edge_nodes(&self.mesh, 0, self.mesh.layers() - 1);
+        let mut first = from;
+        for column in 0..self.mesh.elements.along {
+            let z = edge_nodes(&self.mesh, column, self.mesh.layers() - 1).map(|node| state.nodes[node][1]);
+            let now = plate::action(self.contact_stiffness, &self.outer[column], &z, plate).second;
+            if now == self.by_depth[column] {
+                continue;
+            }
+            first = first.min(column);
+            let front = self.fronts.column(column);
+            for i in 0..3 {
+                for j in i..3 {
+                    let [row, other] = [i, j].map(|i| 2 * local[i] + 1);
+                    front[Fronts::place(station, row, other)] += now[i][j] - self.by_depth[column][i][j];
+                }
+            }
+            self.by_depth[column] = now;
+        }
+        self.negative.truncate(first);
+        self.fronts.eliminate(first, &mut self.negative)?;
+        Some(())
+    }
+
+    /// What goes with the fluid's pressure, by the latest factors.
+    fn follow_pressure(&mut self) {
+        self.by_pressure.nodes.copy_from_slice(&self.by_node);
+        self.fronts.solve(self.by_pressure.nodes.as_flattened_mut());
+        self.assembly.pressures(&mut self.by_pressure, false);
+    }
+
+    /// Change of the fluid's volume with a step.
+    fn change(&self, step: &State) -> f64 {
+        let by_node = self.by_node.as_flattened();
+        by_node
+            .iter()
+            .zip(step.nodes.as_flattened())
+            .map(|(d, x)| d * x)
+            .sum()
+    }
+
+    /// Newton's step for the latest balance, with the latest factors; the largest displacement in it.
+    fn solve(&mut self, fluid: &Fluid, excess: f64) -> Option<f64> {
+        for (x, force) in self.step.nodes.iter_mut().zip(&self.forces) {
+            *x = force.map(|force| -force);
+        }
+        self.assembly.answer(&mut self.step.nodes);
+        for node in &mut self.step.nodes[..self.mesh.stride()] {
+            node[0] = 0.0;
+        }
+        self.fronts.solve(self.step.nodes.as_flattened_mut());
+        self.assembly.pressures(&mut self.step, true);
+        self.border(fluid, excess)?;
+        let largest = self.step.nodes.as_flattened().iter().map(|x| x.abs());
+        Some(largest.fold(0.0, f64::max))
+    }
+
+    /// The fluid's pressure of a step, and what goes with it.
+    fn border(&mut self, fluid: &Fluid, excess: f64) -> Option<()> {
+        let pressure = -(excess + fluid.by_volume * self.change(&self.step))
+            / (fluid.by_volume * self.change(&self.by_pressure) + fluid.by_pressure);
+        self.step.fluid = 0.0;
         self.step.add(pressure, &self.by_pressure);
         self.step.fluid = pressure;
-        Some(
-            self.step
-                .nodes
-                .iter()
-                .map(|x| x[0].abs().max(x[1].abs()))
-                .fold(0.0, f64::max),
-        )
+        pressure.is_finite().then_some(())
     }
-}
 
-/// Numbers of unknowns in a column of elements.
-struct Layout {
-    /// Of a station: radius and height of its nodes from inside to outside, and of its cubic function.
-    station: usize,
-    /// Of a column's own: its middle station, and the pressures of its elements.
-    own: usize,
-}
-
-fn layout(mesh: &Mesh) -> Layout {
-    let station = 2 * mesh.stride();
-    Layout {
-        station,
-        own: station + terms(mesh) * mesh.elements.through,
-    }
-}
-
-/// Terms of an element's pressure.
-fn terms(mesh: &Mesh) -> usize {
-    if mesh.is_cubic() {
-        CUBIC_PRESSURES
-    } else {
-        PRESSURES
-    }
-}
-
-/// Where in a column its three stations begin.
-fn starts(mesh: &Mesh) -> [usize; 3] {
-    let Layout { station, own } = layout(mesh);
-    [0, station, station + own]
-}
-
-/// Where in a column the unknowns of an element are.
-fn places(mesh: &Mesh, layer: usize) -> Vec<usize> {
-    let starts = starts(mesh);
-    let functions = if mesh.is_cubic() { FUNCTIONS } else { NODES };
-    let node = |component: usize, i: usize| {
-        let (station, layer) = if i < NODES {
-            (i / 3, 2 * layer + i % 3)
-        } else {
-            (i - NODES, mesh.layers())
-        };
-        starts[station] + 2 * layer + component
-    };
-    let pressure = 2 * layout(mesh).station + terms(mesh) * layer;
-    (0..2 * functions)
-        .map(|i| node(i / functions, i % functions))
-        .chain(pressure..pressure + terms(mesh))
-        .collect()
-}
-
-/// Largest entry of the residual on the unknowns that are free.
-fn residual(fronts: &mut Fronts, station: usize, own: usize, along: usize) -> f64 {
-    let size = 2 * station + own;
-    let complete = station + own;
-    let mut largest = 0.0_f64;
-    for column in 0..along {
-        for i in 0..complete {
-            let mut value: f64 = fronts.column(column).row(i)[size];
-            if i < station && column > 0 {
-                // The column before has a part of the same station.
-                value += fronts.column(column - 1).row(complete + i)[size];
+    /// How the latest settled state follows the plate, by the latest factors: those of an iterate beside it.
+    pub fn tangent(&mut self, fluid: &Fluid) -> Option<Tangent> {
+        self.follow_pressure();
+        self.step.nodes.fill([0.0; 2]);
+        let outer = self.mesh.layers() - 1;
+        for (column, by_depth) in self.by_depth.iter().enumerate() {
+            let nodes = edge_nodes(&self.mesh, column, outer);
+            for (node, row) in nodes.iter().zip(by_depth) {
+                self.step.nodes[*node][1] -= row.iter().sum::<f64>();
             }
-            if value.is_nan() {
-                return f64::NAN;
-            }
-            largest = largest.max(value.abs());
         }
+        self.fronts.solve(self.step.nodes.as_flattened_mut());
+        self.assembly.pressures(&mut self.step, false);
+        self.border(fluid, 0.0)?;
+        let mut force = 0.0;
+        for (column, by_depth) in self.by_depth.iter().enumerate() {
+            let nodes = edge_nodes(&self.mesh, column, outer);
+            for (node, row) in nodes.iter().zip(by_depth) {
+                force += row.iter().sum::<f64>() * (1.0 + self.step.nodes[*node][1]);
+            }
+        }
+        Some(Tangent {
+            state: self.step.clone(),
+            force,
+        })
     }
-    largest
+}
+
+/// The three nodes of a column's edge in a layer of nodes.
+fn edge_nodes(mesh: &Mesh, column: usize, layer: usize) -> [usize; 3] {
+    core::array::from_fn(|i| mesh.node(2 * column + i, layer))
 }
 
 /// Radii and heights of the three nodes of a column's edge in a layer of nodes.

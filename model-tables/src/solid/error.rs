@@ -9,6 +9,11 @@ use core::fmt;
 pub enum SolidError {
     /// A solid rests unstretched, or at a pressure.
     RestNotForSolid,
+    /// The law has no stiffness where nothing is strained: its shear modulus is not positive.
+    NoStiffness {
+        /// The shear modulus, pascals.
+        shear_modulus: f64,
+    },
     /// Inflation does not reach this pressure; pascals.
     PressureOutOfReach {
         /// What was asked for.
@@ -50,6 +55,11 @@ impl fmt::Display for SolidError {
             Self::RestNotForSolid => write!(
                 f,
                 "a solid rests unstretched or at a pressure: leave [rest] out, or give rest.pressure_kpa"
+            ),
+            Self::NoStiffness { shear_modulus } => write!(
+                f,
+                "the material has no stiffness at rest: its shear modulus is {shear_modulus} Pa; choose constants that \
+                 make it positive, of a Mooney-Rivlin law c1 + c2 > 0"
             ),
             Self::PressureOutOfReach { asked, greatest } => write!(
                 f,

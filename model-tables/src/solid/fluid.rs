@@ -14,6 +14,24 @@ pub struct Share {
     pub second: [[f64; 6]; 6],
 }
 
+/// The volume alone under an edge with these radii and heights, and its first derivatives by both. The quadrature is exact.
+pub fn volume(r: &[f64; 3], z: &[f64; 3]) -> (f64, [[f64; 3]; 2]) {
+    let mut volume = 0.0;
+    let mut first = [[0.0; 3]; 2];
+    for (x, w) in PLACES.into_iter().zip(WEIGHTS) {
+        let (n, dn) = (shape(x), slope(x));
+        let radius = n[0] * r[0] + n[1] * r[1] + n[2] * r[2];
+        let rise = dn[0] * z[0] + dn[1] * z[1] + dn[2] * z[2];
+        let w = -PI * w;
+        volume += w * radius * radius * rise;
+        for a in 0..3 {
+            first[0][a] += 2.0 * w * radius * rise * n[a];
+            first[1][a] += w * radius * radius * dn[a];
+        }
+    }
+    (volume, first)
+}
+
 /// The share of an edge with these radii and heights. The quadrature is exact.
 pub fn share(r: &[f64; 3], z: &[f64; 3]) -> Share {
     let mut share = Share::default();

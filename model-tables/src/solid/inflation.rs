@@ -1,7 +1,8 @@
 //! Rest states of a solid: inflated with the rim held, or inflated free and then bonded as a membrane is.
 
-use super::equilibrium::{Fluid, State, Wall};
+use super::equilibrium::Wall;
 use super::section;
+use super::state::{Fluid, State};
 use crate::design::Membrane;
 use crate::solid::{Failure, SolidError};
 use core::f64::consts::PI;

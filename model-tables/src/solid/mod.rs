@@ -5,11 +5,25 @@
 //! displacement, discontinuous linear pressure. Unlike in the membrane the plate's force is not the fluid's pressure
 //! times the contact area: at light touch the wall's bending carries most of it.
 //!
-//! [`mesh`] (the undeformed wall) -> [`element`] (one element's forces and stiffness), [`fluid`] (the volume inside) and
-//! [`plate`] (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`] (Newton's method) -> [`inflation`] ->
-//! [`press`] (states at asked indentations, each from its neighbours on the [`trail`], and the end of the press) -> [`section`] (what is read off along the
-//! meridian).
+//! [`mesh`] (the undeformed wall) -> [`element`] (the mechanics of a point) -> [`batch`] (forces and stiffness of four elements side by side,
+//! in [`lanes`]), [`fluid`] (the volume inside) and [`plate`] (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
+//! (Newton's method) -> [`inflation`] -> [`path`] (the
+//! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units, and by `branch` those beside the path)
+//! -> [`section`] (what is read off along the meridian).
+#![cfg_attr(
+    feature = "std",
+    expect(
+        clippy::inline_always,
+        reason = "four elements side by side are vector instructions only where every step of a point is one function"
+    )
+)]
 
+#[cfg(feature = "std")]
+mod assembly;
+#[cfg(feature = "std")]
+pub mod batch;
+#[cfg(feature = "std")]
+mod branch;
 #[cfg(feature = "std")]
 pub mod element;
 #[cfg(feature = "std")]
@@ -23,7 +37,11 @@ pub mod front;
 #[cfg(feature = "std")]
 pub mod inflation;
 #[cfg(feature = "std")]
+pub mod lanes;
+#[cfg(feature = "std")]
 pub mod mesh;
+#[cfg(feature = "std")]
+pub mod path;
 #[cfg(feature = "std")]
 pub mod plate;
 #[cfg(feature = "std")]
@@ -31,7 +49,9 @@ pub mod press;
 #[cfg(feature = "std")]
 pub mod section;
 #[cfg(feature = "std")]
-pub mod trail;
+pub mod state;
+#[cfg(feature = "std")]
+pub mod station;
 
 #[cfg(feature = "std")]
 pub use error::SolidError;
@@ -45,8 +65,8 @@ pub enum Failure {
     InsideOut,
     /// The equations are singular.
     Singular,
-    /// The law softens at strains that the wall reaches, `W' + 2 (I1 - 3) W'' <= 0`, and Newton's method did not converge.
-    Softened,
+    /// What was found in balance is not on the path from rest.
+    Elsewhere,
     /// Newton's method did not converge.
     Stalled {
         /// Largest unbalanced force, in moduli times outer radius times wall thickness.
@@ -59,10 +79,7 @@ impl fmt::Display for Failure {
         match self {
             Self::InsideOut => write!(f, "the wall folded onto itself"),
             Self::Singular => write!(f, "the equations became singular"),
-            Self::Softened => write!(
-                f,
-                "the material law softens at strains that the wall reaches: choose constants that hold there, or press less"
-            ),
+            Self::Elsewhere => write!(f, "the next state in balance is not on the path from rest"),
             Self::Stalled { residual } => {
                 write!(f, "Newton's method did not converge, residual {residual:.1e}")
             }

@@ -1,15 +1,18 @@
 //! Pressing a solid fingertip: its rest state, states at asked indentations, the end of the press.
 
-use super::equilibrium::{Balance, Fluid, State, Wall};
+use super::branch;
+use super::equilibrium::Wall;
 use super::inflation;
 use super::mesh::Elements;
+use super::path::{Path, Stop};
 use super::section::{self, Station};
-use super::trail::Trail;
+use super::state::{Balance, Fluid};
+use super::station::Kept;
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};
-use crate::limit::{EndsBy, Limit};
+use crate::limit::Limit;
 use crate::material::{Hyperelastic as _, Law};
-use crate::solid::{Failure, SolidError};
+use crate::solid::SolidError;
 use core::f64::consts::PI;
 
 /// One element through the wall: pressure and force to about 2 % of a refined mesh.
@@ -23,12 +26,9 @@ pub const FULL: Elements = Elements {
     along: 24,
 };
 
-/// Largest step between indentations on the way, over the height.
-const LARGEST_STEP: f64 = 0.035;
-/// Step under which the way gives up, over the height.
-const SMALLEST_STEP: f64 = 1e-5;
-/// Accuracy of the end of the press, over the height.
-const LIMIT_TOLERANCE: f64 = 1e-7;
+/// Indentation over the height below which states are scaled from the one there, see [`Kept::approach`]. The contact is far smaller than an element,
+/// and its force drowns in the tolerance.
+const TOUCH: f64 = 1e-5;
 
 /// States of a curve.
 const CURVE_STATES: usize = 96;
@@ -47,10 +47,10 @@ pub struct Press {
     fluid: Fluid,
     /// Height of the outer pole at rest.
     height: f64,
-    /// States found so far, the rest state first.
-    trail: Trail,
-    /// The state in work.
-    work: State,
+    /// The states on the way.
+    path: Path,
+    /// The state asked for last.
+    asked: Kept,
     rest: Rest,
     limit: Option<Limit>,
 }
@@ -91,8 +91,19 @@ pub struct PressedState {
     pub volume: f64,
     /// Strain energy of the wall and of the contact, joules.
     pub energy: f64,
+    /// The rest state's strain energy, and the work of plate and fluid along the path from there, joules: the same.
+    pub work: f64,
     /// Stretch of the middle of the wall at the pole.
     pub pole_stretch: f64,
+}
+
+/// A state in balance beside that of the path from rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OtherState {
+    /// Its pressure rise and force.
+    pub contact: Contact,
+    /// Whether a wall can stay in it: the energy is a minimum. Else it is the least to get over on the way to another.
+    pub is_stable: bool,
 }
 
 impl PressedState {
@@ -108,8 +119,8 @@ impl Press {
     /// [`Press::new`] asks the membrane.
     ///
     /// # Errors
-    /// [`SolidError::PressureOutOfReach`], [`SolidError::RestUnsolved`], [`SolidError::RestNotForSolid`] for a rest state
-    /// given by the equator or the height, and those of `free`.
+    /// [`SolidError::NoStiffness`], [`SolidError::PressureOutOfReach`], [`SolidError::RestUnsolved`],
+    /// [`SolidError::RestNotForSolid`] for a rest state given by the equator or the height, and those of `free`.
     pub fn inflate<E: From<SolidError>>(
         design: &Design,
         elements: Elements,
@@ -117,6 +128,12 @@ impl Press {
     ) -> Result<Self, E> {
         let length = design.membrane.radial_semi_axis;
         let modulus = design.law.shear_modulus();
+        if modulus.is_nan() || modulus <= 0.0 {
+            return Err(SolidError::NoStiffness {
+                shear_modulus: modulus,
+            }
+            .into());
+        }
         let law = scaled(&design.law, 1.0 / modulus);
         let mut wall = Wall::new(
             design.membrane.axial_semi_axis / length,
@@ -133,6 +150,7 @@ impl Press {
         }
         let volume = wall.volume(&state);
         let unit = length * length * length;
+        let energy = wall.energy(&state);
         let height = state.nodes[wall.mesh.layers() - 1][1];
         let rest = Rest {
             pressure: state.fluid * modulus,
@@ -141,17 +159,19 @@ impl Press {
                 * length,
             height: height * length,
             volume: volume * unit,
-            energy: wall.energy(&state) * modulus * unit,
+            energy: energy * modulus * unit,
         };
+        let fluid = Fluid {
+            by_volume: 1.0,
+            volume,
+            by_pressure: design.compliance * modulus / unit,
+            pressure: state.fluid,
+        };
+        let path = Path::new(state, volume, energy, height);
         Ok(Self {
-            fluid: Fluid {
-                by_volume: 1.0,
-                volume,
-                by_pressure: design.compliance * modulus / unit,
-                pressure: state.fluid,
-            },
-            trail: Trail::new(state.clone(), volume),
-            work: state,
+            fluid,
+            asked: path.rest().clone(),
+            path,
             wall,
             length,
             modulus,
@@ -176,6 +196,11 @@ impl Press {
         self.wall.iterations
     }
 
+    /// Factorisations spent so far.
+    pub fn factorisations(&self) -> u64 {
+        self.wall.factorisations
+    }
+
     /// The pressed state at an indentation in metres, 0 ..= limit.
     ///
     /// # Errors
@@ -184,18 +209,17 @@ impl Press {
         let contact = self.contact_at(indentation)?;
         let (length, modulus) = (self.length, self.modulus);
         let unit = length * length * length;
-        let kept = self.trail.nearest(indentation / length);
-        let plate = self.height - indentation / length;
-        let edge = section::contact_edge(&self.wall, &kept.state, plate);
+        let kept = &self.asked;
         Ok(PressedState {
             indentation,
             pressure: kept.state.fluid * modulus,
             pressure_rise: contact.pressure_rise,
             force: contact.force,
-            contact_radius: edge.radius * length,
-            contact_parameter: edge.parameter,
+            contact_radius: kept.contact.radius * length,
+            contact_parameter: kept.contact.parameter,
             volume: kept.balance.volume * unit,
-            energy: (self.wall.energy(&kept.state) + kept.balance.contact_energy) * modulus * unit,
+            energy: kept.energy * modulus * unit,
+            work: kept.work * modulus * unit,
             pole_stretch: section::pole_stretch(&self.wall, &kept.state),
         })
     }
@@ -208,25 +232,61 @@ impl Press {
         if !(indentation >= 0.0 && indentation.is_finite()) {
             return Err(SolidError::NotAnIndentation { asked: indentation });
         }
-        if let Err(stop) = self.reach(indentation / self.length) {
-            return Err(match stop {
-                Stop::BeyondLimit(_) => SolidError::BeyondLimit {
-                    asked: indentation,
-                    limit: self.limit()?,
-                },
-                Stop::Failed { reached, failure } => SolidError::PressUnsolved {
-                    asked: indentation,
-                    reached: reached * self.length,
-                    failure,
-                },
-            });
-        }
-        let kept = self.trail.nearest(indentation / self.length);
-        Ok(Contact {
+        self.solve(indentation)?;
+        Ok(self.contact(indentation, self.asked.state.fluid, &self.asked.balance))
+    }
+
+    /// A state in SI units.
+    fn contact(&self, indentation: f64, pressure: f64, balance: &Balance) -> Contact {
+        Contact {
             indentation,
-            pressure_rise: (kept.state.fluid - self.fluid.pressure) * self.modulus,
-            force: kept.balance.force * self.modulus * self.length * self.length,
-        })
+            pressure_rise: (pressure - self.fluid.pressure) * self.modulus,
+            force: balance.force * self.modulus * self.length * self.length,
+        }
+    }
+
+    /// Solves the state at an indentation.
+    fn solve(&mut self, indentation: f64) -> Result<(), SolidError> {
+        let asked = indentation / self.length;
+        let touch = TOUCH * self.height;
+        // At rest there is nothing to solve.
+        let nearest = if asked > 0.0 { asked.max(touch) } else { asked };
+        let found = self.path.at(&mut self.wall, &self.fluid, nearest);
+        match found {
+            Ok(kept) if asked < nearest => {
+                self.asked = self.path.rest().clone();
+                self.asked.approach(&kept, asked / touch);
+                Ok(())
+            }
+            Ok(kept) => {
+                self.asked = kept;
+                Ok(())
+            }
+            Err(Stop::Ends(_)) => Err(SolidError::BeyondLimit {
+                asked: indentation,
+                limit: self.limit()?,
+            }),
+            Err(Stop::Failed { reached, failure }) => Err(SolidError::PressUnsolved {
+                asked: indentation,
+                reached: reached * self.length,
+                failure,
+            }),
+        }
+    }
+
+    /// Another state in balance at an indentation in metres, 0 ..= limit, where one is found.
+    ///
+    /// # Errors
+    /// As [`Press::at_indentation`].
+    pub fn other_state(&mut self, indentation: f64) -> Result<Option<OtherState>, SolidError> {
+        self.contact_at(indentation)?;
+        let rest = &self.path.rest().state;
+        let plate = self.height - self.asked.indentation;
+        let found = branch::beside(&mut self.wall, &self.fluid, rest, &self.asked, plate);
+        Ok(found.map(|found| OtherState {
+            contact: self.contact(indentation, found.state.fluid, &found.balance),
+            is_stable: found.is_stable,
+        }))
     }
 
     /// The largest `I1` in the wall at an indentation in metres, 0 ..= limit, outside the crease at the rim.
@@ -235,44 +295,23 @@ impl Press {
     /// As [`Press::at_indentation`].
     pub fn largest_invariant(&mut self, indentation: f64) -> Result<f64, SolidError> {
         self.contact_at(indentation)?;
-        let kept = self.trail.nearest(indentation / self.length);
-        Ok(self.wall.largest_invariant(&kept.state))
+        Ok(self.wall.largest_invariant(&self.asked.state))
     }
 
-    /// The end of the press.
+    /// The end of the press: the last state of the path from rest, and why there is none after it.
     ///
     /// # Errors
-    /// [`SolidError::PressUnsolved`] if the way there fails.
+    /// None: the last state found is an end.
     pub fn limit(&mut self) -> Result<Limit, SolidError> {
         if let Some(limit) = self.limit {
             return Ok(limit);
         }
-        let mut low = self.trail.deepest();
-        let mut step = LARGEST_STEP * self.height;
-        let mut ends_by = None;
-        // Up to the end, then closing in on it.
-        while ends_by.is_none() || step > LIMIT_TOLERANCE * self.height {
-            match self.reach(low + step) {
-                Ok(()) => low += step,
-                Err(Stop::BeyondLimit(reason)) => ends_by = Some(reason),
-                Err(Stop::Failed { reached, failure }) => {
-                    return Err(SolidError::PressUnsolved {
-                        asked: (low + step) * self.length,
-                        reached: reached * self.length,
-                        failure,
-                    });
-                }
-            }
-            if ends_by.is_some() {
-                step *= 0.5;
-            }
-        }
-        let kept = self.trail.nearest(low);
+        let (kept, ends_by) = self.path.end(&mut self.wall, &self.fluid);
         let limit = Limit {
-            indentation: low * self.length,
+            indentation: kept.indentation * self.length,
             pressure: kept.state.fluid * self.modulus,
             force: kept.balance.force * self.modulus * self.length * self.length,
-            ends_by: ends_by.unwrap_or(EndsBy::BulgeTouchesBase),
+            ends_by,
         };
         self.limit = Some(limit);
         Ok(limit)
@@ -285,7 +324,7 @@ impl Press {
     /// As [`Press::at_indentation`].
     pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<Station>, SolidError> {
         let state = self.at_indentation(indentation)?;
-        let kept = self.trail.nearest(indentation / self.length);
+        let kept = &self.asked;
         let intervals = points.max(3) - 1;
         Ok((0..=intervals)
             .map(|i| {
@@ -309,59 +348,6 @@ impl Press {
         }
         Curve::new(points).map_err(CurveFailure::Shape)
     }
-
-    /// Solves the state at a dimensionless indentation, over as many states in between as it takes.
-    fn reach(&mut self, indentation: f64) -> Result<(), Stop> {
-        let mut largest_step = LARGEST_STEP * self.height;
-        loop {
-            let at = self.trail.nearest(indentation).indentation;
-            if at.to_bits() == indentation.to_bits() {
-                return Ok(());
-            }
-            if indentation >= self.height {
-                return Err(Stop::BeyondLimit(EndsBy::WallTouchesBase));
-            }
-            let next = indentation.clamp(at - largest_step, at + largest_step);
-            self.trail.predict(next, &mut self.work);
-            let mut result = self.attempt(next);
-            if result.is_err() {
-                self.work.copy_from(&self.trail.nearest(next).state);
-                result = self.attempt(next);
-            }
-            match result {
-                Ok(balance) => {
-                    if let Some(reason) = section::touches_base(&self.wall, &self.work) {
-                        return Err(Stop::BeyondLimit(reason));
-                    }
-                    self.trail.keep(next, &self.work, balance);
-                    largest_step = (1.5 * largest_step).min(LARGEST_STEP * self.height);
-                }
-                Err(failure) => {
-                    largest_step = 0.5 * (next - at).abs();
-                    if largest_step < SMALLEST_STEP * self.height {
-                        let softened = self.wall.softens(&self.trail.nearest(at).state);
-                        return Err(Stop::Failed {
-                            reached: at,
-                            failure: if softened { Failure::Softened } else { failure },
-                        });
-                    }
-                }
-            }
-        }
-    }
-
-    /// Solves from the state in work.
-    fn attempt(&mut self, indentation: f64) -> Result<Balance, Failure> {
-        self.wall
-            .settle(&mut self.work, self.height - indentation, &self.fluid)
-    }
-}
-
-/// Why a state was not reached.
-#[derive(Clone, Copy, Debug)]
-enum Stop {
-    BeyondLimit(EndsBy),
-    Failed { reached: f64, failure: Failure },
 }
 
 /// A law in other units.

@@ -1,8 +1,9 @@
 //! What is read off a state along the meridian: contact, touch of the base, stretches and section forces.
 
 use super::element;
-use super::equilibrium::{State, Wall, edge, positions};
+use super::equilibrium::{Wall, edge, positions};
 use super::mesh::{CREASE, FUNCTIONS, PLACES, WEIGHTS, function, shape, slope};
+use super::state::State;
 use crate::limit::EndsBy;
 use core::f64::consts::FRAC_PI_2;
 
@@ -228,7 +229,7 @@ fn forces(wall: &Wall, state: &State, column: usize, x: f64, tangent: [f64; 2]) 
             let (point, across, radius) = super::mesh::sample(&undeformed, x, y);
             let stress = element::stress(
                 &wall.material,
-                element::deformation(&point, &deformed),
+                element::deformation(&point.gradient, &deformed),
                 element::pressure_at(x, y, pressures),
             );
             // The section's undeformed normal times its length: the fibre turned right.

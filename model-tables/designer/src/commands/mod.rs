@@ -9,6 +9,7 @@ mod calibration;
 mod estimate;
 mod fit;
 mod materials;
+mod mesh_error;
 mod model;
 mod monitor;
 mod profile;

@@ -38,6 +38,9 @@ pub(super) fn inputs(found: &Findings) -> Markup {
         EndsBy::BulgeTouchesBase => "the bulge touches the base",
         EndsBy::FluidDrained => "the fluid is drained",
         EndsBy::WallTouchesBase => "the wall touches the base",
+        EndsBy::MaterialSoftens => "the material softens",
+        EndsBy::WallFolds => "the wall folds onto itself",
+        EndsBy::NoFurtherState => "no state follows from there",
     };
     let state = [
         (
