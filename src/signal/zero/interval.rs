@@ -1,10 +1,13 @@
 //! The value of a zero and the levels between which the true one lies.
 
 use crate::signal::zero::Zero;
-use crate::signal::zero::limits::{FRACTION, Limits};
-use crate::units::Pressure;
+use crate::signal::zero::limits::{self, Limits};
+use crate::units::{Pressure, saturate};
 
-/// Longest time that counts for rates of seconds, microseconds; drift counts for 38 h at once. So no product leaves its word.
+/// Fraction bits of levels: below 2^47, so that no sum of a few leaves its word.
+const FRACTION: u32 = 16;
+
+/// Longest time that counts at once for rates of seconds, and for drift (38 h), microseconds: no product leaves its word.
 const LONGEST: u64 = 1 << 28;
 const LONGEST_DRIFT: u64 = 1 << 37;
 
@@ -32,16 +35,18 @@ const fn level(pressure: i32) -> i64 {
 }
 
 const fn counts(level: i64) -> i32 {
-    (level >> FRACTION) as i32
+    saturate(level >> FRACTION)
 }
 
 /// The same, rounded up.
 const fn counts_above(level: i64) -> i32 {
-    counts(level.saturating_add((1 << FRACTION) - 1))
+    counts(level + (1 << FRACTION) - 1)
 }
 
+/// At a rate for some time, rounded up.
 const fn travelled(rate: i64, passed: u64, longest: u64) -> i64 {
-    rate * (if passed < longest { passed } else { longest }) as i64
+    let passed = if passed < longest { passed } else { longest };
+    ((rate * passed as i64) >> (limits::FRACTION - FRACTION)) + 1
 }
 
 impl Interval {
@@ -50,7 +55,7 @@ impl Interval {
         let value = level(value.0);
         Self {
             value,
-            low: value.saturating_sub(level(limits.level)),
+            low: value - level(limits.level),
             high: level(high),
             witnessed: value,
             looked: value,
@@ -64,8 +69,8 @@ impl Interval {
         let (value, bound) = (level(zero.pressure.0), level(zero.bound));
         Self {
             value,
-            low: value.saturating_sub(bound),
-            high: value.saturating_add(bound),
+            low: value - bound,
+            high: value + bound,
             witnessed: value,
             looked: value,
             fallen: 0,
@@ -81,32 +86,32 @@ impl Interval {
 
     /// How far the true zero may be from the value, and how far it may have moved since someone saw it: counts, >= 0.
     pub(super) fn bound(&self, limits: &Limits) -> i32 {
-        let up = self.high.saturating_sub(self.value);
-        let down = self.value.saturating_sub(self.low);
-        let risen = self.looked.saturating_sub(self.witnessed);
-        let moved = risen.saturating_add(level(limits.level)).max(self.fallen);
+        let up = self.high - self.value;
+        let down = self.value - self.low;
+        let risen = self.looked - self.witnessed;
+        let moved = (risen + level(limits.level)).max(self.fallen);
         counts_above(up.max(down).max(moved)).max(0)
     }
 
     /// How far the true zero may be above the value, beyond what a quiet window leaves open: counts, >= 0.
     pub(super) fn above(&self, limits: &Limits) -> i32 {
-        let open = self.value.saturating_add(level(limits.level));
-        counts(self.high.saturating_sub(open)).max(0)
+        let open = self.value + level(limits.level);
+        counts(self.high - open).max(0)
     }
 
     /// Time passes: what is not seen drifts.
     pub(super) fn drift(&mut self, limits: &Limits, passed: u64) {
         let drift = travelled(limits.drift, passed, LONGEST_DRIFT);
-        self.low = self.low.saturating_sub(drift);
-        self.high = self.high.saturating_add(drift);
+        self.low -= drift;
+        self.high += drift;
     }
 
     /// A quiet window at this pressure, so long after the one before.
     pub(super) fn look(&mut self, limits: &Limits, pressure: Pressure, passed: u64) {
         let (seen, margin, touch) = (level(pressure.0), level(limits.level), level(limits.bound));
-        let over = seen.saturating_sub(self.high);
-        if seen < self.low.saturating_sub(margin) {
-            self.fallen = self.fallen.max(self.witnessed.saturating_sub(seen));
+        let over = seen - self.high;
+        if seen < self.low - margin {
+            self.fallen = self.fallen.max(self.witnessed - seen);
         }
         if over > touch {
             return;
@@ -114,24 +119,24 @@ impl Interval {
         self.looked = seen;
         // Nothing presses with less than nothing: the true zero is not higher than what is seen. But the air may rise.
         let air = travelled(limits.air, passed, LONGEST);
-        let evident = seen.saturating_add(margin);
-        self.high = evident.min(self.high.saturating_add(air));
+        let evident = seen + margin;
+        self.high = evident.min(self.high + air);
         let follows = travelled(limits.follows, passed, LONGEST);
-        let rise = seen.saturating_sub(self.value);
-        let followed = self.value.saturating_add(rise.clamp(-follows, follows));
+        let rise = seen - self.value;
+        let followed = self.value + rise.clamp(-follows, follows);
         self.value = followed.min(evident);
         if !limits.absolute {
             // A wall that creeps back lies below its rest for a while: neither goes there.
-            self.high = self.high.max(self.low.saturating_add(margin));
+            self.high = self.high.max(self.low + margin);
             self.value = self.value.max(self.low);
             // Nor without bound where a slow press looks like drift.
-            self.value = self.value.min(self.witnessed.saturating_add(touch));
+            self.value = self.value.min(self.witnessed + touch);
         }
         // Nor so far up that the drift that may be in it is too much, as long as there is a value for which it is not.
-        let apart = self.high.saturating_sub(self.low);
-        if apart <= touch.saturating_mul(2) {
-            let highest = self.low.saturating_add(touch.saturating_sub(margin));
-            self.value = self.value.min(highest.max(self.low.saturating_add(apart / 2)));
+        let apart = self.high - self.low;
+        if apart <= 2 * touch {
+            let highest = self.low + touch - margin;
+            self.value = self.value.min(highest.max(self.low + apart / 2));
         }
     }
 
@@ -139,11 +144,11 @@ impl Interval {
     /// bound.
     pub(super) fn taken(&self, limits: &Limits, pressure: Pressure) -> Self {
         let (seen, margin) = (level(pressure.0), level(limits.level));
-        let known = seen.min(self.high.saturating_sub(margin));
+        let known = seen.min(self.high - margin);
         let mut taken = Self {
             value: seen,
-            low: known.saturating_sub(margin),
-            high: self.high.min(seen.saturating_add(margin)),
+            low: known - margin,
+            high: self.high.min(seen + margin),
             witnessed: known,
             looked: seen,
             fallen: 0,
@@ -157,7 +162,7 @@ impl Interval {
     pub(super) fn vouched(&self, limits: &Limits) -> Self {
         let seen = self.value();
         Self {
-            high: self.value.saturating_add(level(limits.level)),
+            high: self.value + level(limits.level),
             ..*self
         }
         .taken(limits, seen)
@@ -165,10 +170,10 @@ impl Interval {
 
     /// This zero with what happened since `then`, when another took its place: so long ago. `now` is that other one.
     pub(super) fn since(&self, limits: &Limits, then: &Self, now: &Self, passed: u64) -> Self {
-        let followed = now.value.saturating_sub(then.value);
+        let followed = now.value - then.value;
         let mut aged = Self {
-            value: self.value.saturating_add(followed),
-            looked: self.looked.saturating_add(followed),
+            value: self.value + followed,
+            looked: self.looked + followed,
             ..*self
         };
         aged.drift(limits, passed);

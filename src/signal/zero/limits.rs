@@ -32,7 +32,7 @@ const GAUGE_FOLLOWS: i64 = 500;
 /// The same of an absolute transducer: 8 m of stairs in 25 s.
 const ABSOLUTE_FOLLOWS: i64 = 4_000;
 
-/// Fraction bits of rates and of levels that move at them.
+/// Fraction bits of rates.
 pub(super) const FRACTION: u32 = 32;
 
 /// The limits of a zero, counts.
