@@ -116,7 +116,7 @@ impl Warnings {
     /// The zero is not known to be of rest: it is the stored or the design's, an absolute transducer's first, which may hold
     /// a press, or a tared one over all that is known, until it is saved. All values may be offset.
     pub const ZERO_UNVERIFIED: Self = Self(2);
-    /// The pressure is below the zero by more than an ok zero may be off: a leak, a lift, a wall that creeps back, or a zero
+    /// The pressure is below the zero by more than noise: a leak, a lift, a wall that creeps back, or a zero
     /// taken while pressed. Force and indentation are 0 but too low by the unknown offset.
     pub const BELOW_ZERO: Self = Self(4);
     /// The rest pressure fell further than drift, or the thinnest air, explains: fluid is lost, and the tables are for more of it. Latched.

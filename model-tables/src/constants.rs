@@ -1,5 +1,7 @@
 //! What the firmware needs to know of a design beside its tables: integers in stated units.
 
+use crate::units::PressureRise;
+
 /// Constants of the design that tables were generated for; written by the generator next to them.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct DesignConstants {
@@ -32,6 +34,10 @@ pub enum Quantity {
     Absolute,
 }
 
+/// Standard deviations of one sample below zero that noise is believed to explain: filtered white noise gets there
+/// less than once in 10^30 reports.
+pub const BELOW_ZERO_DEVIATIONS: i64 = 8;
+
 /// The pressure transducer of a design.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Transducer {
@@ -55,6 +61,20 @@ impl Transducer {
         } else {
             self.resolution as i64
         }
+    }
+
+    /// The lowest rise that still reads as untouched, in counts of `1 / 2^fraction_bits` pascal: below it the
+    /// firmware warns.
+    pub const fn lowest_rest(&self, fraction_bits: u32) -> PressureRise {
+        // Below 2^31 * 8 * 2^16 = 2^50.
+        let counts = (self.grain() * BELOW_ZERO_DEVIATIONS * (1 << fraction_bits) + 500) / 1000;
+        PressureRise(
+            -(if counts > i32::MAX as i64 {
+                i32::MAX
+            } else {
+                counts as i32
+            }),
+        )
     }
 }
 

@@ -16,8 +16,8 @@ pub struct Contact {
     pub warnings: Warnings,
 }
 
-/// Force and indentation at a rise, with what the tables add to the warnings. Below zero both are 0; further below than an ok
-/// zero may be off, that is flagged.
+/// Force and indentation at a rise, with what the tables add to the warnings. Below zero both are 0; below
+/// [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) that is flagged.
 #[inline]
 pub fn contact(design: &impl Design, rise: PressureRise, warnings: Warnings) -> Contact {
     let reading = design.lookup(rise);
@@ -26,7 +26,7 @@ pub fn contact(design: &impl Design, rise: PressureRise, warnings: Warnings) -> 
         indentation: reading.indentation,
         warnings: warnings
             .and(Warnings::SATURATED.when(reading.saturated))
-            .and(Warnings::BELOW_ZERO.when(rise.0 < -design.parameters().limits.bound)),
+            .and(Warnings::BELOW_ZERO.when(rise < design.parameters().lowest_rest)),
     }
 }
 
@@ -95,8 +95,8 @@ mod tests {
 
     #[test]
     fn noise_around_zero_is_no_contact_and_ok() {
-        // 6 noise floors of 10 Pa at 1/256 Pa: -15 360 counts.
-        for rise in [0, -1, -15_360] {
+        // 8 deviations of 10 Pa at 1/256 Pa: -20 480 counts.
+        for rise in [0, -1, -20_480] {
             let measurement = at(rise);
             assert_eq!(measurement.warnings, Warnings::NONE);
             assert_eq!((measurement.force.0, measurement.indentation.0), (0, 0));
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn far_below_zero_is_flagged() {
-        let measurement = at(-15_361);
+        let measurement = at(-20_481);
         assert_eq!(measurement.warnings, Warnings::BELOW_ZERO);
         assert_eq!((measurement.force.0, measurement.indentation.0), (0, 0));
     }

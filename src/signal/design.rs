@@ -34,6 +34,8 @@ pub struct Parameters {
     pub pressure_fraction_bits: u32,
     /// The last rise that the tables cover; beyond it they are saturated.
     pub last_rise: PressureRise,
+    /// Below this rise a reading is flagged.
+    pub lowest_rest: PressureRise,
     /// From one sample to the next, microseconds.
     pub period: u32,
     /// Of the transducer's pressure.
@@ -61,6 +63,7 @@ impl Parameters {
         Self {
             pressure_fraction_bits: fraction_bits,
             last_rise,
+            lowest_rest: constants.transducer.lowest_rest(fraction_bits),
             period,
             scale: Scale::of(fraction_bits),
             limits,

@@ -130,7 +130,10 @@ impl<D: Design> Pipeline<D> {
         let parameters = self.parameters();
         let doubtful =
             missed != 0 && self.zero.is_ok() && bound.saturating_add(missed) > parameters.limits.bound;
+        // What a window will tell at its end is not read as ok until then.
+        let fallen = verified && rise.0 < -parameters.limits.bound;
         let warnings = warnings
+            .and(Warnings::ZERO_AGED.when(fallen))
             .and(self.standing)
             .and(self.fluid.suspicions())
             .and(Warnings::TEMPERATURE.when(doubtful));

@@ -129,7 +129,12 @@ fn powered_up_while_pressed_is_said_so() {
 fn a_pressure_below_the_zero_is_said_so() {
     let mut bench = Bench::zeroed();
     let report = bench.steps(5, Ok(at(19_000.0)));
-    assert_eq!(report.status().to_string(), "warning: below zero");
+    assert_eq!(report.status().to_string(), "warning: below zero; zero aged");
+    assert_eq!(
+        bench.steps(5, Ok(at(20_030.0))).status().to_string(),
+        "warning: zero aged"
+    );
+    assert_eq!(bench.steps(5, Ok(at(20_100.0))).status(), Status::Ok);
 }
 
 #[test]
