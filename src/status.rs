@@ -113,11 +113,11 @@ impl Warnings {
     pub const NONE: Self = Self(0);
     /// Beyond the tables' or the transducer's range: force and indentation are lower bounds.
     pub const SATURATED: Self = Self(1);
-    /// The zero is not known to be of rest: it is the stored or the design's, or an absolute transducer's first, which may
-    /// hold a press. All values may be offset.
+    /// The zero is not known to be of rest: it is the stored or the design's, an absolute transducer's first, which may hold
+    /// a press, or a tared one over all that is known, until it is saved. All values may be offset.
     pub const ZERO_UNVERIFIED: Self = Self(2);
-    /// The pressure is below the zero by more than noise: a leak, or a zero taken while pressed. Force and
-    /// indentation are 0 but too low by the unknown offset.
+    /// The pressure is below the zero by more than noise: a leak, a lift, a wall that creeps back, or a zero
+    /// taken while pressed. Force and indentation are 0 but too low by the unknown offset.
     pub const BELOW_ZERO: Self = Self(4);
     /// The rest pressure fell further than drift, or the thinnest air, explains: fluid is lost, and the tables are for more of it. Latched.
     pub const LEAK_SUSPECTED: Self = Self(8);
@@ -125,7 +125,8 @@ impl Warnings {
     pub const BUBBLE_SUSPECTED: Self = Self(16);
     /// A stored calibration is there and cannot be used (another design's, or damaged): the design's values serve.
     pub const CALIBRATION_REFUSED: Self = Self(32);
-    /// The zero could not be followed for so long that drift may pass for a touch, or hide one.
+    /// The zero may be off by so much that it may pass for a touch, or hide one: drift since it was last seen untouched, or a
+    /// rest pressure that rose slowly or fell. Ends with a tare.
     pub const ZERO_AGED: Self = Self(64);
     /// The transducer's temperature changed in contact by so much that what its held compensation misses may pass
     /// for a touch.
@@ -232,7 +233,8 @@ impl fmt::Display for Status {
 /// Whether the fingertip is touched.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub enum Touch {
-    /// It cannot be told: there is no reading, or the zero is not verified and the rise is below the threshold.
+    /// It cannot be told: there is no reading, the rise is between the thresholds, or it is below them over a zero that is not
+    /// verified.
     #[default]
     Unknown,
     /// Nothing presses.

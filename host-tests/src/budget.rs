@@ -3,8 +3,8 @@
 //! Bounds (model, table, conversion) are largest errors; the others are standard deviations. The sum is that of the bounds and
 //! the root of the sum of the others' squares.
 
-use fingertip::signal::tare::WINDOW;
 use fingertip::signal::uncertainty::averaged;
+use fingertip::signal::zero::estimator::WINDOW;
 use fingertip::transducer::period;
 use model_tables::generate::Generated;
 use model_tables::units::PressureRise;

@@ -251,6 +251,38 @@ fn one_rotten_bit_of_the_last_record_is_said_too() {
     }
 }
 
+/// The last record wherever in the two slots it lies: a save, or that what was stored is void.
+#[test]
+fn a_rotten_bit_of_the_last_record_never_brings_back_an_older_one_unsaid() {
+    let places = (SLOT / LENGTH) as i32;
+    for saves in 1..=2 * places + 1 {
+        let (mut store, _) = open(Flash::erased(1));
+        for number in 0..saves {
+            assert_eq!(block_on(store.save(Some(calibration(number)))), Ok(()));
+        }
+        for last in [None, Some(calibration(99))] {
+            let mut store = store.clone();
+            let mut before = store.clone().into_flash();
+            assert_eq!(block_on(store.save(last)), Ok(()));
+            let mut after = store.into_flash();
+            let written: Vec<usize> = (0..2 * SLOT / LENGTH)
+                .filter(|place| {
+                    let bytes = |flash: &mut Flash| flash.bytes_mut()[place * LENGTH..][..LENGTH].to_vec();
+                    let written = bytes(&mut after);
+                    bytes(&mut before) != written && written != [0xFF; LENGTH]
+                })
+                .collect();
+            assert_eq!(written.len(), 1, "{saves}");
+            for bit in (0..8 * LENGTH).step_by(5) {
+                let mut flash = after.clone();
+                flash.bytes_mut()[written[0] * LENGTH + bit / 8] ^= 1 << (bit % 8);
+                let (state, _) = served(&flash);
+                assert_eq!(state, Stored::Unreadable, "{saves} saves, bit {bit}");
+            }
+        }
+    }
+}
+
 #[test]
 fn nothing_but_places_that_cannot_be_read_is_said_and_written_over() {
     let mut flash = histories::<SLOT, DOUBLE_WORD>(16)[16].clone();

@@ -231,6 +231,7 @@ fn no_reset_that_nobody_asked_for_takes_a_zero() {
         pressure: fingertip::units::Pressure(
             (rest(&ImageDesign) * f64::from(1 << ImageDesign::PARAMETERS.pressure_fraction_bits)) as i32,
         ),
+        bound: 0,
         verified: true,
     };
     let left = Breadcrumb {

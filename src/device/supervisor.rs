@@ -100,6 +100,7 @@ impl Breadcrumb {
     pub fn to_words(&self) -> [u32; WORDS] {
         let zero = self.zero.unwrap_or(Zero {
             pressure: Pressure(0),
+            bound: 0,
             verified: false,
         });
         let flags = u32::from(self.good)
@@ -114,7 +115,7 @@ impl Breadcrumb {
             self.design_hash as u32,
             (self.design_hash >> 32) as u32,
             zero.pressure.0 as u32,
-            0,
+            zero.bound as u32,
             0,
         ];
         words[WORDS - 1] = check(&words);
@@ -123,7 +124,7 @@ impl Breadcrumb {
 
     /// What was kept; nothing when the words are none that [`Breadcrumb::to_words`] gives.
     pub fn from_words(words: &[u32; WORDS]) -> Option<Self> {
-        let [magic, flags, detail, low, high, zero, _, sum] = *words;
+        let [magic, flags, detail, low, high, zero, bound, sum] = *words;
         if magic != MAGIC || sum != check(words) {
             return None;
         }
@@ -136,6 +137,7 @@ impl Breadcrumb {
             design_hash: u64::from(high) << 32 | u64::from(low),
             zero: flag(1).then_some(Zero {
                 pressure: Pressure(zero as i32),
+                bound: bound as i32,
                 verified: flag(2),
             }),
         })
@@ -143,12 +145,10 @@ impl Breadcrumb {
 
     /// What the run before left, and what this run starts with. `found` is what the memory holds.
     pub fn start(found: Option<Self>, cause: ResetCause, design_hash: u64) -> Start {
-        // After power was off the memory says nothing, whatever it looks like.
-        let asked = matches!(
-            cause,
-            ResetCause::PowerOn | ResetCause::BrownOut | ResetCause::Pin
-        );
-        let before = found.filter(|_| cause != ResetCause::PowerOn).unwrap_or_default();
+        // Memory that fits its check was never without power: what looks like a power-on was a supply that sagged, and
+        // a board that sags again and again is one that resets again and again.
+        let asked = cause == ResetCause::Pin || cause == ResetCause::PowerOn && found.is_none();
+        let before = found.unwrap_or_default();
         let (fault, detail) = match (before.fault, cause) {
             (LastFault::None, ResetCause::Watchdog) => (LastFault::Hang, before.detail),
             (LastFault::None, _) => (LastFault::None, 0),
@@ -223,6 +223,7 @@ mod tests {
         design_hash: 0x0123_4567_89AB_CDEF,
         zero: Some(Zero {
             pressure: Pressure(-42),
+            bound: 7,
             verified: true,
         }),
     };
@@ -268,13 +269,27 @@ mod tests {
 
     #[test]
     fn power_and_the_button_start_afresh() {
-        let start = Breadcrumb::start(Some(CRUMB), ResetCause::PowerOn, CRUMB.design_hash);
+        let start = Breadcrumb::start(None, ResetCause::PowerOn, CRUMB.design_hash);
         assert_eq!(
             (start.fault, start.kept, start.crumb.resets),
             (LastFault::None, None, 0)
         );
         let start = Breadcrumb::start(Some(CRUMB), ResetCause::Pin, CRUMB.design_hash);
         assert_eq!((start.fault, start.crumb.resets), (LastFault::Late, 0));
+    }
+
+    #[test]
+    fn a_supply_that_sags_keeps_the_zero_and_is_counted() {
+        for cause in [ResetCause::PowerOn, ResetCause::BrownOut] {
+            let mut found = Some(Breadcrumb { resets: 0, ..CRUMB });
+            for reset in 1..=RESET_LIMIT {
+                let start = Breadcrumb::start(found, cause, CRUMB.design_hash);
+                assert_eq!((start.crumb.resets, start.give_up), (reset, false));
+                assert!(reset > 1 || start.kept == CRUMB.zero);
+                found = Some(start.crumb);
+            }
+            assert!(Breadcrumb::start(found, cause, CRUMB.design_hash).give_up);
+        }
     }
 
     #[test]
@@ -292,14 +307,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_kept_is_found(fault in 0..LastFault::CODES.len(), detail in any::<u32>(), resets in any::<u8>(), flags in any::<[bool; 3]>(), hash in any::<u64>(), zero in any::<i32>()) {
+        fn what_is_kept_is_found(fault in 0..LastFault::CODES.len(), detail in any::<u32>(), resets in any::<u8>(), flags in any::<[bool; 3]>(), hash in any::<u64>(), zero in any::<[i32; 2]>()) {
             let crumb = Breadcrumb {
                 fault: LastFault::CODES[fault].0,
                 detail,
                 resets,
                 good: flags[0],
                 design_hash: hash,
-                zero: flags[1].then_some(Zero { pressure: Pressure(zero), verified: flags[2] }),
+                zero: flags[1].then_some(Zero { pressure: Pressure(zero[0]), bound: zero[1], verified: flags[2] }),
             };
             prop_assert_eq!(Breadcrumb::from_words(&crumb.to_words()), Some(crumb));
         }

@@ -5,7 +5,7 @@
 
 use crate::link::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, unstuff};
 use crate::signal::calibration::LARGEST_GAIN;
-use crate::signal::tare::TareRefusal;
+use crate::signal::zero::estimator::TareRefusal;
 use crate::status::{code_of, named_by};
 
 const HEADER: usize = 4;

@@ -1,13 +1,12 @@
 //! The fingertip that a signal path is for: folded into the code of an image, or loaded at run time.
 
 use crate::signal::calibration::Calibration;
-use crate::signal::drift::Pace;
 use crate::signal::filter::Leaps;
 use crate::signal::fluid::Fall;
 use crate::signal::scale::Scale;
-use crate::signal::tare::gates::Gates;
 use crate::signal::touch::Thresholds;
 use crate::signal::uncertainty::Uncertainty;
+use crate::signal::zero::limits::Limits;
 use crate::transducer;
 use model_tables::block::BlockError;
 use model_tables::block::read::TipBlock;
@@ -42,13 +41,11 @@ pub struct Parameters {
     /// Of the transducer's pressure.
     pub scale: Scale,
     /// Of a zero, without a stored calibration.
-    pub gates: Gates,
+    pub limits: Limits,
     /// Of the filter.
     pub leaps: Leaps,
     /// Of a touch.
     pub thresholds: Thresholds,
-    /// Of the zero's drift.
-    pub pace: Pace,
     /// Of the zero, when it is a leak.
     pub fall: Fall,
     /// Of a rise.
@@ -62,19 +59,18 @@ impl Parameters {
     /// For more than 16 fraction bits: at compile time for an image; loaded tables have no more.
     pub const fn of(constants: DesignConstants, fraction_bits: u32, last_rise: PressureRise) -> Self {
         let period = transducer::period(&constants.transducer.kind);
-        let gates = Gates::of(&constants, fraction_bits);
+        let limits = Limits::of(&constants, fraction_bits);
         Self {
             pressure_fraction_bits: fraction_bits,
             last_rise,
             lowest_rest: constants.transducer.lowest_rest(fraction_bits),
             period,
             scale: Scale::of(fraction_bits),
-            gates,
+            limits,
             leaps: Leaps::of(&constants, fraction_bits, period),
             thresholds: Thresholds::of(&constants, fraction_bits),
-            pace: Pace::of(&constants, fraction_bits, gates.travel()),
-            fall: Fall::of(&constants, fraction_bits, gates.far),
-            uncertainty: Uncertainty::of(&constants, fraction_bits, gates.reach()),
+            fall: Fall::of(&constants, fraction_bits, &limits),
+            uncertainty: Uncertainty::of(&constants, fraction_bits),
             constants,
         }
     }

@@ -171,6 +171,14 @@ impl Filter {
         Ok((middle.rise, oldest.warnings.and(middle.warnings)))
     }
 
+    /// The zero moved, and with it the rises so far, by so many counts.
+    #[cold]
+    pub fn shift(&mut self, by: i32) {
+        for block in &mut self.history {
+            block.rise = PressureRise(block.rise.0.saturating_add(by));
+        }
+    }
+
     /// A gap: what was before it is not next to what comes after.
     pub fn interrupt(&mut self) {
         self.filled = 0;

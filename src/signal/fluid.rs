@@ -1,7 +1,7 @@
 //! Is the fluid still what the model was solved for? Suspicions, latched until someone clears them.
 //!
-//! - A **leak** lowers the rest pressure. The zero that is followed, or a reading that stays below it, falls under the
-//!   lowest zero to be expected by more than drift explains. To a gauge transducer that is the zero that was stored, or
+//! - A **leak** lowers the rest pressure. Quiet windows one after the other lie under the lowest zero to be expected by more
+//!   than drift explains, and for longer than a wall takes to creep back. To a gauge transducer that is the zero that was stored, or
 //!   the design's. To an absolute one a leak, the weather and a climb look alike: only below the rest pressure in the
 //!   thinnest air is it none of these. So it tells a leak where the fingertip rests far above the air, and is silent
 //!   where it rests near it.
@@ -9,19 +9,20 @@
 //!   Pressure alone cannot tell that from a lighter touch, so it is judged only when someone says how deep the
 //!   fingertip is pressed (a self-test against a stop).
 
-use crate::status::{Touch, Warnings};
+use crate::signal::zero::limits::Limits;
+use crate::status::Warnings;
 use crate::units::{Microseconds, Pressure};
 use model_tables::constants::{DesignConstants, Quantity};
-use model_tables::units::{Nanometres, PressureRise};
+use model_tables::units::Nanometres;
 
 /// Fallen by this share of the rest pressure, as a divisor, it is a leak.
 const SHARE: i32 = 8;
 
-/// But by no less than this, in grains of the transducer.
-const LEAST_GRAINS: i64 = 10;
+/// But by no less than this, in noise floors of the transducer.
+const LEAST_FLOORS: i64 = 10;
 
-/// Below zero for this long it is no flutter, microseconds.
-const STANDS: u64 = 1_000_000;
+/// Below zero for this long it is no wall that creeps back, microseconds.
+const STANDS: u64 = 60_000_000;
 
 /// A known indentation is read smaller than this share of it: in the fingertip there is something softer than
 /// liquid. Permille.
@@ -35,18 +36,19 @@ pub struct Fall {
 }
 
 impl Fall {
-    /// The fall that is a leak for a design; `far` is what the transducer's offset may be, counts. A stored zero has it
-    /// in it, the thinnest air has not.
-    pub const fn of(constants: &DesignConstants, fraction_bits: u32, far: i32) -> Self {
+    /// The fall that is a leak for a design. The thinnest air does not have the transducer's offset in it; a gauge zero
+    /// has, but for what it wanders from day to day.
+    pub const fn of(constants: &DesignConstants, fraction_bits: u32, limits: &Limits) -> Self {
         let share = constants.rest_pressure / SHARE;
-        let grains = constants.transducer.grain() * LEAST_GRAINS;
+        let floors = constants.transducer.grain() * LEAST_FLOORS;
         let share = share as i64 * 1000;
-        let least = if share > grains { share } else { grains };
+        let least = if share > floors { share } else { floors };
         let leak = Pressure::from_millipascals(least, fraction_bits).0;
         Self {
             leak: match constants.transducer.quantity {
-                Quantity::Gauge => leak,
-                Quantity::Absolute => leak.saturating_add(far),
+                Quantity::Gauge if leak > limits.near => leak,
+                Quantity::Gauge => limits.near,
+                Quantity::Absolute => leak.saturating_add(limits.far),
             },
         }
     }
@@ -80,11 +82,9 @@ impl Fluid {
         *self = Self::new(self.fall);
     }
 
-    /// One reading later: the rise over the zero that serves, and how far that zero lies over the lowest to be expected.
-    #[inline]
-    pub fn step(&mut self, time: Microseconds, rise: PressureRise, zero_over_lowest: i32, touch: Touch) {
-        let over = zero_over_lowest.saturating_add(rise.0.min(0));
-        if touch != Touch::Untouched || over >= -self.fall.leak {
+    /// A quiet window that lies so far over the lowest zero to be expected, counts.
+    pub fn look(&mut self, time: Microseconds, over: i32) {
+        if over >= -self.fall.leak {
             self.below_since = None;
             return;
         }
@@ -92,6 +92,11 @@ impl Fluid {
         if time.0.saturating_sub(since.0) >= STANDS {
             self.suspicions = self.suspicions.and(Warnings::LEAK_SUSPECTED);
         }
+    }
+
+    /// A gap in the samples: what it hid is no time below.
+    pub fn interrupt(&mut self) {
+        self.below_since = None;
     }
 
     /// Someone presses to a known indentation: whether the reading agrees. Too little raises the suspicion, enough
@@ -110,33 +115,37 @@ mod tests {
     use crate::signal::test_design::Linear;
 
     fn fluid() -> Fluid {
-        Fluid::new(Fall::of(&Linear::CONSTANTS, 8, 2_500 << 8))
+        let limits = Limits::of(&Linear::CONSTANTS, 8);
+        Fluid::new(Fall::of(&Linear::CONSTANTS, 8, &limits))
     }
 
-    fn leaks(rise: i32, over: i32, touch: Touch) -> bool {
-        let mut fluid = fluid();
-        for ms in 0..1_500 {
-            fluid.step(Microseconds(ms * 1000), PressureRise(rise), over, touch);
+    /// Looks four times a second, for so many seconds.
+    fn leaks(fluid: &mut Fluid, seconds: u64, over: i32) -> bool {
+        for quarter in 0..=4 * seconds {
+            fluid.look(Microseconds(quarter * 250_000), over);
         }
         fluid.suspicions() == Warnings::LEAK_SUSPECTED
     }
 
     #[test]
-    fn an_eighth_of_the_rest_pressure_is_a_leak() {
+    fn an_eighth_of_the_rest_pressure_for_a_minute_is_a_leak() {
         // Rests at 20 kPa: 2.5 kPa.
         assert_eq!(fluid().fall.leak, 2_500 << 8);
-        assert!(!leaks(0, -(2_490 << 8), Touch::Untouched));
-        assert!(leaks(0, -(2_510 << 8), Touch::Untouched));
-        assert!(leaks(-(2_400 << 8), -(110 << 8), Touch::Untouched));
+        assert!(!leaks(&mut fluid(), 600, -(2_490 << 8)));
+        assert!(!leaks(&mut fluid(), 59, -(2_510 << 8)));
+        assert!(leaks(&mut fluid(), 60, -(2_510 << 8)));
     }
 
     #[test]
-    fn a_press_or_a_flutter_is_none() {
-        assert!(!leaks(0, -(9_000 << 8), Touch::Touched));
+    fn a_flutter_or_a_gap_is_none() {
         let mut fluid = fluid();
-        for ms in 0..10_000 {
-            let rise = if ms % 900 == 0 { 0 } else { -(9_000 << 8) };
-            fluid.step(Microseconds(ms * 1000), PressureRise(rise), 0, Touch::Untouched);
+        for quarter in 0..10_000 {
+            let over = if quarter % 200 == 0 { 0 } else { -(9_000 << 8) };
+            fluid.look(Microseconds(quarter * 250_000), over);
+        }
+        for gap in 0..100 {
+            fluid.look(Microseconds((10_000 + gap * 30) * 250_000), -(9_000 << 8));
+            fluid.interrupt();
         }
         assert_eq!(fluid.suspicions(), Warnings::NONE);
     }
@@ -144,15 +153,8 @@ mod tests {
     #[test]
     fn a_suspicion_stays_until_it_is_cleared() {
         let mut fluid = fluid();
-        for ms in 0..2_000 {
-            fluid.step(
-                Microseconds(ms * 1000),
-                PressureRise(-(9_000 << 8)),
-                0,
-                Touch::Untouched,
-            );
-        }
-        fluid.step(Microseconds(3_000_000), PressureRise(0), 0, Touch::Untouched);
+        assert!(leaks(&mut fluid, 61, -(9_000 << 8)));
+        fluid.look(Microseconds(62_000_000), 0);
         assert_eq!(fluid.suspicions(), Warnings::LEAK_SUSPECTED);
         fluid.clear();
         assert_eq!(fluid.suspicions(), Warnings::NONE);

@@ -1,18 +1,16 @@
-//! From a sample to a report, in the order of the data: [`stuck`] -> [`scale`] -> [`temperature`] -> [`tare`] -> [`filter`] ->
-//! [`touch`] -> [`drift`] -> [`fluid`] -> [`contact`] -> [`uncertainty`] -> [`report`]. The [`pipeline`] calls them. Integers
+//! From a sample to a report, in the order of the data: [`stuck`] -> [`scale`] -> [`temperature`] -> [`zero`] -> [`fluid`] ->
+//! [`filter`] -> [`touch`] -> [`contact`] -> [`uncertainty`] -> [`report`]. The [`pipeline`] calls them. Integers
 //! only; time and samples are arguments.
 
 pub mod calibration;
 pub mod contact;
 pub mod design;
-pub mod drift;
 pub mod filter;
 pub mod fluid;
 pub mod pipeline;
 pub mod report;
 pub mod scale;
 pub mod stuck;
-pub mod tare;
 pub mod temperature;
 #[cfg(test)]
 pub(crate) mod test_design;

@@ -3,19 +3,18 @@
 use crate::signal::calibration::{Calibration, Gain};
 use crate::signal::contact::{contact, through_tables};
 use crate::signal::design::{Design, Parameters};
-use crate::signal::drift::Drift;
 use crate::signal::filter::{Filter, GROUP_DELAY};
 use crate::signal::fluid::Fluid;
 use crate::signal::report::{Measurement, Report};
 use crate::signal::stuck::StuckDetector;
-use crate::signal::tare::{Tare, TareRefusal};
 use crate::signal::temperature::Temperature;
 use crate::signal::touch::TouchDetector;
+use crate::signal::zero::estimator::{Estimator, TareRefusal};
 use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, Touch, Warnings};
 use crate::transducer::driver::Sample;
 use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
-use model_tables::units::Nanometres;
+use model_tables::units::{Nanometres, PressureRise};
 
 /// The signal path of one fingertip.
 #[derive(Clone, Debug)]
@@ -28,12 +27,11 @@ pub struct Pipeline<D> {
     temperature: Temperature,
     /// The last one measured.
     celsius: Option<Centidegrees>,
-    tare: Tare,
+    zero: Estimator,
     gain: Gain,
     filter: Filter,
     detector: TouchDetector,
     touch: Touch,
-    drift: Drift,
     fluid: Fluid,
     /// When the last sample was measured, and how long after the one before it.
     measured: Microseconds,
@@ -45,9 +43,9 @@ impl<D: Design> Pipeline<D> {
     /// reading.
     pub fn new(design: D, start_up: StartUp, calibration: Calibration, standing: Warnings) -> Self {
         let parameters = design.parameters();
-        let gates = match calibration.zero_counts(parameters.scale) {
-            Some(zero) => parameters.gates.with_stored(zero),
-            None => parameters.gates,
+        let limits = match calibration.zero_counts(parameters.scale) {
+            Some(zero) => parameters.limits.with_stored(zero),
+            None => parameters.limits,
         };
         Self {
             calibration,
@@ -59,12 +57,11 @@ impl<D: Design> Pipeline<D> {
                 parameters.pressure_fraction_bits,
             ),
             celsius: None,
-            tare: Tare::new(gates, start_up),
+            zero: Estimator::new(limits, start_up),
             gain: Gain::new(calibration.gain),
             filter: Filter::new(parameters.leaps),
             detector: TouchDetector::new(parameters.thresholds),
             touch: Touch::Unknown,
-            drift: Drift::new(parameters.pace),
             fluid: Fluid::new(parameters.fall),
             measured: Microseconds(0),
             spacing: 0,
@@ -87,14 +84,12 @@ impl<D: Design> Pipeline<D> {
         let outcome = match sample {
             Ok(sample) => {
                 if spacing == 0 || spacing > self.parameters().gap() {
-                    self.tare.interrupt(measured);
-                    self.filter.interrupt();
+                    self.interrupt(measured);
                 }
                 self.measure(measured, sample, uneven <= u64::from(period) / 4)
             }
             Err(fault) => {
-                self.tare.interrupt(measured);
-                self.filter.interrupt();
+                self.interrupt(measured);
                 Err(fault)
             }
         };
@@ -116,28 +111,34 @@ impl<D: Design> Pipeline<D> {
         }
         let Pressure(pressure) = self.parameters().scale.pressure(sample.pressure);
         let pressure = Pressure(pressure.saturating_sub(self.temperature.correction()));
-        let (rise, zero) = self.tare.step(time, pressure, self.drift.counts())?;
-        if self.tare.take_moved() {
-            self.zero_moved(time);
+        let before = self.zero.zero();
+        if let Some(level) = self.zero.step(time, pressure) {
+            self.look(time, level, before);
+        }
+        let (rise, zero) = self.zero.rise(pressure)?;
+        if self.zero.take_moved() {
+            self.zero_moved();
         }
         let rise = self.gain.apply_to(rise);
         let (rise, warnings) = self.filter.step(rise, zero.and(sample.warnings()), even)?;
         let verified = !warnings.contains(Warnings::ZERO_UNVERIFIED);
-        let touch = self.detector.step(rise, verified);
-        self.touch = touch;
-        self.drift.step(time, rise, touch);
-        let (drifted, aged) = self.drift.missed(time, touch);
-        self.fluid.step(time, rise, self.zero_over_lowest(), touch);
-
         let missed = self.temperature.missed();
+        let (bound, above) = (self.zero.bound(), self.zero.above());
+        let touch = self.detector.step(rise, above.saturating_add(missed), verified);
+        self.touch = touch;
+
         let parameters = self.parameters();
+        let doubtful =
+            missed != 0 && self.zero.is_ok() && bound.saturating_add(missed) > parameters.limits.bound;
+        // What a window will tell at its end is not read as ok until then.
+        let fallen = verified && rise.0 < -parameters.limits.bound;
         let warnings = warnings
+            .and(Warnings::ZERO_AGED.when(fallen))
             .and(self.standing)
             .and(self.fluid.suspicions())
-            .and(Warnings::ZERO_AGED.when(aged && verified))
-            .and(Warnings::TEMPERATURE.when(missed > parameters.thresholds.touch.0));
+            .and(Warnings::TEMPERATURE.when(doubtful));
         let contact = contact(&self.design, rise, warnings);
-        let sigma = parameters.uncertainty.rise(verified, drifted, missed);
+        let sigma = parameters.uncertainty.rise(bound, missed);
         Ok(Measurement {
             pressure_rise: rise,
             force: contact.force,
@@ -148,20 +149,36 @@ impl<D: Design> Pipeline<D> {
         })
     }
 
-    /// What was measured over the old zero is void.
+    /// A quiet window ended at this pressure; the zero from before it moved with it.
     #[cold]
-    fn zero_moved(&mut self, time: Microseconds) {
-        self.drift.reset(time);
-        self.detector.forget();
-        self.touch = Touch::Unknown;
+    fn look(&mut self, time: Microseconds, level: Pressure, before: Option<Zero>) {
+        if let (Some(before), Some(now)) = (before, self.zero()) {
+            let shift = PressureRise(before.pressure.0.saturating_sub(now.pressure.0));
+            self.filter.shift(self.gain.apply_to(shift).0);
+        }
+        let lowest = self.zero.lowest().0;
+        self.fluid.look(time, level.0.saturating_sub(lowest));
+        if let Ok((rise, _)) = self.zero.rise(level)
+            && self.gain.apply_to(rise) <= self.parameters().thresholds.touch
+        {
+            self.detector.forget();
+        }
+    }
+
+    /// A gap in the samples.
+    #[cold]
+    fn interrupt(&mut self, time: Microseconds) {
+        self.zero.interrupt(time);
+        self.fluid.interrupt();
         self.filter.interrupt();
     }
 
-    fn zero_over_lowest(&self) -> i32 {
-        let zero = self.tare.zero().map_or(self.tare.lowest(), |zero| zero.pressure);
-        zero.0
-            .saturating_add(self.drift.counts())
-            .saturating_sub(self.tare.lowest().0)
+    /// What was measured over the old zero is void.
+    #[cold]
+    fn zero_moved(&mut self) {
+        self.detector.forget();
+        self.touch = Touch::Unknown;
+        self.filter.interrupt();
     }
 
     /// Someone says that nothing presses: takes a new zero if it may be one. What came of it is asked with
@@ -170,8 +187,7 @@ impl<D: Design> Pipeline<D> {
     /// # Errors
     /// [`TareRefusal`] when that is plain at once.
     pub fn tare(&mut self) -> Result<(), TareRefusal> {
-        let (_, aged) = self.drift.missed(self.measured, self.touch);
-        self.tare.command(aged)
+        self.zero.command()
     }
 
     /// Takes back the last commanded zero.
@@ -179,25 +195,22 @@ impl<D: Design> Pipeline<D> {
     /// # Errors
     /// [`TareRefusal::NothingToUndo`], [`TareRefusal::Busy`].
     pub fn undo_tare(&mut self) -> Result<(), TareRefusal> {
-        self.tare.undo()
+        self.zero.undo()
     }
 
     /// What came of the last commanded tare, once.
     pub fn take_tare_answer(&mut self) -> Option<Result<(), TareRefusal>> {
-        self.tare.take_answer()
+        self.zero.take_answer()
     }
 
-    /// The zero that serves, drift included: what survives a reset that nobody saw coming.
+    /// The zero of now, drift included: what survives a reset that nobody saw coming.
     pub fn zero(&self) -> Option<Zero> {
-        self.tare.zero().map(|zero| Zero {
-            pressure: Pressure(zero.pressure.0.saturating_add(self.drift.counts())),
-            ..zero
-        })
+        self.zero.zero()
     }
 
-    /// The calibration that serves with the zero that serves, to be stored; nothing while no verified zero is.
+    /// The calibration with the zero of now, to be stored; nothing while that zero is neither ok nor commanded.
     pub fn calibration_to_store(&self) -> Option<Calibration> {
-        let zero = self.zero().filter(|zero| zero.verified)?;
+        let zero = self.zero.to_store()?;
         let counts = i64::from(zero.pressure.0) + i64::from(self.temperature.correction());
         // 2^33 * 1000.
         let parameters = self.parameters();
@@ -212,12 +225,12 @@ impl<D: Design> Pipeline<D> {
     pub fn calibrated(&mut self, calibration: Option<Calibration>) {
         self.standing = self.standing.without(Warnings::CALIBRATION_REFUSED);
         self.fluid.clear();
-        // What was stored is the zero that serves. Temperature goes on being compensated as since start-up.
-        let gates = match (calibration, self.zero()) {
-            (Some(_), Some(zero)) => self.parameters().gates.with_stored(zero.pressure),
-            _ => self.parameters().gates,
+        // What was stored is the zero of now. Temperature goes on being compensated as since start-up.
+        let limits = match (calibration, self.zero()) {
+            (Some(_), Some(zero)) => self.parameters().limits.with_stored(zero.pressure),
+            _ => self.parameters().limits,
         };
-        self.tare.refer_to(gates);
+        self.zero.refer_to(limits);
         self.calibration = calibration.unwrap_or_default();
         self.gain = Gain::new(self.calibration.gain);
     }
@@ -238,6 +251,11 @@ impl<D: Design> Pipeline<D> {
         self.touch
     }
 
+    #[cfg(test)]
+    fn fluid_suspicions(&self) -> Warnings {
+        self.fluid.suspicions()
+    }
+
     /// Wild samples replaced so far.
     pub fn rejected(&self) -> u32 {
         self.filter.rejected()
@@ -252,4 +270,8 @@ impl<D: Design> Pipeline<D> {
 #[cfg(test)]
 mod air;
 #[cfg(test)]
+mod everyday;
+#[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod worlds;

@@ -1,16 +1,17 @@
-//! Pressure rise -> is the fingertip touched? Two thresholds, so that noise between them changes nothing.
+//! Pressure rise -> is the fingertip touched? Two thresholds, so that noise between them changes nothing. Both lie higher by what
+//! the zero may be above its value; between them, nobody can tell.
 
 use crate::status::Touch;
 use crate::units::Pressure;
 use model_tables::constants::DesignConstants;
 use model_tables::units::PressureRise;
 
-/// A touch begins above this rise, in grains of the transducer (its noise or its resolution): a filtered report
-/// gets there by noise alone less than once in 10^15.
-const TOUCH_GRAINS: i64 = 6;
+/// A touch begins above this rise, in noise floors of the transducer: a filtered report gets there by noise alone less
+/// than once in 10^15.
+const TOUCH_FLOORS: i64 = 6;
 
 /// And ends below this one.
-const RELEASE_GRAINS: i64 = 3;
+const RELEASE_FLOORS: i64 = 3;
 
 /// Where a touch begins and ends, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -24,10 +25,10 @@ pub struct Thresholds {
 impl Thresholds {
     /// The thresholds of a design.
     pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
-        let grain = constants.transducer.grain();
+        let floor = constants.transducer.grain();
         Self {
-            touch: PressureRise(Pressure::from_millipascals(grain * TOUCH_GRAINS, fraction_bits).0),
-            release: PressureRise(Pressure::from_millipascals(grain * RELEASE_GRAINS, fraction_bits).0),
+            touch: PressureRise(Pressure::from_millipascals(floor * TOUCH_FLOORS, fraction_bits).0),
+            release: PressureRise(Pressure::from_millipascals(floor * RELEASE_FLOORS, fraction_bits).0),
         }
     }
 }
@@ -48,25 +49,23 @@ impl TouchDetector {
         }
     }
 
-    /// Whether the fingertip is touched at a filtered rise.
+    /// Whether the fingertip is touched at a filtered rise over a zero that may be higher by `above` counts, >= 0.
     #[inline]
-    pub fn step(&mut self, rise: PressureRise, zero_is_verified: bool) -> Touch {
-        let threshold = if self.touched {
-            self.thresholds.release
-        } else {
-            self.thresholds.touch
-        };
-        self.touched = rise > threshold;
+    pub fn step(&mut self, rise: PressureRise, above: i32, zero_is_verified: bool) -> Touch {
+        let rise = rise.0.saturating_sub(above);
+        let Thresholds { touch, release } = self.thresholds;
+        self.touched = rise > if self.touched { release.0 } else { touch.0 };
         if self.touched {
             Touch::Touched
-        } else if zero_is_verified {
+        } else if zero_is_verified && rise <= release.0 {
             Touch::Untouched
         } else {
             Touch::Unknown
         }
     }
 
-    /// The zero moved: what was known of the side is void.
+    /// The zero moved, or a still stretch lay below the upper threshold, where a press may have left it: what was known of
+    /// the side is void.
     pub fn forget(&mut self) {
         self.touched = false;
     }
@@ -84,7 +83,7 @@ mod tests {
     };
 
     #[test]
-    fn the_thresholds_are_six_and_three_grains() {
+    fn the_thresholds_are_six_and_three_noise_floors() {
         // 10 Pa at 1/256 Pa.
         assert_eq!(
             Thresholds::of(&Linear::CONSTANTS, 8),
@@ -98,16 +97,33 @@ mod tests {
     #[test]
     fn between_the_thresholds_nothing_changes() {
         let mut detector = TouchDetector::new(THRESHOLDS);
-        let states = [0, 60, 61, 31, 30, 60, 61].map(|rise| detector.step(PressureRise(rise), true));
-        let (on, off) = (Touch::Touched, Touch::Untouched);
-        assert_eq!(states, [off, off, on, on, off, off, on]);
+        let states = [0, 60, 61, 31, 30, 60, 61].map(|rise| detector.step(PressureRise(rise), 0, true));
+        let (on, off, unknown) = (Touch::Touched, Touch::Untouched, Touch::Unknown);
+        assert_eq!(states, [off, unknown, on, on, off, unknown, on]);
+    }
+
+    #[test]
+    fn what_the_zero_may_be_above_is_no_touch() {
+        let mut detector = TouchDetector::new(THRESHOLDS);
+        let states = [61, 110, 111, 81, 80].map(|rise| detector.step(PressureRise(rise), 50, true));
+        let (on, off, unknown) = (Touch::Touched, Touch::Untouched, Touch::Unknown);
+        assert_eq!(states, [off, unknown, on, on, off]);
+    }
+
+    #[test]
+    fn a_still_stretch_between_the_thresholds_is_not_known_to_be_a_touch() {
+        let mut detector = TouchDetector::new(THRESHOLDS);
+        assert_eq!(detector.step(PressureRise(61), 0, true), Touch::Touched);
+        assert_eq!(detector.step(PressureRise(45), 0, true), Touch::Touched);
+        detector.forget();
+        assert_eq!(detector.step(PressureRise(45), 0, true), Touch::Unknown);
     }
 
     #[test]
     fn without_a_verified_zero_no_touch_is_not_claimed() {
         let mut detector = TouchDetector::new(THRESHOLDS);
-        assert_eq!(detector.step(PressureRise(0), false), Touch::Unknown);
-        assert_eq!(detector.step(PressureRise(61), false), Touch::Touched);
+        assert_eq!(detector.step(PressureRise(0), 0, false), Touch::Unknown);
+        assert_eq!(detector.step(PressureRise(61), 0, false), Touch::Touched);
     }
 
     proptest! {
@@ -115,8 +131,9 @@ mod tests {
         fn noise_narrower_than_the_gap_toggles_at_most_once(centre in -200..200_i32, noise in prop::collection::vec(-14..=14_i32, 1..200)) {
             let mut detector = TouchDetector::new(THRESHOLDS);
             let states: Vec<Touch> =
-                noise.iter().map(|noise| detector.step(PressureRise(centre + noise), true)).collect();
-            prop_assert!(states.windows(2).filter(|pair| pair[0] != pair[1]).count() <= 1);
+                noise.iter().map(|noise| detector.step(PressureRise(centre + noise), 0, true)).collect();
+            let touched: Vec<bool> = states.iter().map(|state| *state == Touch::Touched).collect();
+            prop_assert!(touched.windows(2).filter(|pair| pair[0] != pair[1]).count() <= 1);
         }
     }
 }

@@ -10,13 +10,11 @@ use model_tables::units::PressureRise;
 pub struct Uncertainty {
     /// Noise after averaging and filtering, and resolution.
     noise: i32,
-    /// An unverified zero, uniform within the bounds of any zero: of an absolute transducer nearly all that the air may be.
-    unverified: i32,
 }
 
 impl Uncertainty {
-    /// For a design; any zero lies within `reach` counts of the middle of its bounds.
-    pub const fn of(constants: &DesignConstants, fraction_bits: u32, reach: i32) -> Self {
+    /// For a design.
+    pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
         let transducer = &constants.transducer;
         let averaged = averaged(&transducer.kind) as i64;
         let (noise, resolution) = (transducer.noise as i64, transducer.resolution as i64);
@@ -24,20 +22,17 @@ impl Uncertainty {
         let variance = noise * noise / averaged / 16 * 6 + resolution * resolution / 12;
         Self {
             noise: Pressure::from_millipascals(variance.isqrt(), fraction_bits).0,
-            // 1 / sqrt 3.
-            unverified: (reach as i64 * 577 / 1000) as i32,
         }
     }
 
-    /// Of a rise, with what drift and temperature may have added, counts >= 0.
+    /// Of a rise over a zero that lies anywhere within its bound, with what temperature may have added: counts >= 0.
     #[inline]
-    pub fn rise(&self, verified: bool, drift: i32, temperature: i32) -> PressureRise {
-        let mut sigma = hypotenuse(self.noise, drift);
+    pub fn rise(&self, bound: i32, temperature: i32) -> PressureRise {
+        // 1 / sqrt 3 = 577 / 1000 = 591 / 1024.
+        let uniform = ((i64::from(bound) * 591) >> 10) as i32;
+        let mut sigma = hypotenuse(self.noise, uniform);
         if temperature != 0 {
             sigma = hypotenuse(sigma, temperature);
-        }
-        if !verified {
-            sigma = hypotenuse(sigma, self.unverified);
         }
         PressureRise(sigma)
     }
@@ -75,10 +70,10 @@ mod tests {
     #[test]
     fn noise_is_what_filtering_leaves_and_resolution_what_steps_leave() {
         // 5 Pa over 100 and 6/16: 0.306 Pa; 10 Pa / sqrt 12: 2.887 Pa; together 2.903 Pa or 743 counts of 1/256.
-        let uncertainty = Uncertainty::of(&Linear::CONSTANTS, 8, 2_500 << 8);
-        assert_eq!(uncertainty.rise(true, 0, 0), PressureRise(743));
+        let uncertainty = Uncertainty::of(&Linear::CONSTANTS, 8);
+        assert_eq!(uncertainty.rise(0, 0), PressureRise(743));
         // 2500 Pa / sqrt 3 = 1443 Pa.
-        let unverified = uncertainty.rise(false, 0, 0).0;
+        let unverified = uncertainty.rise(2_500 << 8, 0).0;
         assert!((unverified - (1443 << 8)).abs() < 600, "{unverified}");
     }
 

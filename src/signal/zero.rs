@@ -1,4 +1,28 @@
-//! A zero, and where the first one comes from.
+//! The zero of a fingertip: a value, and a bound of its error. Touch, tare, undo, drift, leak and every 1-sigma come from it.
+//!
+//! The [`estimator`] sees the pressure in quiet windows. It keeps the lowest and the highest pressure that the true zero can
+//! have ([`interval`]). Both move apart with the drift that the transducer may have ([`limits`]), and together only with
+//! evidence. A reading is ok while the bound is at most six noise floors.
+//!
+//! # What it assumes
+//!
+//! 1. Nothing presses with less than nothing. A quiet window below the interval is therefore evidence: the true zero is not
+//!    higher. A wall that creeps back from below its rest breaks this for a while; the bound then covers it.
+//! 2. The zero drifts by no more than its stated rate while the fingertip is pressed. Untouched, faster drift shows: up, it
+//!    looks like a slow press, and the bound covers both; down, it is evidence.
+//! 3. The air around an absolute part is within [`AIR`](model_tables::constants::AIR), changes by weather at no more than its
+//!    stated rate while the fingertip is pressed, and by a lift only while nothing presses.
+//! 4. Who switches on or pushes the button leaves the fingertip alone. If not, a gauge part loses at most
+//!    [`Limits::near`](limits::Limits) without a stored zero and six noise floors with one.
+//! 5. Who commands a tare leaves the fingertip alone. If not, a gauge part loses at most six noise floors with status ok: a
+//!    level further over all that is known is taken, but stays unverified. An absolute part cannot tell a press from denser
+//!    air; it finds out at the release.
+//! 6. Who saves a tared zero vouches for it.
+
+pub mod estimator;
+mod interval;
+pub mod limits;
+mod window;
 
 use crate::status::ResetCause;
 use crate::units::Pressure;
@@ -9,6 +33,8 @@ use model_tables::constants::Quantity;
 pub struct Zero {
     /// The pressure that reads as no rise.
     pub pressure: Pressure,
+    /// How far off it may be, counts, >= 0.
+    pub bound: i32,
     /// Whether it was measured on a fingertip that nothing pressed.
     pub verified: bool,
 }
@@ -16,21 +42,23 @@ pub struct Zero {
 /// Where the zero comes from at start-up.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum StartUp {
-    /// Measured, if the gates let it.
+    /// Measured, if the limits let it.
     Measured,
     /// The reference, if there is one.
     Stored,
-    /// The zero that served before the reset, and whether it was verified.
+    /// The zero from before the reset.
     Kept(Zero),
 }
 
 impl StartUp {
-    /// Someone switched the power on or pressed the button, and can be asked to leave the fingertip alone;
-    /// a watchdog asks nobody. `kept` is the zero from before the reset, if it survived. An absolute transducer could not
-    /// verify another one, so a verified one serves on whatever the cause.
+    /// Someone switched the power on or pressed the button, and can be asked to leave the fingertip alone; a watchdog
+    /// and a supply that sags ask nobody. `kept` is the zero from before the reset, if it survived: then power was never
+    /// off for long, whatever the cause says. An absolute transducer
+    /// could not verify another one, so a verified one is kept whatever the cause.
     pub const fn after(cause: ResetCause, kept: Option<Zero>, quantity: Quantity) -> Self {
         match (cause, kept) {
             (_, Some(zero)) if zero.verified && matches!(quantity, Quantity::Absolute) => Self::Kept(zero),
+            (ResetCause::PowerOn | ResetCause::BrownOut, Some(zero)) if zero.verified => Self::Kept(zero),
             (ResetCause::PowerOn | ResetCause::Pin | ResetCause::BrownOut, _) => Self::Measured,
             (_, Some(zero)) => Self::Kept(zero),
             (_, None) => Self::Stored,

@@ -227,6 +227,7 @@ fn a_self_test_names_what_it_finds() {
 fn given_up() -> Bench {
     let zero = Zero {
         pressure: Pressure::from_pascals(20_000, Linear::PRESSURE_FRACTION_BITS),
+        bound: 0,
         verified: true,
     };
     let mut bench = Bench::new(&Beginning {

@@ -129,7 +129,12 @@ fn powered_up_while_pressed_is_said_so() {
 fn a_pressure_below_the_zero_is_said_so() {
     let mut bench = Bench::zeroed();
     let report = bench.steps(5, Ok(at(19_000.0)));
-    assert_eq!(report.status().to_string(), "warning: below zero");
+    assert_eq!(report.status().to_string(), "warning: below zero; zero aged");
+    assert_eq!(
+        bench.steps(5, Ok(at(20_030.0))).status().to_string(),
+        "warning: zero aged"
+    );
+    assert_eq!(bench.steps(5, Ok(at(20_100.0))).status(), Status::Ok);
 }
 
 #[test]
@@ -140,12 +145,12 @@ fn after_a_watchdog_reset_there_are_readings_at_once_with_an_unverified_zero() {
 }
 
 #[test]
-fn a_leak_is_suspected_after_a_second_and_stays() {
+fn a_leak_is_suspected_after_a_minute_and_stays() {
     let mut bench = Bench::zeroed();
     // Rests at 20 kPa: an eighth of it is 2.5 kPa below the design's rest.
-    bench.steps(1_100, Ok(at(17_400.0)));
+    bench.steps(61_000, Ok(at(17_400.0)));
     let report = bench.steps(20, Ok(at(20_100.0)));
-    assert_eq!(report.status().to_string(), "warning: leak suspected");
+    assert_eq!(report.status().to_string(), "warning: leak suspected; zero aged");
 }
 
 #[test]
@@ -159,17 +164,19 @@ fn a_touch_is_told_with_its_hysteresis() {
             .touch
     };
     let touches = [0.0, 59.0, 61.0, 31.0, 29.0].map(&mut touch);
-    let (on, off) = (Touch::Touched, Touch::Untouched);
-    assert_eq!(touches, [off, off, on, on, off]);
+    let (on, off, unknown) = (Touch::Touched, Touch::Untouched, Touch::Unknown);
+    assert_eq!(touches, [off, unknown, on, on, off]);
 }
 
 #[test]
 fn one_sigma_is_of_the_transducer_and_grows_with_doubt() {
     let mut bench = Bench::zeroed();
     let sure = bench.steps(3, Ok(at(21_100.0))).outcome.expect("a reading").sigma;
-    // 2.9 Pa of noise and resolution; the test design has 1 uN and 1 nm a count.
-    assert_eq!(sure.pressure_rise.0, 743);
-    assert_eq!((sure.force.0, sure.indentation.0), (743, 743));
+    // 2.9 Pa of noise and resolution, and a zero within 5 Pa, which is as much: 4.1 Pa, to 3 %. The test design has 1 uN and
+    // 1 nm a count.
+    assert!((sure.pressure_rise.0 - 1_050).abs() < 32, "{sure:?}");
+    assert_eq!(sure.force.0, sure.pressure_rise.0);
+    assert_eq!(sure.indentation.0, sure.pressure_rise.0);
     let mut bench = Bench::new(StartUp::Stored);
     let unsure = bench.steps(3, Ok(at(21_100.0))).outcome.expect("a reading").sigma;
     assert!(unsure.pressure_rise > pascals(1_400) && unsure.force.0 > 1_400 << 8);
@@ -189,7 +196,9 @@ fn a_tare_is_refused_on_a_pressed_tip_and_undone_on_demand() {
     let rise = |report: Report| report.outcome.expect("a reading").pressure_rise;
     assert_eq!(rise(bench.step(Ok(at(20_140.0)))), pascals(0));
     bench.pipeline.undo_tare().expect("there is one");
-    assert_eq!(rise(bench.steps(4, Ok(at(20_140.0)))), pascals(40));
+    // But for what it followed meanwhile, half a pascal a second.
+    let rise = rise(bench.steps(4, Ok(at(20_140.0))));
+    assert!((rise.0 - (40 << 8)).abs() < 128, "{rise:?}");
 }
 
 #[test]
@@ -249,8 +258,8 @@ fn what_is_stored_is_the_zero_that_serves_and_serves_at_the_next_start() {
         pipeline: Pipeline::new(Linear::NEW, StartUp::Measured, calibration, Warnings::NONE),
         milliseconds: 0,
     };
-    // 300 Pa over the design's rest pressure, 200 over the stored zero.
-    assert_eq!(next.steps(400, Ok(at(20_300.0))).status(), Status::Ok);
+    // 150 Pa over the design's rest pressure, 50 over the stored zero.
+    assert_eq!(next.steps(400, Ok(at(20_150.0))).status(), Status::Ok);
     // A still press at power-up of 300 Pa over it is not taken for the zero.
     let mut pressed = Bench {
         pipeline: Pipeline::new(Linear::NEW, StartUp::Measured, calibration, Warnings::NONE),

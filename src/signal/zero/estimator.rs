@@ -1,0 +1,386 @@
+//! Pressure -> pressure rise over the zero: the first zero, commanded ones, and what time and quiet windows do to them.
+//!
+//! | | gauge | absolute |
+//! |---|---|---|
+//! | start by a person or the supply | a quiet window near the reference: verified | a verified zero that is kept; else a quiet window that can be: unverified |
+//! | none within [`PATIENCE`] | the reference, unverified | no zero: [`Fault::Zeroing`] until one comes, or a command |
+//! | a supply that sags, a reset nobody saw coming, a zero is kept | it goes on as it was | it goes on as it was: the air has not moved meanwhile |
+//! | the same, none is kept | the reference, unverified | no zero: [`Fault::Zeroing`] until a command; the tip may be pressed |
+//! | command | refused as touched over an ok zero where it would not be ok; else taken, and verified where its bound allows | the same; what the air may have done is in the bound |
+
+use crate::signal::zero::interval::Interval;
+use crate::signal::zero::limits::Limits;
+use crate::signal::zero::window::{self, Seen, Window};
+use crate::signal::zero::{StartUp, Zero};
+use crate::status::{Fault, Warnings};
+use crate::units::{Microseconds, Pressure};
+use model_tables::units::PressureRise;
+
+/// How long a window is, microseconds.
+pub const WINDOW: u64 = window::LENGTH;
+
+/// How long a good window is waited for, microseconds.
+pub const PATIENCE: u64 = 2_000_000;
+
+/// Why a zero was not taken, or not undone.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum TareRefusal {
+    /// The fingertip is touched, or may be.
+    Touched,
+    /// No window was quiet.
+    Restless,
+    /// Further from the reference than any transducer drifts.
+    OutOfBounds,
+    /// There are no readings.
+    NoReading,
+    /// Another tare is under way.
+    Busy,
+    /// There is nothing to undo.
+    NothingToUndo,
+}
+
+/// The zero of one fingertip.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    limits: Limits,
+    interval: Interval,
+    /// Whether there is a zero to read from.
+    zeroed: bool,
+    window: Window,
+    /// When the last window ended, or the zero was taken.
+    looked: Option<Microseconds>,
+    measuring: Option<Measuring>,
+    replaced: Option<Replaced>,
+    answer: Option<Result<(), TareRefusal>>,
+    moved: bool,
+    /// Of the interval, as of the last window.
+    bound: i32,
+    above: i32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Measuring {
+    /// Someone says that nothing presses, and waits for an answer.
+    commanded: bool,
+    /// Over a zero that was ok then: it is not given up for one that is not.
+    over_ok: bool,
+    /// A start whose [`PATIENCE`] ended without a zero: it goes on for want of one, gives way to a command and resumes
+    /// where that fails.
+    overdue: bool,
+    since: Option<Microseconds>,
+    /// Why the last window was no good.
+    objection: TareRefusal,
+}
+
+/// What a command replaced, and with what.
+#[derive(Clone, Copy, Debug)]
+struct Replaced {
+    before: Interval,
+    zeroed: bool,
+    by: Interval,
+    at: Microseconds,
+}
+
+impl Measuring {
+    /// At start-up.
+    const NEW: Self = Self {
+        commanded: false,
+        over_ok: false,
+        overdue: false,
+        since: None,
+        objection: TareRefusal::NoReading,
+    };
+}
+
+impl Estimator {
+    /// A zero that has seen nothing yet.
+    pub fn new(limits: Limits, start_up: StartUp) -> Self {
+        let (reference, highest) = (limits.expected[0], limits.expected[1].0);
+        let measured = start_up == StartUp::Measured;
+        let known = match (limits.absolute, measured) {
+            (true, _) => highest.saturating_add(limits.far),
+            (false, true) if !limits.stored => highest.saturating_add(limits.near),
+            (false, _) => highest,
+        };
+        let interval = match start_up {
+            StartUp::Kept(zero) if zero.verified => Interval::kept(zero),
+            StartUp::Kept(Zero { pressure, .. }) => {
+                Interval::unverified(pressure, pressure.0.saturating_add(limits.level), &limits)
+            }
+            StartUp::Measured | StartUp::Stored => {
+                Interval::unverified(reference, known.saturating_add(limits.level), &limits)
+            }
+        };
+        let zeroed = !measured && !(limits.absolute && start_up == StartUp::Stored);
+        let mut estimator = Self {
+            limits,
+            interval,
+            zeroed,
+            window: Window::EMPTY,
+            looked: None,
+            measuring: measured.then_some(Measuring::NEW),
+            replaced: None,
+            answer: None,
+            moved: zeroed,
+            bound: 0,
+            above: 0,
+        };
+        estimator.judge_bound();
+        estimator
+    }
+
+    /// The zero that is read from, if there is one yet.
+    pub const fn zero(&self) -> Option<Zero> {
+        if !self.zeroed {
+            return None;
+        }
+        Some(Zero {
+            pressure: self.interval.value(),
+            bound: self.bound,
+            verified: self.interval.verified,
+        })
+    }
+
+    /// How far the true zero may be from it, counts, >= 0.
+    #[inline]
+    pub const fn bound(&self) -> i32 {
+        self.bound
+    }
+
+    /// How far the true zero may lie above it beyond the level of a quiet window, counts, >= 0: so much of a rise is no touch.
+    #[inline]
+    pub const fn above(&self) -> i32 {
+        self.above
+    }
+
+    /// Whether readings over this zero are ok.
+    #[inline]
+    pub const fn is_ok(&self) -> bool {
+        self.interval.verified && self.bound <= self.limits.bound
+    }
+
+    /// The zero to be stored, if there is one: an ok one, or one that a command took and whoever saves it vouches for.
+    pub fn to_store(&self) -> Option<Zero> {
+        let vouched = !self.interval.verified && self.replaced.is_some();
+        self.zero().filter(|_| self.is_ok() || vouched)
+    }
+
+    /// The lowest zero to be expected.
+    pub const fn lowest(&self) -> Pressure {
+        self.limits.expected[0]
+    }
+
+    /// A new reference: the zero was stored, which vouches for it, or what was stored is void.
+    pub fn refer_to(&mut self, limits: Limits) {
+        self.limits = limits;
+        if limits.stored && !self.interval.verified {
+            self.interval = self.interval.vouched(&limits);
+            self.judge_bound();
+        }
+    }
+
+    /// One pressure later. The level of a quiet window, if one ended.
+    #[inline]
+    pub fn step(&mut self, time: Microseconds, pressure: Pressure) -> Option<Pressure> {
+        let seen = self.window.add(time, pressure);
+        if seen.is_some() || self.measuring.is_some() {
+            return self.look(time, seen);
+        }
+        None
+    }
+
+    /// The rise of a pressure over the zero, held at the ends of the word, and what qualifies it.
+    ///
+    /// # Errors
+    /// [`Fault::Zeroing`] until there is a zero.
+    #[inline]
+    pub fn rise(&self, pressure: Pressure) -> Result<(PressureRise, Warnings), Fault> {
+        if !self.zeroed {
+            return Err(Fault::Zeroing);
+        }
+        let verified = self.interval.verified;
+        Ok((
+            PressureRise(pressure.0.saturating_sub(self.interval.value().0)),
+            Warnings::ZERO_UNVERIFIED
+                .when(!verified)
+                .and(Warnings::ZERO_AGED.when(verified && self.bound > self.limits.bound)),
+        ))
+    }
+
+    /// A gap in the samples: a window has no gaps. Patience runs on.
+    pub fn interrupt(&mut self, time: Microseconds) {
+        self.window = Window::EMPTY;
+        if let Some(measuring) = &mut self.measuring {
+            let since = *measuring.since.get_or_insert(time);
+            if measuring.commanded && time.0.saturating_sub(since.0) >= PATIENCE {
+                self.give_up();
+            }
+        }
+    }
+
+    /// Someone says that nothing presses: takes a new zero if the limits let it. The answer comes through
+    /// [`Estimator::take_answer`] within [`PATIENCE`] of the next sample.
+    ///
+    /// # Errors
+    /// [`TareRefusal::Busy`].
+    pub fn command(&mut self) -> Result<(), TareRefusal> {
+        if self.is_busy() {
+            return Err(TareRefusal::Busy);
+        }
+        self.window = Window::EMPTY;
+        self.measuring = Some(Measuring {
+            commanded: true,
+            over_ok: self.zeroed && self.is_ok(),
+            overdue: self.measuring.is_some(),
+            ..Measuring::NEW
+        });
+        Ok(())
+    }
+
+    /// Whether a zero is being measured, which ends within [`PATIENCE`].
+    fn is_busy(&self) -> bool {
+        self.measuring
+            .is_some_and(|measuring| measuring.commanded || !measuring.overdue)
+    }
+
+    /// Takes back the last commanded zero, with all the drift since.
+    ///
+    /// # Errors
+    /// [`TareRefusal::NothingToUndo`], [`TareRefusal::Busy`].
+    pub fn undo(&mut self) -> Result<(), TareRefusal> {
+        if self.is_busy() {
+            return Err(TareRefusal::Busy);
+        }
+        let replaced = self.replaced.take().filter(|replaced| replaced.zeroed);
+        let Replaced { before, by, at, .. } = replaced.ok_or(TareRefusal::NothingToUndo)?;
+        let passed = self.looked.map_or(0, |looked| looked.0.saturating_sub(at.0));
+        self.interval = before.since(&self.limits, &by, &self.interval, passed);
+        self.moved = true;
+        self.judge_bound();
+        Ok(())
+    }
+
+    /// Whether another zero was taken since the last call.
+    #[inline]
+    pub fn take_moved(&mut self) -> bool {
+        core::mem::take(&mut self.moved)
+    }
+
+    /// What came of the last command, once.
+    pub fn take_answer(&mut self) -> Option<Result<(), TareRefusal>> {
+        self.answer.take()
+    }
+
+    #[cold]
+    fn look(&mut self, time: Microseconds, seen: Option<Seen>) -> Option<Pressure> {
+        let quiet = seen.filter(|seen| seen.spread <= self.limits.quiet);
+        if seen.is_some() && self.zeroed {
+            let looked = self.looked.replace(time).unwrap_or(time);
+            let passed = time.0.saturating_sub(looked.0);
+            self.interval.drift(&self.limits, passed);
+            if let Some(Seen { level, .. }) = quiet {
+                self.interval.look(&self.limits, level, passed);
+            }
+            self.judge_bound();
+        }
+        if let Some(mut measuring) = self.measuring {
+            let since = *measuring.since.get_or_insert(time);
+            if seen.is_some() {
+                measuring.objection = match self.judge(quiet, &measuring) {
+                    Ok(zero) => {
+                        self.accept(time, zero, measuring.commanded);
+                        return quiet.map(|seen| seen.level);
+                    }
+                    Err(objection) => objection,
+                };
+            }
+            self.measuring = Some(measuring);
+            if time.0.saturating_sub(since.0) >= PATIENCE {
+                self.give_up();
+            }
+        }
+        quiet.map(|seen| seen.level)
+    }
+
+    /// Whether a window may give the zero.
+    fn judge(&self, quiet: Option<Seen>, measuring: &Measuring) -> Result<Interval, TareRefusal> {
+        let Seen { level, .. } = quiet.ok_or(TareRefusal::Restless)?;
+        let limits = &self.limits;
+        let taken = self.interval.taken(limits, level);
+        if measuring.over_ok && !taken.verified {
+            return Err(TareRefusal::Touched);
+        }
+        if !limits.allows(level) {
+            return Err(TareRefusal::OutOfBounds);
+        }
+        if measuring.commanded {
+            return Ok(taken);
+        }
+        if limits.absolute {
+            let mut unverified = taken;
+            unverified.verified = false;
+            return Ok(unverified);
+        }
+        let lowest = limits.expected[0].0.saturating_sub(limits.near);
+        if (lowest..=limits.highest_at_start()).contains(&level.0) {
+            Ok(taken)
+        } else {
+            Err(TareRefusal::Touched)
+        }
+    }
+
+    fn accept(&mut self, time: Microseconds, zero: Interval, commanded: bool) {
+        if commanded {
+            self.answer = Some(Ok(()));
+            self.replaced = Some(Replaced {
+                before: self.interval,
+                zeroed: self.zeroed,
+                by: zero,
+                at: time,
+            });
+        }
+        self.interval = zero;
+        self.looked = Some(time);
+        self.measuring = None;
+        self.begin();
+    }
+
+    fn give_up(&mut self) {
+        let Some(measuring) = self.measuring.take() else {
+            return;
+        };
+        let overdue = Measuring {
+            overdue: true,
+            ..Measuring::NEW
+        };
+        if measuring.commanded {
+            self.answer = Some(Err(measuring.objection));
+            self.measuring = measuring.overdue.then_some(overdue);
+        } else if self.limits.absolute {
+            self.measuring = Some(overdue);
+        } else {
+            let reference = self.limits.expected[0];
+            let highest = reference.0.saturating_add(self.limits.level);
+            self.interval = Interval::unverified(reference, highest, &self.limits);
+            self.begin();
+        }
+    }
+
+    fn begin(&mut self) {
+        self.zeroed = true;
+        self.moved = true;
+        self.judge_bound();
+    }
+
+    fn judge_bound(&mut self) {
+        self.above = self.interval.above(&self.limits);
+        self.bound = if self.interval.verified {
+            self.interval.bound(&self.limits)
+        } else {
+            self.limits.reach()
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests;

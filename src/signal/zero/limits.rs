@@ -1,0 +1,183 @@
+//! What a zero is compared with: where it is expected, how far off it may be, and how fast it may move.
+
+use crate::signal::touch::Thresholds;
+use crate::units::Pressure;
+use model_tables::constants::{AIR, DesignConstants, Quantity};
+
+/// How far a zero at start-up may lie from the design's rest pressure, ten-thousandths of the transducer's range: what the
+/// offset of a compensated gauge bridge wanders between one day and another.
+pub(crate) const NEAR_PERMYRIAD: i64 = 25;
+
+/// How far any zero may lie from where it is expected, thousandths of the transducer's range: the offset that NXP allows
+/// an MPX5100 (2.5 % of full scale, 0 to 85 degC).
+const FAR_PERMILLE: i64 = 25;
+
+/// How far apart the lowest and the highest sample of a window may lie, in noise floors. White noise of that size spreads
+/// over 5.6 of them in 256 draws, over more than 9 once in 10^16 windows.
+const QUIET_FLOORS: i64 = 10;
+
+/// What is left of a gauge bridge's drift after compensation, at a steady temperature, millipascals an hour.
+pub const GAUGE_DRIFT: i64 = 2_000;
+
+/// The weather, in the zero of an absolute transducer: 1 hPa an hour as a front passes.
+pub const ABSOLUTE_DRIFT: i64 = 100_000;
+
+/// The fastest change of the air around an absolute transducer, millipascals a second: a lift at 5 m/s, 12 Pa a metre.
+const AIR_RATE: i64 = 60_000;
+
+/// How fast the value follows the untouched pressure up, millipascals a second. Ten times slower than the lightest press
+/// that is felt at once; what it takes away is in the bound.
+const GAUGE_FOLLOWS: i64 = 500;
+
+/// The same of an absolute transducer: 8 m of stairs in 25 s.
+const ABSOLUTE_FOLLOWS: i64 = 4_000;
+
+/// Fraction bits of rates.
+pub(super) const FRACTION: u32 = 32;
+
+/// The limits of a zero, counts.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Limits {
+    /// The lowest and the highest zero to be expected. Of a gauge transducer they are one, the reference: stored, or the
+    /// design's rest pressure; of an absolute one the rest pressure in the thinnest and in the densest air.
+    pub expected: [Pressure; 2],
+    /// Whether the reference was stored by someone who saw the fingertip untouched.
+    pub stored: bool,
+    /// How far from the design's rest pressure a zero may lie that nobody vouches for, >= 0.
+    pub near: i32,
+    /// How far outside `expected` any zero may lie, >= 0.
+    pub far: i32,
+    /// How far a quiet window may spread, >= 0.
+    pub quiet: i32,
+    /// How well a quiet window tells a level: half a noise floor.
+    pub level: i32,
+    /// The largest bound of a zero whose readings are ok, and the rise from which on the fingertip is touched: six noise
+    /// floors.
+    pub bound: i32,
+    /// The air is in the pressure.
+    pub absolute: bool,
+    /// Unseen drift, `2^-32` counts a microsecond.
+    pub drift: i64,
+    /// The fastest rise of an untouched zero that is no surprise, in the same unit; 0 for a gauge transducer.
+    pub air: i64,
+    /// How fast the value follows, in the same unit.
+    pub follows: i64,
+}
+
+impl Limits {
+    /// The limits of a design without a stored calibration.
+    pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
+        let transducer = &constants.transducer;
+        let range = transducer.range[1] as i64 - transducer.range[0] as i64;
+        let floor = transducer.grain();
+        let absolute = matches!(transducer.quantity, Quantity::Absolute);
+        let [thinnest, densest] = if absolute { AIR } else { [0; 2] };
+        let (drift, air, follows) = if absolute {
+            (ABSOLUTE_DRIFT, AIR_RATE, ABSOLUTE_FOLLOWS)
+        } else {
+            (GAUGE_DRIFT, 0, GAUGE_FOLLOWS)
+        };
+        let rest = constants.rest_pressure;
+        let near = range * NEAR_PERMYRIAD / 10;
+        Self {
+            expected: [
+                Pressure::from_pascals(rest.saturating_add(thinnest), fraction_bits),
+                Pressure::from_pascals(rest.saturating_add(densest), fraction_bits),
+            ],
+            stored: false,
+            near: Pressure::from_millipascals(near, fraction_bits).0,
+            far: Pressure::from_millipascals(range * FAR_PERMILLE, fraction_bits).0,
+            quiet: Pressure::from_millipascals(floor * QUIET_FLOORS, fraction_bits).0,
+            level: Pressure::from_millipascals(floor / 2, fraction_bits).0,
+            bound: Thresholds::of(constants, fraction_bits).touch.0,
+            absolute,
+            drift: per_microsecond(drift, fraction_bits, 3_600_000_000),
+            air: per_microsecond(air, fraction_bits, 1_000_000),
+            follows: per_microsecond(follows, fraction_bits, 1_000_000),
+        }
+    }
+
+    /// The same with a stored zero for the reference. Of an absolute transducer it is of the air of that day, and none.
+    #[must_use]
+    pub const fn with_stored(mut self, zero: Pressure) -> Self {
+        if !self.absolute {
+            self.expected = [zero; 2];
+            self.stored = true;
+        }
+        self
+    }
+
+    /// How far any zero may lie from the middle of its bounds, counts.
+    pub const fn reach(&self) -> i32 {
+        let [lowest, highest] = self.expected;
+        self.far.saturating_add(highest.0.saturating_sub(lowest.0) / 2)
+    }
+
+    /// Whether a zero is one that can be.
+    pub(super) const fn allows(&self, zero: Pressure) -> bool {
+        let [lowest, highest] = self.expected;
+        zero.0 >= lowest.0.saturating_sub(self.far) && zero.0 <= highest.0.saturating_add(self.far)
+    }
+
+    /// The highest zero that is believed at a start without asking: within the bound of a stored one, near the design's.
+    pub(super) const fn highest_at_start(&self) -> i32 {
+        let over = if self.stored {
+            self.bound - self.level
+        } else {
+            self.near
+        };
+        self.expected[1].0.saturating_add(over)
+    }
+}
+
+/// Millipascals in `microseconds` to `2^-32` counts in one, rounded up. At most 10^5 * 2^16 * 2^32 on the way: 128 bits, by the
+/// compiler or once at the start.
+const fn per_microsecond(millipascals: i64, fraction_bits: u32, microseconds: i128) -> i64 {
+    let divisor = 1000 * microseconds;
+    ((((millipascals as i128) << (fraction_bits + FRACTION)) + divisor - 1) / divisor) as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::test_design::{Linear, TRANSDUCERS};
+
+    fn of(transducer: usize) -> Limits {
+        Limits::of(
+            &DesignConstants {
+                rest_pressure: 1_000,
+                transducer: TRANSDUCERS[transducer],
+                ..Linear::CONSTANTS
+            },
+            8,
+        )
+    }
+
+    #[test]
+    fn the_limits_of_an_absolute_part_hold_the_air() {
+        // 2.5 % of 90 kPa; 1/256 Pa a count.
+        let limits = of(4);
+        assert_eq!(limits.expected, [Pressure(61_000 << 8), Pressure(109_000 << 8)]);
+        assert_eq!((limits.far, limits.reach()), (2_250 << 8, 26_250 << 8));
+        let gauge = of(0);
+        assert_eq!(gauge.expected, [Pressure(1_000 << 8); 2]);
+        assert_eq!((gauge.near, gauge.reach()), (250 << 8, 2_500 << 8));
+        assert_eq!((gauge.level, gauge.bound), (5 << 8, 60 << 8));
+    }
+
+    #[test]
+    fn a_stored_zero_of_an_absolute_part_is_of_other_air() {
+        assert_eq!(of(4).with_stored(Pressure(80_000)), of(4));
+        assert_eq!(of(0).with_stored(Pressure(7)).expected, [Pressure(7); 2]);
+    }
+
+    #[test]
+    fn rates_are_of_an_hour_and_a_second() {
+        let counts = |rate: i64, microseconds: i64| (rate * microseconds) >> FRACTION;
+        // 2 Pa and 100 Pa in an hour, 60 Pa in a second.
+        assert!((counts(of(0).drift, 3_600_000_000) - (2 << 8)).abs() <= 1);
+        assert!((counts(of(4).drift, 3_600_000_000) - (100 << 8)).abs() <= 1);
+        assert_eq!(counts(of(4).air, 1_000_000), 60 << 8);
+        assert_eq!(of(0).air, 0);
+    }
+}
