@@ -7,6 +7,7 @@ use super::assembly::Assembly;
 use super::element::{self, Material};
 use super::fluid;
 use super::front::Fronts;
+use super::memory::Memory;
 use super::mesh::{CUBIC_PRESSURES, Elements, Mesh, NODES};
 use super::plate;
 use super::state::{Balance, Fluid, State};
@@ -45,6 +46,8 @@ pub struct Wall {
     pub mesh: Mesh,
     /// Its material, in shear moduli.
     pub material: Material,
+    /// What it remembers, where it relaxes.
+    pub(super) memory: Option<Memory>,
     assembly: Assembly,
     /// Contact pressure over penetration.
     contact_stiffness: f64,
@@ -92,6 +95,7 @@ impl Wall {
             negative: Vec::with_capacity(elements.along),
             by_pressure: step.clone(),
             step,
+            memory: None,
             factorisations: 0,
             iterations: 0,
             material,
@@ -119,6 +123,11 @@ impl Wall {
                 fluid::share(&r, &z).volume
             })
             .sum()
+    }
+
+    /// How many times as stiff as relaxed the wall is in the step of time at hand.
+    fn stiffening(&self) -> f64 {
+        self.memory.as_ref().map_or(1.0, Memory::stiffening)
     }
 
     /// Strain energy of the wall.
@@ -221,8 +230,9 @@ impl Wall {
     /// Forces, volumes and the plate's action in a state; what is left unbalanced goes to the right-hand side.
     fn balance(&mut self, state: &State, plate: f64, fluid: &Fluid) -> Balance {
         let mut balance = Balance::default();
+        let contact_stiffness = self.contact_stiffness * self.stiffening();
         self.forces.fill([0.0; 2]);
-        let excess = self.assembly.forces(&self.material, state, &mut self.forces);
+        let excess = self.assembly.forces(&self.material, self.memory.as_ref(), state, &mut self.forces);
         for column in 0..self.mesh.elements.along {
             let [inner, outer] =
                 [0, self.mesh.layers() - 1].map(|layer| edge_nodes(&self.mesh, column, layer));
@@ -238,7 +248,7 @@ impl Wall {
             if z.iter().all(|z| *z < plate - self.mesh.thickness) {
                 continue;
             }
-            let action = plate::action(self.contact_stiffness, &self.outer[column], &z, plate);
+            let action = plate::action(contact_stiffness, &self.outer[column], &z, plate);
             balance.force += action.force;
             balance.contact_energy += action.energy;
             for i in 0..3 {
@@ -277,7 +287,7 @@ impl Wall {
     fn set_up(&mut self, state: &State) {
         let station = 2 * self.mesh.stride();
         self.fronts.clear();
-        self.assembly.stiffness(&self.material, state, &mut self.fronts);
+        self.assembly.stiffness(&self.material, self.memory.as_ref(), state, &mut self.fronts);
         self.by_node.fill([0.0; 2]);
         for column in 0..self.mesh.elements.along {
             let [nodes, local] = [column, 0].map(|column| edge_nodes(&self.mesh, column, 0));
@@ -308,12 +318,13 @@ impl Wall {
     /// Factors the linear equations at a state: those of the wall as they were set up, the plate's of now.
     fn factor(&mut self, state: &State, plate: f64, from: usize) -> Option<()> {
         self.factorisations += 1;
+        let contact_stiffness = self.contact_stiffness * self.stiffening();
         let station = 2 * self.mesh.stride();
         let local = edge_nodes(&self.mesh, 0, self.mesh.layers() - 1);
         let mut first = from;
         for column in 0..self.mesh.elements.along {
             let z = edge_nodes(&self.mesh, column, self.mesh.layers() - 1).map(|node| state.nodes[node][1]);
-            let now = plate::action(self.contact_stiffness, &self.outer[column], &z, plate).second;
+            let now = plate::action(contact_stiffness, &self.outer[column], &z, plate).second;
             if now == self.by_depth[column] {
                 continue;
             }

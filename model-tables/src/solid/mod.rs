@@ -26,9 +26,13 @@ pub mod fluid;
 #[cfg(feature = "std")]
 pub mod front;
 #[cfg(feature = "std")]
+pub mod history;
+#[cfg(feature = "std")]
 pub mod inflation;
 #[cfg(feature = "std")]
 pub mod lanes;
+#[cfg(feature = "std")]
+mod memory;
 #[cfg(feature = "std")]
 pub mod mesh;
 #[cfg(feature = "std")]

@@ -1,0 +1,518 @@
+//! A press in time: a wall that relaxes, under a plate that comes, stays and leaves.
+//!
+//! The plate's travel, or its force, is given at instants and changes evenly between them. Each interval is cut into steps short enough that
+//! every point of the wall moves nearly evenly in each, as [`memory`](super::memory) takes it to; nothing else is approximated in time.
+//! A plate does not pull: where the wall recovers more slowly than the plate leaves, contact is lost, and the wall goes on alone around its fluid
+//! until the plate is back.
+
+use super::Failure;
+use super::equilibrium::Wall;
+use super::memory::Memory;
+use super::mesh::Elements;
+use super::section;
+use super::state::{Balance, Fluid, State};
+use crate::design::{Design, RestBy};
+use crate::limit::EndsBy;
+use crate::material::Hyperelastic as _;
+use crate::material::relaxation::Relaxation;
+use core::fmt;
+
+/// Largest travel of a plate near the wall in a step, over the height.
+const LARGEST_TRAVEL: f64 = 2.5e-3;
+/// Largest distance of a node from where the step before leads it, over the height. Its way within the step then bends by an eighth of this.
+const LARGEST_BEND: f64 = 6e-4;
+/// Travel of the first step after the plate's speed has changed, over the largest.
+const FIRST_TRAVEL: f64 = 1.0 / 16.0;
+/// Most growth of a step from one to the next.
+const LARGEST_GROWTH: f64 = 2.0;
+/// Change of speed, over the greater of both, from which on the motion begins anew.
+const TURN: f64 = 0.3;
+/// Halvings of a step that fails.
+const MOST_HALVINGS: u32 = 24;
+/// Energy that may be missing after a step, over the work done in it and over all done so far.
+const ENERGY_TOLERANCE: [f64; 2] = [0.05, 1e-3];
+/// Accuracy of a given force, relative.
+const FORCE_TOLERANCE: f64 = 1e-6;
+/// Newton iterations for a given force.
+const FORCE_ITERATIONS: usize = 30;
+
+/// What is given at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// The plate's travel from first touch of the untouched wall, metres; negative: above it.
+    Indentation(f64),
+    /// The force on the plate, newtons, >= 0; without one the plate just does not touch.
+    Force(f64),
+}
+
+/// An instant of a press.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// The plate's travel, metres.
+    pub indentation: f64,
+    /// Pressure over that of the untouched wall, pascals. Below zero where the wall recovers.
+    pub pressure_rise: f64,
+    /// Force on the plate, newtons.
+    pub force: f64,
+    /// How far the pole of the outer surface is down, metres.
+    pub apex_depression: f64,
+}
+
+impl Instant {
+    /// Whether the plate touches.
+    pub fn in_contact(&self) -> bool {
+        self.force > 0.0
+    }
+}
+
+/// Why there is no press in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HistoryError {
+    /// The wall is inflated at rest.
+    Inflated,
+    /// The fluid's circuit gives way.
+    Compliant,
+    /// The law has no stiffness; shear modulus in pascals.
+    NoStiffness(f64),
+    /// Time does not go on.
+    NotAfter {
+        /// What was asked for, seconds.
+        asked: f64,
+        /// The instant before, seconds.
+        before: f64,
+    },
+    /// The wall comes down on its base.
+    Ends {
+        /// When, seconds.
+        time: f64,
+        /// Indentation, metres.
+        indentation: f64,
+        /// What ends the press.
+        by: EndsBy,
+    },
+    /// A state was not found.
+    Unsolved {
+        /// When, seconds.
+        time: f64,
+        /// Indentation of the state before, metres.
+        indentation: f64,
+        /// What failed.
+        failure: Failure,
+    },
+}
+
+impl fmt::Display for HistoryError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Inflated => write!(
+                f,
+                "a press in time is for a wall that rests unstretched: leave [rest] and calibration.pole_stretch out"
+            ),
+            Self::Compliant => write!(
+                f,
+                "a press in time is for a rigid circuit: set fluid.compliance_mm3_per_kpa (or that of [calibration]) to 0"
+            ),
+            Self::NoStiffness(modulus) => {
+                write!(f, "the law's shear modulus is {modulus} Pa: it has to be above 0")
+            }
+            Self::NotAfter { asked, before } => write!(
+                f,
+                "time_s = {asked} is not after the row before, {before}: rows have to follow in time"
+            ),
+            Self::Ends {
+                time,
+                indentation,
+                by,
+            } => write!(
+                f,
+                "the press ends at {:.6} mm ({}) at time_s = {time:.6}: press less deep",
+                1e3 * indentation,
+                by.word()
+            ),
+            Self::Unsolved {
+                time,
+                indentation,
+                failure,
+            } => write!(
+                f,
+                "no state was found after time_s = {time:.6}, at {:.6} mm ({failure}): press less deep or more slowly",
+                1e3 * indentation
+            ),
+        }
+    }
+}
+
+impl core::error::Error for HistoryError {}
+
+/// Why a step was not taken.
+enum Rejected {
+    Failed(Failure),
+    Touches(EndsBy),
+    /// Too long: by so much.
+    TooLong(f64),
+}
+
+/// A step as it was solved.
+struct Solved {
+    indentation: f64,
+    balance: Balance,
+    /// How much of what is allowed it takes.
+    share: f64,
+}
+
+/// A press in time, at its latest instant. Lengths in outer radial semi-axes, stresses in relaxed shear moduli.
+#[derive(Clone, Debug)]
+pub struct History {
+    wall: Wall,
+    fluid: Fluid,
+    /// Outer radial semi-axis, metres.
+    length: f64,
+    /// Relaxed shear modulus, pascals.
+    modulus: f64,
+    /// Height of the outer pole at rest.
+    height: f64,
+    time: f64,
+    state: State,
+    indentation: f64,
+    force: f64,
+    /// Displacements in the latest step, and how long it was and how far the plate went in it.
+    moved: State,
+    seconds: f64,
+    travel: f64,
+    /// What the next step may be.
+    next: Next,
+    /// Speed of the plate, or rate of its force, in the latest interval.
+    speed: f64,
+    /// Strain energy of the wall, and all work so far.
+    energy: f64,
+    work: f64,
+    steps: u64,
+    trial: State,
+    guess: State,
+}
+
+/// What the next step may be at most.
+#[derive(Clone, Copy, Debug)]
+struct Next {
+    seconds: f64,
+    travel: f64,
+}
+
+impl History {
+    /// The untouched wall, which has always been so, at a time in seconds. The semi-axes of `design.membrane` are those of the outer
+    /// surface.
+    ///
+    /// # Errors
+    /// [`HistoryError::Inflated`], [`HistoryError::Compliant`], [`HistoryError::NoStiffness`].
+    pub fn new(
+        design: &Design,
+        relaxation: &Relaxation,
+        elements: Elements,
+        time: f64,
+    ) -> Result<Self, HistoryError> {
+        if design.rest != RestBy::Unstretched {
+            return Err(HistoryError::Inflated);
+        }
+        if design.compliance > 0.0 {
+            return Err(HistoryError::Compliant);
+        }
+        let modulus = design.law.shear_modulus();
+        if modulus.is_nan() || modulus <= 0.0 {
+            return Err(HistoryError::NoStiffness(modulus));
+        }
+        let length = design.membrane.radial_semi_axis;
+        let mut wall = Wall::new(
+            design.membrane.axial_semi_axis / length,
+            design.membrane.thickness / length,
+            design.law.stiffened(1.0 / modulus),
+            elements,
+        );
+        wall.memory = Some(Memory::new(&wall.mesh, relaxation));
+        let state = wall.undeformed();
+        let mut moved = state.clone();
+        moved.clear();
+        let height = state.nodes[wall.mesh.layers() - 1][1];
+        Ok(Self {
+            fluid: Fluid {
+                by_volume: 1.0,
+                volume: wall.volume(&state),
+                by_pressure: 0.0,
+                pressure: 0.0,
+            },
+            energy: wall.energy(&state),
+            wall,
+            length,
+            modulus,
+            height,
+            time,
+            trial: state.clone(),
+            guess: state.clone(),
+            state,
+            indentation: 0.0,
+            force: 0.0,
+            moved,
+            seconds: 0.0,
+            travel: 0.0,
+            next: Next {
+                seconds: f64::INFINITY,
+                travel: FIRST_TRAVEL * LARGEST_TRAVEL * height,
+            },
+            speed: 0.0,
+            work: 0.0,
+            steps: 0,
+        })
+    }
+
+    /// Steps of time so far.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Newton iterations so far.
+    pub fn iterations(&self) -> u64 {
+        self.wall.iterations
+    }
+
+    /// Factorisations so far.
+    pub fn factorisations(&self) -> u64 {
+        self.wall.factorisations
+    }
+
+    /// The latest instant.
+    pub fn now(&self) -> Instant {
+        Instant {
+            indentation: self.indentation * self.length,
+            pressure_rise: self.state.fluid * self.modulus,
+            force: self.force * self.modulus * self.length * self.length,
+            apex_depression: (self.height - self.apex(&self.state)) * self.length,
+        }
+    }
+
+    /// Goes on to a time in seconds, at which the plate is where `drive` has it, evenly.
+    ///
+    /// # Errors
+    /// [`HistoryError`]; the history is then of no further use.
+    pub fn advance(&mut self, time: f64, drive: Drive) -> Result<Instant, HistoryError> {
+        let (begin, whole) = (self.time, time - self.time);
+        if whole.is_nan() || whole <= 0.0 {
+            return Err(HistoryError::NotAfter {
+                asked: time,
+                before: begin,
+            });
+        }
+        let (from, to) = match drive {
+            Drive::Indentation(metres) => (self.indentation, metres / self.length),
+            Drive::Force(newtons) => (self.force, newtons / (self.modulus * self.length * self.length)),
+        };
+        let speed = (to - from) / whole;
+        if (speed - self.speed).abs() > TURN * speed.abs().max(self.speed.abs()) {
+            self.next.travel = FIRST_TRAVEL * LARGEST_TRAVEL * self.height;
+        }
+        self.speed = speed;
+        let mut done = 0.0;
+        while done < 1.0 {
+            let mut halvings = 0;
+            let mut seconds = self.proposal(drive, (1.0 - done) * whole);
+            loop {
+                // The last step ends on the instant.
+                let end = if seconds >= (1.0 - done) * whole * (1.0 - 1e-9) {
+                    1.0
+                } else {
+                    done + seconds / whole
+                };
+                let target = if end < 1.0 { from + end * (to - from) } else { to };
+                match self.step((end - done) * whole, drive, target) {
+                    Ok(solved) => {
+                        self.take(&solved, (end - done) * whole);
+                        done = end;
+                        self.time = begin + done * whole;
+                        break;
+                    }
+                    Err(rejected) => {
+                        halvings += 1;
+                        if halvings > MOST_HALVINGS {
+                            return Err(self.ends(rejected));
+                        }
+                        seconds *= match rejected {
+                            Rejected::TooLong(by) => (0.8 / libm::sqrt(by)).clamp(0.1, 0.7),
+                            _ => 0.5,
+                        };
+                    }
+                }
+            }
+        }
+        self.time = time;
+        Ok(self.now())
+    }
+
+    fn ends(&self, rejected: Rejected) -> HistoryError {
+        let (time, indentation) = (self.time, self.indentation * self.length);
+        match rejected {
+            Rejected::Touches(by) => HistoryError::Ends {
+                time,
+                indentation,
+                by,
+            },
+            Rejected::Failed(failure) => HistoryError::Unsolved {
+                time,
+                indentation,
+                failure,
+            },
+            Rejected::TooLong(_) => HistoryError::Unsolved {
+                time,
+                indentation,
+                failure: Failure::Elsewhere,
+            },
+        }
+    }
+
+    /// The length of the next step, seconds, with so much left of the interval: a whole part of it.
+    fn proposal(&self, drive: Drive, left: f64) -> f64 {
+        let mut seconds = self.next.seconds;
+        if matches!(drive, Drive::Indentation(_)) && self.speed.abs() > 0.0 {
+            // Well above the wall the plate does nothing.
+            let gap = (self.height - self.indentation - self.apex(&self.state)).max(0.0);
+            seconds = seconds.min((self.next.travel + 0.5 * gap) / self.speed.abs());
+        }
+        let parts = libm::ceil(left / seconds * (1.0 - 1e-9)).max(1.0);
+        left / parts
+    }
+
+    /// Solves a step of so many seconds.
+    fn step(&mut self, seconds: f64, drive: Drive, target: f64) -> Result<Solved, Rejected> {
+        if let Some(memory) = &mut self.wall.memory {
+            memory.begin(seconds);
+        }
+        let (indentation, balance, predicted) = match drive {
+            Drive::Indentation(_) => {
+                let predicted = self.predict(self.ratio(seconds, target - self.indentation));
+                self.trial.copy_from(&self.guess);
+                (target, self.settle(target)?, predicted)
+            }
+            Drive::Force(_) => {
+                let ratio = if self.seconds > 0.0 { seconds / self.seconds } else { 0.0 };
+                let predicted = self.predict(ratio.min(LARGEST_GROWTH));
+                self.trial.copy_from(&self.guess);
+                let (indentation, balance) = self.settle_force(target)?;
+                let travel = (indentation - self.indentation).abs() / (LARGEST_TRAVEL * self.height);
+                if travel > 1.0 {
+                    return Err(Rejected::TooLong(travel * travel));
+                }
+                (indentation, balance, predicted)
+            }
+        };
+        if let Some(by) = section::touches_base(&self.wall, &self.trial) {
+            return Err(Rejected::Touches(by));
+        }
+        let bend = if predicted { self.bend() } else { 0.0 };
+        let share = bend / (LARGEST_BEND * self.height);
+        if share > 1.0 {
+            return Err(Rejected::TooLong(share));
+        }
+        Ok(Solved {
+            indentation,
+            balance,
+            share,
+        })
+    }
+
+    /// How far the latest displacements go on in a step of so many seconds in which the plate goes so far: with the plate where
+    /// it holds the wall, with time where it does not. `None`: they tell nothing.
+    fn ratio(&self, seconds: f64, travel: f64) -> Option<f64> {
+        if self.force > 0.0 && self.travel.abs() > 0.0 {
+            Some((travel / self.travel).clamp(-LARGEST_GROWTH, LARGEST_GROWTH))
+        } else if self.seconds > 0.0 && (self.force <= 0.0 || travel == 0.0) {
+            Some((seconds / self.seconds).min(LARGEST_GROWTH))
+        } else {
+            None
+        }
+    }
+
+    /// Sets the guess; whether it tells anything.
+    fn predict(&mut self, ratio: impl Into<Option<f64>>) -> bool {
+        let ratio = ratio.into();
+        self.guess.copy_from(&self.state);
+        if let Some(ratio) = ratio {
+            self.guess.add(ratio, &self.moved);
+        }
+        ratio.is_some()
+    }
+
+    /// The largest distance of a node from the guess.
+    fn bend(&self) -> f64 {
+        let (trial, guess) = (self.trial.nodes.as_flattened(), self.guess.nodes.as_flattened());
+        trial
+            .iter()
+            .zip(guess)
+            .fold(0.0, |largest, (x, y)| f64::max(largest, (x - y).abs()))
+    }
+
+    /// Solves with the plate at an indentation.
+    fn settle(&mut self, indentation: f64) -> Result<Balance, Rejected> {
+        let plate = self.height - indentation;
+        self.wall
+            .settle(&mut self.trial, plate, &self.fluid)
+            .map_err(Rejected::Failed)
+    }
+
+    /// Solves with a force on the plate: where it is, and the balance.
+    fn settle_force(&mut self, force: f64) -> Result<(f64, Balance), Rejected> {
+        if force <= 0.0 {
+            let balance = self.settle(-self.height)?;
+            return Ok((self.height - self.apex(&self.trial), balance));
+        }
+        let largest = LARGEST_TRAVEL * self.height;
+        let mut indentation = self.height - self.apex(&self.trial);
+        for _ in 0..FORCE_ITERATIONS {
+            let balance = self.settle(indentation)?;
+            let missing = force - balance.force;
+            if missing.abs() <= FORCE_TOLERANCE * force {
+                return Ok((indentation, balance));
+            }
+            let stiffness = if balance.force > 0.0 {
+                let tangent = self.wall.tangent(&self.fluid);
+                tangent.ok_or(Rejected::Failed(Failure::Singular))?.force
+            } else {
+                0.0
+            };
+            let step = missing / stiffness;
+            // Before first touch there is no stiffness, and after it little.
+            let touch = self.height - self.apex(&self.trial) - indentation;
+            indentation += if stiffness > 0.0 {
+                step.clamp(-largest, largest)
+            } else {
+                touch.max(0.0) + 0.01 * largest
+            };
+        }
+        Err(Rejected::Failed(Failure::Stalled { residual: 1.0 }))
+    }
+
+    /// Takes a step as it was solved.
+    fn take(&mut self, solved: &Solved, seconds: f64) {
+        let mut work = 0.0;
+        if let Some(memory) = &mut self.wall.memory {
+            work = memory.finish(&self.wall.mesh, &self.wall.material, &self.trial);
+        }
+        let energy = self.wall.energy(&self.trial);
+        self.work += (energy - self.energy) + work;
+        self.energy = energy;
+        self.moved.copy_from(&self.trial);
+        self.moved.add(-1.0, &self.state);
+        self.state.copy_from(&self.trial);
+        self.travel = solved.indentation - self.indentation;
+        self.indentation = solved.indentation;
+        self.force = solved.balance.force;
+        self.seconds = seconds;
+        let growth = libm::sqrt(0.6 / solved.share.max(1e-3)).clamp(0.5, LARGEST_GROWTH);
+        self.next = Next {
+            seconds: growth * seconds,
+            travel: (growth * self.travel.abs().max(self.next.travel)).min(LARGEST_TRAVEL * self.height),
+        };
+        self.steps += 1;
+    }
+
+    /// Height of the outer pole.
+    fn apex(&self, state: &State) -> f64 {
+        state.nodes[self.wall.mesh.layers() - 1][1]
+    }
+}
