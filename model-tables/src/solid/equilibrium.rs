@@ -198,7 +198,7 @@ impl Wall {
             }
 
             let force = balance.force / self.mesh.thickness;
-            if balance.residual < TOLERANCE + RELATIVE_TOLERANCE * force {
+            if balance.residual < TOLERANCE * self.stiffening() + RELATIVE_TOLERANCE * force {
                 // Admissible only right side out: the equations go on beyond.
                 let least = self.deformations(state, false).map(element::least);
                 return if least.fold(f64::INFINITY, f64::min) > 0.0 {
@@ -232,7 +232,9 @@ impl Wall {
         let mut balance = Balance::default();
         let contact_stiffness = self.contact_stiffness * self.stiffening();
         self.forces.fill([0.0; 2]);
-        let excess = self.assembly.forces(&self.material, self.memory.as_ref(), state, &mut self.forces);
+        let excess = self
+            .assembly
+            .forces(&self.material, self.memory.as_ref(), state, &mut self.forces);
         for column in 0..self.mesh.elements.along {
             let [inner, outer] =
                 [0, self.mesh.layers() - 1].map(|layer| edge_nodes(&self.mesh, column, layer));
@@ -287,7 +289,8 @@ impl Wall {
     fn set_up(&mut self, state: &State) {
         let station = 2 * self.mesh.stride();
         self.fronts.clear();
-        self.assembly.stiffness(&self.material, self.memory.as_ref(), state, &mut self.fronts);
+        self.assembly
+            .stiffness(&self.material, self.memory.as_ref(), state, &mut self.fronts);
         self.by_node.fill([0.0; 2]);
         for column in 0..self.mesh.elements.along {
             let [nodes, local] = [column, 0].map(|column| edge_nodes(&self.mesh, column, 0));

@@ -19,7 +19,8 @@ use core::fmt;
 
 /// Largest travel of a plate near the wall in a step, over the height.
 const LARGEST_TRAVEL: f64 = 2.5e-3;
-/// Largest distance of a node from where the step before leads it, over the height. Its way within the step then bends by an eighth of this.
+/// Largest distance of a node from where a step is expected to lead it, over the height. Its way within the step bends by less than a quarter of
+/// this.
 const LARGEST_BEND: f64 = 6e-4;
 /// Travel of the first step after the plate's speed has changed, over the largest.
 const FIRST_TRAVEL: f64 = 1.0 / 16.0;
@@ -29,8 +30,10 @@ const LARGEST_GROWTH: f64 = 2.0;
 const TURN: f64 = 0.3;
 /// Halvings of a step that fails.
 const MOST_HALVINGS: u32 = 24;
-/// Energy that may be missing after a step, over the work done in it and over all done so far.
-const ENERGY_TOLERANCE: [f64; 2] = [0.05, 1e-3];
+/// Energy that may be missing after a step, over the work done in it and over the most done so far.
+const ENERGY_TOLERANCE: [f64; 2] = [0.05, 5e-3];
+/// The same of the first step, in which the contact is smaller than an element.
+const FIRST_ENERGY_TOLERANCE: f64 = 0.4;
 /// Accuracy of a given force, relative.
 const FORCE_TOLERANCE: f64 = 1e-6;
 /// Newton iterations for a given force.
@@ -158,6 +161,10 @@ struct Solved {
     balance: Balance,
     /// How much of what is allowed it takes.
     share: f64,
+    /// Strain energy of the wall at its end.
+    energy: f64,
+    /// Work of the wall's stresses in it.
+    work: f64,
 }
 
 /// A press in time, at its latest instant. Lengths in outer radial semi-axes, stresses in relaxed shear moduli.
@@ -175,17 +182,22 @@ pub struct History {
     state: State,
     indentation: f64,
     force: f64,
-    /// Displacements in the latest step, and how long it was and how far the plate went in it.
-    moved: State,
+    /// How the wall goes on: with the plate where that holds it, by the tangent of the latest state; with time where it is free, by the
+    /// displacements in the latest step.
+    onward: State,
+    /// Length of the latest step, seconds.
     seconds: f64,
-    travel: f64,
     /// What the next step may be.
     next: Next,
     /// Speed of the plate, or rate of its force, in the latest interval.
     speed: f64,
-    /// Strain energy of the wall, and all work so far.
+    /// Relaxed strain energy of the wall.
     energy: f64,
+    /// Work of the wall's stresses so far, and the most that it was.
     work: f64,
+    most_work: f64,
+    /// Work of the plate so far.
+    supplied: f64,
     steps: u64,
     trial: State,
     guess: State,
@@ -199,8 +211,8 @@ struct Next {
 }
 
 impl History {
-    /// The untouched wall, which has always been so, at a time in seconds. The semi-axes of `design.membrane` are those of the outer
-    /// surface.
+    /// The untouched wall, which has always been so, at a time in seconds, with the plate at an indentation of at most 0, metres. The
+    /// semi-axes of `design.membrane` are those of the outer surface.
     ///
     /// # Errors
     /// [`HistoryError::Inflated`], [`HistoryError::Compliant`], [`HistoryError::NoStiffness`].
@@ -209,6 +221,7 @@ impl History {
         relaxation: &Relaxation,
         elements: Elements,
         time: f64,
+        indentation: f64,
     ) -> Result<Self, HistoryError> {
         if design.rest != RestBy::Unstretched {
             return Err(HistoryError::Inflated);
@@ -229,8 +242,8 @@ impl History {
         );
         wall.memory = Some(Memory::new(&wall.mesh, relaxation));
         let state = wall.undeformed();
-        let mut moved = state.clone();
-        moved.clear();
+        let mut onward = state.clone();
+        onward.clear();
         let height = state.nodes[wall.mesh.layers() - 1][1];
         Ok(Self {
             fluid: Fluid {
@@ -248,17 +261,18 @@ impl History {
             trial: state.clone(),
             guess: state.clone(),
             state,
-            indentation: 0.0,
+            indentation: indentation.min(0.0) / length,
             force: 0.0,
-            moved,
+            onward,
             seconds: 0.0,
-            travel: 0.0,
             next: Next {
                 seconds: f64::INFINITY,
                 travel: FIRST_TRAVEL * LARGEST_TRAVEL * height,
             },
             speed: 0.0,
             work: 0.0,
+            most_work: 0.0,
+            supplied: 0.0,
             steps: 0,
         })
     }
@@ -266,6 +280,12 @@ impl History {
     /// Steps of time so far.
     pub fn steps(&self) -> u64 {
         self.steps
+    }
+
+    /// Work so far, joules: of the plate, and of the stresses in the wall, elastic and lost. Their difference is the error in time.
+    pub fn works(&self) -> [f64; 2] {
+        let unit = self.modulus * self.length * self.length * self.length;
+        [self.supplied, self.work].map(|work| work * unit)
     }
 
     /// Newton iterations so far.
@@ -383,59 +403,77 @@ impl History {
         if let Some(memory) = &mut self.wall.memory {
             memory.begin(seconds);
         }
-        let (indentation, balance, predicted) = match drive {
+        let (indentation, balance) = match drive {
             Drive::Indentation(_) => {
-                let predicted = self.predict(self.ratio(seconds, target - self.indentation));
-                self.trial.copy_from(&self.guess);
-                (target, self.settle(target)?, predicted)
+                self.predict(seconds, target - self.indentation);
+                (target, self.settle(target)?)
             }
             Drive::Force(_) => {
-                let ratio = if self.seconds > 0.0 { seconds / self.seconds } else { 0.0 };
-                let predicted = self.predict(ratio.min(LARGEST_GROWTH));
-                self.trial.copy_from(&self.guess);
+                self.predict(seconds, 0.0);
                 let (indentation, balance) = self.settle_force(target)?;
                 let travel = (indentation - self.indentation).abs() / (LARGEST_TRAVEL * self.height);
                 if travel > 1.0 {
                     return Err(Rejected::TooLong(travel * travel));
                 }
-                (indentation, balance, predicted)
+                // As it would have been predicted for this.
+                let trial = self.trial.clone();
+                self.predict(seconds, indentation - self.indentation);
+                self.trial = trial;
+                (indentation, balance)
             }
         };
         if let Some(by) = section::touches_base(&self.wall, &self.trial) {
             return Err(Rejected::Touches(by));
         }
-        let bend = if predicted { self.bend() } else { 0.0 };
-        let share = bend / (LARGEST_BEND * self.height);
+        let share = self.bend() / (LARGEST_BEND * self.height);
         if share > 1.0 {
             return Err(Rejected::TooLong(share));
         }
+        let (energy, work) = self.work_of_step(indentation, &balance)?;
         Ok(Solved {
             indentation,
             balance,
             share,
+            energy,
+            work,
         })
     }
 
-    /// How far the latest displacements go on in a step of so many seconds in which the plate goes so far: with the plate where
-    /// it holds the wall, with time where it does not. `None`: they tell nothing.
-    fn ratio(&self, seconds: f64, travel: f64) -> Option<f64> {
-        if self.force > 0.0 && self.travel.abs() > 0.0 {
-            Some((travel / self.travel).clamp(-LARGEST_GROWTH, LARGEST_GROWTH))
-        } else if self.seconds > 0.0 && (self.force <= 0.0 || travel == 0.0) {
-            Some((seconds / self.seconds).min(LARGEST_GROWTH))
+    /// Relaxed strain energy after the trial, and work of the wall's stresses in it: as much as the plate does. What is in balance but on
+    /// another branch fails this.
+    fn work_of_step(&mut self, indentation: f64, balance: &Balance) -> Result<(f64, f64), Rejected> {
+        let energy = self.wall.energy(&self.trial);
+        let mut work = energy - self.energy;
+        if let Some(memory) = &mut self.wall.memory {
+            work += memory.end(&self.wall.mesh, &self.wall.material, &self.trial);
+        }
+        let supplied = 0.5 * (self.force + balance.force) * (indentation - self.indentation);
+        let [of_step, of_all] = if self.most_work > 0.0 {
+            ENERGY_TOLERANCE
         } else {
-            None
+            [FIRST_ENERGY_TOLERANCE, 0.0]
+        };
+        let allowed = of_step * supplied.abs().max(work.abs()) + of_all * self.most_work;
+        // Nothing at all was done before the plate touches.
+        if (work - supplied).abs() <= allowed + f64::EPSILON {
+            Ok((energy, work))
+        } else {
+            Err(Rejected::Failed(Failure::Elsewhere))
         }
     }
 
-    /// Sets the guess; whether it tells anything.
-    fn predict(&mut self, ratio: impl Into<Option<f64>>) -> bool {
-        let ratio = ratio.into();
+    /// Starts the trial where the wall is likely to be after a step of so many seconds in which the plate goes so far, and keeps that.
+    fn predict(&mut self, seconds: f64, travel: f64) {
+        let ratio = if self.force > 0.0 {
+            travel
+        } else if self.seconds > 0.0 {
+            (seconds / self.seconds).min(LARGEST_GROWTH)
+        } else {
+            0.0
+        };
         self.guess.copy_from(&self.state);
-        if let Some(ratio) = ratio {
-            self.guess.add(ratio, &self.moved);
-        }
-        ratio.is_some()
+        self.guess.add(ratio, &self.onward);
+        self.trial.copy_from(&self.guess);
     }
 
     /// The largest distance of a node from the guess.
@@ -489,24 +527,29 @@ impl History {
 
     /// Takes a step as it was solved.
     fn take(&mut self, solved: &Solved, seconds: f64) {
-        let mut work = 0.0;
         if let Some(memory) = &mut self.wall.memory {
-            work = memory.finish(&self.wall.mesh, &self.wall.material, &self.trial);
+            memory.take();
         }
-        let energy = self.wall.energy(&self.trial);
-        self.work += (energy - self.energy) + work;
-        self.energy = energy;
-        self.moved.copy_from(&self.trial);
-        self.moved.add(-1.0, &self.state);
+        self.energy = solved.energy;
+        self.work += solved.work;
+        self.most_work = self.most_work.max(self.work);
+        self.supplied += 0.5 * (self.force + solved.balance.force) * (solved.indentation - self.indentation);
+        self.onward.copy_from(&self.trial);
+        self.onward.add(-1.0, &self.state);
+        if solved.balance.force > 0.0
+            && let Some(tangent) = self.wall.tangent(&self.fluid)
+        {
+            self.onward = tangent.state;
+        }
         self.state.copy_from(&self.trial);
-        self.travel = solved.indentation - self.indentation;
+        let travel = (solved.indentation - self.indentation).abs();
         self.indentation = solved.indentation;
         self.force = solved.balance.force;
         self.seconds = seconds;
         let growth = libm::sqrt(0.6 / solved.share.max(1e-3)).clamp(0.5, LARGEST_GROWTH);
         self.next = Next {
             seconds: growth * seconds,
-            travel: (growth * self.travel.abs().max(self.next.travel)).min(LARGEST_TRAVEL * self.height),
+            travel: (growth * travel.max(self.next.travel)).min(LARGEST_TRAVEL * self.height),
         };
         self.steps += 1;
     }
