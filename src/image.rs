@@ -1,6 +1,6 @@
 //! The design this image is built for: what the build script solved and wrote.
 
-use crate::signal::design::Design;
+use crate::signal::design::{Design, Parameters};
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;
@@ -12,19 +12,30 @@ pub mod generated {
 }
 use generated::{DESIGN, TABLES};
 
-/// The design of the image.
+/// The design of the image: no bytes, as all of it folds into the code.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageDesign;
 
+impl ImageDesign {
+    /// The design beside its tables.
+    pub const CONSTANTS: DesignConstants = DESIGN;
+
+    /// What the signal path needs of it.
+    pub const PARAMETERS: Parameters = Parameters::of(
+        DESIGN,
+        TABLES.layout.pressure_fraction_bits,
+        PressureRise(TABLES.layout.maximum),
+    );
+}
+
 impl Design for ImageDesign {
-    const CONSTANTS: DesignConstants = DESIGN;
-
-    const PRESSURE_FRACTION_BITS: u32 = TABLES.layout.pressure_fraction_bits;
-
-    const LAST_RISE: PressureRise = PressureRise(TABLES.layout.maximum);
+    #[inline]
+    fn parameters(&self) -> &Parameters {
+        const { &Self::PARAMETERS }
+    }
 
     #[inline]
-    fn lookup(rise: PressureRise) -> Reading {
+    fn lookup(&self, rise: PressureRise) -> Reading {
         TABLES.lookup(rise)
     }
 }

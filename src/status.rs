@@ -208,6 +208,17 @@ pub enum Status {
     Fault(Fault),
 }
 
+impl Status {
+    /// Of values that these warnings qualify.
+    pub fn qualified(warnings: Warnings) -> Self {
+        if warnings == Warnings::NONE {
+            Self::Ok
+        } else {
+            Self::Warning(warnings)
+        }
+    }
+}
+
 impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

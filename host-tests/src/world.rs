@@ -6,12 +6,12 @@ use fingertip::image::ImageDesign;
 use fingertip::link::command::{Command, Request};
 use fingertip::link::telemetry::Message;
 use fingertip::signal::calibration::Calibration;
-use fingertip::signal::design::Design;
+use fingertip::signal::design::{Design, Parameters};
 use fingertip::signal::report::Report;
 use fingertip::status::{Fault, ResetCause, Stored};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::{Microseconds, Millipascals};
-use model_tables::constants::{DesignConstants, Quantity, TransducerKind};
+use model_tables::constants::{Quantity, TransducerKind};
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;
 
@@ -19,19 +19,24 @@ use model_tables::units::PressureRise;
 #[derive(Clone, Copy, Debug)]
 pub struct WithAbsolutePart;
 
-impl Design for WithAbsolutePart {
-    const CONSTANTS: DesignConstants = {
+impl WithAbsolutePart {
+    const PARAMETERS: Parameters = {
         let mut constants = ImageDesign::CONSTANTS;
         constants.transducer.kind = TransducerKind::Ms5837 { address: 0x76 };
         constants.transducer.quantity = Quantity::Absolute;
         constants.transducer.range = [1_000, 200_000];
-        constants
+        let image = ImageDesign::PARAMETERS;
+        Parameters::of(constants, image.pressure_fraction_bits, image.last_rise)
     };
-    const PRESSURE_FRACTION_BITS: u32 = ImageDesign::PRESSURE_FRACTION_BITS;
-    const LAST_RISE: PressureRise = ImageDesign::LAST_RISE;
+}
 
-    fn lookup(rise: PressureRise) -> Reading {
-        ImageDesign::lookup(rise)
+impl Design for WithAbsolutePart {
+    fn parameters(&self) -> &Parameters {
+        const { &Self::PARAMETERS }
+    }
+
+    fn lookup(&self, rise: PressureRise) -> Reading {
+        ImageDesign.lookup(rise)
     }
 }
 
@@ -72,6 +77,7 @@ impl Random {
 /// One fingertip and the firmware that reads it.
 #[derive(Debug)]
 pub struct World<D> {
+    design: D,
     station: Station<D>,
     /// Microseconds since reset.
     pub now: u64,
@@ -80,14 +86,15 @@ pub struct World<D> {
 }
 
 /// A beginning after a reset by `cause`, with a stored calibration or none, and what the run before left.
-pub fn beginning<D: Design>(
+pub fn beginning(
+    design: &impl Design,
     cause: ResetCause,
     calibration: Option<Calibration>,
     left: Option<Breadcrumb>,
 ) -> Beginning {
     Beginning {
         reset_cause: cause,
-        start: Breadcrumb::start(left, cause, D::CONSTANTS.hash),
+        start: Breadcrumb::start(left, cause, design.parameters().constants.hash),
         stored: if calibration.is_some() {
             Stored::Serves
         } else {
@@ -104,26 +111,28 @@ pub fn beginning<D: Design>(
 const AIR: f64 = 101_325.0;
 
 /// Pascals at rest, as the transducer reads them: with the air where it is absolute.
-pub fn rest<D: Design>() -> f64 {
-    let air = match D::CONSTANTS.transducer.quantity {
+pub fn rest(design: &impl Design) -> f64 {
+    let constants = &design.parameters().constants;
+    let air = match constants.transducer.quantity {
         Quantity::Gauge => 0.0,
         Quantity::Absolute => AIR,
     };
-    f64::from(D::CONSTANTS.rest_pressure) + air
+    f64::from(constants.rest_pressure) + air
 }
 
 /// Pascals from rest to the end of the tables.
-pub fn full_scale<D: Design>() -> f64 {
-    f64::from(D::CONSTANTS.maximum_pressure - D::CONSTANTS.rest_pressure)
+pub fn full_scale(design: &impl Design) -> f64 {
+    let constants = &design.parameters().constants;
+    f64::from(constants.maximum_pressure - constants.rest_pressure)
 }
 
 /// A sample of a pressure in pascals, measured half a period before it is given.
-pub fn sample<D: Design>(pascals: f64) -> Sample {
+pub fn sample(design: &impl Design, pascals: f64) -> Sample {
     let millipascals = (pascals * 1000.0).round() as i32;
     Sample {
         pressure: Millipascals(millipascals),
         headroom: Millipascals(
-            D::CONSTANTS.transducer.range[1]
+            design.parameters().constants.transducer.range[1]
                 .saturating_mul(1000)
                 .saturating_sub(millipascals),
         ),
@@ -132,21 +141,24 @@ pub fn sample<D: Design>(pascals: f64) -> Sample {
     }
 }
 
-impl<D: Design> World<D> {
+impl<D: Design + Clone> World<D> {
     /// A world that begins.
-    pub fn new(beginning: &Beginning) -> Self {
+    pub fn new(design: D, beginning: &Beginning) -> Self {
         Self {
-            station: Station::new(beginning),
+            station: Station::new(design.clone(), beginning),
+            design,
             now: 0,
             said: vec![],
         }
     }
 
     /// Switched on, nothing stored, 400 ms untouched at `rest` pascals.
-    pub fn zeroed(rest: f64) -> Self {
-        let mut world = Self::new(&beginning::<D>(ResetCause::PowerOn, None, None));
+    pub fn zeroed(design: D, rest: f64) -> Self {
+        let begins = beginning(&design, ResetCause::PowerOn, None, None);
+        let sample = sample(&design, rest);
+        let mut world = Self::new(design, &begins);
         for _ in 0..400 {
-            world.step(1000, Ok(sample::<D>(rest)));
+            world.step(1000, Ok(sample));
         }
         world
     }
@@ -173,12 +185,12 @@ impl<D: Design> World<D> {
     /// The zero that serves, pascals.
     pub fn zero(&self) -> Option<f64> {
         let counts = self.station.zero()?.pressure.0;
-        Some(f64::from(counts) / f64::from(1_u32 << D::PRESSURE_FRACTION_BITS))
+        Some(f64::from(counts) / f64::from(1_u32 << self.design.parameters().pressure_fraction_bits))
     }
 }
 
 /// The reported rise, pascals.
-pub fn rise<D: Design>(report: &Report) -> Option<f64> {
+pub fn rise(design: &impl Design, report: &Report) -> Option<f64> {
     let rise = report.outcome.ok()?.pressure_rise;
-    Some(rise.pascals(D::PRESSURE_FRACTION_BITS))
+    Some(rise.pascals(design.parameters().pressure_fraction_bits))
 }

@@ -1,38 +1,102 @@
-//! What the design tool says the chip would say, and what the signal path says.
+//! A design that is loaded at run time, as the design tool and the simulators have it, and the one that is folded into the
+//! image: the same reports, bit for bit.
 
 use fingertip::image::ImageDesign;
+use fingertip::link::command::Command;
+use fingertip::link::telemetry::Message;
 use fingertip::signal::contact::contact;
-use fingertip::signal::design::Design;
-use fingertip::status::Warnings;
+use fingertip::signal::design::{Design, LoadedDesign};
+use fingertip::signal::report::Report;
+use fingertip::status::{Fault, Warnings};
+use fingertip::transducer::driver::Sample;
+use fingertip::units::Millipascals;
 use host_tests::design;
-use model_tables::generate;
+use host_tests::world::{Random, World, full_scale, rest, sample};
+use model_tables::generate::{self, Generated};
+use model_tables::table::loaded::LoadedTables;
 use model_tables::units::PressureRise;
 
-#[test]
-fn tables_of_the_tool_and_of_the_build_are_the_same() {
+/// The default design, unless the image was built for another one.
+fn generated() -> Option<Generated> {
     let generated = generate::from_design_file(&design("index-fingertip")).expect("the default design");
-    let tables = &generated.certified.tables;
-    let bits = tables.layout.pressure_fraction_bits;
-    if ImageDesign::CONSTANTS.hash != generated.hash() {
-        return; // built for another design
-    }
-    assert_eq!(bits, ImageDesign::PRESSURE_FRACTION_BITS);
-    let lowest_rest = generated.transducer().lowest_rest(bits);
-    for count in (-2_000..tables.layout.maximum + 2_000).step_by(97) {
+    (ImageDesign::CONSTANTS.hash == generated.hash()).then_some(generated)
+}
+
+fn loaded<'a>(generated: &Generated, words: &'a [[u8; 4]]) -> LoadedDesign<'a> {
+    let tables = LoadedTables::new(generated.certified.tables.layout, words);
+    LoadedDesign::new(generated.constants(), tables)
+}
+
+#[test]
+fn a_loaded_design_is_that_of_the_image() {
+    let Some(generated) = generated() else {
+        return;
+    };
+    let words = generated.certified.tables.little_endian();
+    let loaded = loaded(&generated, &words);
+    assert_eq!(loaded.parameters(), ImageDesign.parameters());
+    let end = ImageDesign::PARAMETERS.last_rise.0;
+    for count in (-2_000..end + 2_000).step_by(97).chain([i32::MIN, -1, i32::MAX]) {
         let rise = PressureRise(count);
-        let (tool, chip) = (tables.lookup(rise), contact::<ImageDesign>(rise, Warnings::NONE));
-        assert_eq!(
-            (tool.force, tool.indentation),
-            (chip.force, chip.indentation),
-            "{count}"
-        );
-        let expected = if tool.saturated {
-            Warnings::SATURATED
-        } else if rise < lowest_rest {
-            Warnings::BELOW_ZERO
-        } else {
-            Warnings::NONE
-        };
-        assert_eq!(chip.warnings, expected, "{count}");
+        let [tool, chip] = [
+            contact(&loaded, rise, Warnings::NONE),
+            contact(&ImageDesign, rise, Warnings::NONE),
+        ];
+        assert_eq!(tool, chip, "{count}");
+    }
+}
+
+/// The reports, and what else goes on the line, of presses, pauses, faults, wild samples, commands and drift, drawn from a seed.
+fn life<D: Design + Clone>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
+    let mut random = Random::new(seed);
+    let (rest, full) = (rest(&design), full_scale(&design));
+    let mut world = World::zeroed(design.clone(), rest);
+    let (mut from, mut to) = (0.0, 0.0);
+    let mut reports = vec![];
+    for millisecond in 0..20_000 {
+        let share = f64::from(millisecond % 250) / 250.0;
+        if millisecond % 250 == 0 {
+            from = to;
+            to = [0.0, full * 1.1 * random.share()][random.below(2) as usize];
+        }
+        let drift = 1e-4 * f64::from(millisecond);
+        let pascals = rest + drift + from + (to - from) * share + 5.0 * random.deviate();
+        let mut next = Ok(sample(&design, pascals));
+        let mut later = 1000;
+        match random.below(400) {
+            0 => next = Err(Fault::SensorOpen),
+            1 => {
+                next = next.map(|sound| Sample {
+                    pressure: Millipascals(random.bits() as i32),
+                    ..sound
+                });
+            }
+            2 => later = 30_000,
+            3 => {
+                world.ask(Command::Tare);
+            }
+            _ => {}
+        }
+        reports.push(world.step(later, next));
+    }
+    (reports, world.said)
+}
+
+#[test]
+fn reports_of_a_loaded_design_are_those_of_the_image() {
+    let Some(generated) = generated() else {
+        return;
+    };
+    let words = generated.certified.tables.little_endian();
+    let loaded = loaded(&generated, &words);
+    for seed in 0..4 {
+        let (tool, chip) = (life(loaded, seed), life(ImageDesign, seed));
+        for (tool, chip) in tool.0.iter().zip(&chip.0) {
+            assert_eq!(tool, chip, "seed {seed}");
+        }
+        assert_eq!(tool.1, chip.1, "seed {seed}");
+        // Not the same by being nothing.
+        let readings = chip.0.iter().filter(|report| report.outcome.is_ok()).count();
+        assert!(readings > 10_000, "seed {seed}: {readings} readings");
     }
 }

@@ -3,7 +3,6 @@
 use fingertip::device::supervisor::Breadcrumb;
 use fingertip::image::ImageDesign;
 use fingertip::link::command::Command;
-use fingertip::signal::design::Design;
 use fingertip::signal::zero::{StartUp, Zero};
 use fingertip::status::{Fault, ResetCause, Status};
 use fingertip::transducer::driver::Sample;
@@ -11,13 +10,11 @@ use fingertip::units::Millipascals;
 use host_tests::assert_faults_says;
 use host_tests::world::{Random, World, beginning, full_scale, rest, rise, sample};
 
-type Image = ImageDesign;
-
 /// A reading that is off by more than this is wrong, pascals: 7 grains of the transducer. 6 a commanded tare may take
 /// away when a host says that nothing presses; a wild sample smaller than 4 passes for noise, and the filter takes a
 /// quarter to a half of it.
 fn tolerance() -> f64 {
-    7.0 * Image::CONSTANTS.transducer.grain() as f64 / 1000.0
+    7.0 * ImageDesign::CONSTANTS.transducer.grain() as f64 / 1000.0
 }
 
 /// What is done to the samples.
@@ -74,7 +71,7 @@ impl Grasp {
         } else {
             1.0
         };
-        (s0 + (s1 - s0) * share) * full_scale::<Image>()
+        (s0 + (s1 - s0) * share) * full_scale(&ImageDesign)
     }
 }
 
@@ -90,7 +87,7 @@ struct Tally {
 
 /// One sample of a faulty transducer.
 fn disturbed(verb: Verb, pascals: f64, i: u64, random: &mut Random) -> Result<Sample, Fault> {
-    let sound = sample::<Image>(pascals);
+    let sound = sample(&ImageDesign, pascals);
     match verb {
         Verb::Off => Err(Fault::SensorAbsent),
         Verb::Garbage => {
@@ -110,8 +107,8 @@ fn disturbed(verb: Verb, pascals: f64, i: u64, random: &mut Random) -> Result<Sa
 /// One life of five seconds.
 fn live(seed: u64, tally: &mut Tally) {
     let mut random = Random::new(seed);
-    let base = rest::<Image>() + 200.0 * (random.share() - 0.5);
-    let mut world = World::<Image>::zeroed(base);
+    let base = rest(&ImageDesign) + 200.0 * (random.share() - 0.5);
+    let mut world = World::zeroed(ImageDesign, base);
     let grasp = Grasp::random(&mut random);
     let started = world.now;
     let mut fault: Option<(Verb, u64)> = None;
@@ -148,7 +145,7 @@ fn live(seed: u64, tally: &mut Tally) {
         let pascals = base + truth((world.now + later).saturating_sub(age)) + noise;
         let taken = match fault {
             Some((verb, _)) => disturbed(verb, pascals, i, &mut random),
-            None => Ok(sample::<Image>(pascals)),
+            None => Ok(sample(&ImageDesign, pascals)),
         };
         tally.samples += 1;
         tally.injected += u64::from(fault.is_some());
@@ -165,7 +162,7 @@ fn live(seed: u64, tally: &mut Tally) {
         );
         if report.status() == Status::Ok {
             tally.readings += 1;
-            let off = rise::<Image>(&report).expect("it is ok") - truth(report.time.0);
+            let off = rise(&ImageDesign, &report).expect("it is ok") - truth(report.time.0);
             assert!(
                 off.abs() < tolerance(),
                 "seed {seed}: off by {off} at {} ({fault:?})",
@@ -204,13 +201,16 @@ fn a_still_press_at_power_up_is_said_or_small() {
     let mut presses = 0;
     for pascals in (0..3_000).step_by(10) {
         let press = f64::from(pascals);
-        let mut world = World::<Image>::new(&beginning::<Image>(ResetCause::PowerOn, None, None));
+        let mut world = World::new(
+            ImageDesign,
+            &beginning(&ImageDesign, ResetCause::PowerOn, None, None),
+        );
         let mut last = None;
         for _ in 0..2_100 {
-            last = Some(world.step(1000, Ok(sample::<Image>(rest::<Image>() + press))));
+            last = Some(world.step(1000, Ok(sample(&ImageDesign, rest(&ImageDesign) + press))));
         }
         let report = last.expect("it reports");
-        let read = rise::<Image>(&report).expect("it has a zero by then");
+        let read = rise(&ImageDesign, &report).expect("it has a zero by then");
         if report.status() == Status::Ok {
             largest = largest.max(press - read);
         } else {
@@ -229,12 +229,12 @@ fn a_still_press_at_power_up_is_said_or_small() {
 fn no_reset_that_nobody_asked_for_takes_a_zero() {
     let kept = Zero {
         pressure: fingertip::units::Pressure(
-            (rest::<Image>() * f64::from(1 << Image::PRESSURE_FRACTION_BITS)) as i32,
+            (rest(&ImageDesign) * f64::from(1 << ImageDesign::PARAMETERS.pressure_fraction_bits)) as i32,
         ),
         verified: true,
     };
     let left = Breadcrumb {
-        design_hash: Image::CONSTANTS.hash,
+        design_hash: ImageDesign::CONSTANTS.hash,
         zero: Some(kept),
         ..Breadcrumb::default()
     };
@@ -246,19 +246,23 @@ fn no_reset_that_nobody_asked_for_takes_a_zero() {
         ResetCause::Unknown,
     ] {
         for left in [None, Some(left)] {
-            for press in (0..100).map(|i| f64::from(i) * full_scale::<Image>() / 100.0) {
-                let begins = beginning::<Image>(cause, None, left);
+            for press in (0..100).map(|i| f64::from(i) * full_scale(&ImageDesign) / 100.0) {
+                let begins = beginning(&ImageDesign, cause, None, left);
                 assert_eq!(
-                    StartUp::after(cause, begins.start.kept, Image::CONSTANTS.transducer.quantity),
+                    StartUp::after(
+                        cause,
+                        begins.start.kept,
+                        ImageDesign::CONSTANTS.transducer.quantity
+                    ),
                     left.map_or(StartUp::Stored, |_| StartUp::Kept(kept))
                 );
-                let mut world = World::<Image>::new(&begins);
+                let mut world = World::new(ImageDesign, &begins);
                 let mut last = None;
                 for _ in 0..30 {
-                    last = Some(world.step(1000, Ok(sample::<Image>(rest::<Image>() + press))));
+                    last = Some(world.step(1000, Ok(sample(&ImageDesign, rest(&ImageDesign) + press))));
                 }
                 let report = last.expect("it reports");
-                let read = rise::<Image>(&report).expect("readings at once");
+                let read = rise(&ImageDesign, &report).expect("readings at once");
                 assert!((read - press).abs() < 1.0, "{cause}: {read} for {press}");
                 assert_eq!(report.status() == Status::Ok, left.is_some());
                 resets += 1;

@@ -6,7 +6,6 @@
 use expect_test::expect_file;
 use fingertip::image::ImageDesign;
 use fingertip::image::generated::TABLES;
-use fingertip::signal::design::Design;
 use fingertip::signal::uncertainty::Uncertainty;
 use host_tests::budget::{self, Budget};
 use host_tests::{assert_readme_says, design, workspace};
@@ -76,7 +75,7 @@ fn the_chip_says_what_is_budgeted(budget: &Budget) {
         .iter()
         .filter(|term| !term.bound && !term.name.starts_with("tare"));
     let squares: f64 = terms.map(|term| term.pascals.unwrap_or_default().powi(2)).sum();
-    let bits = ImageDesign::PRESSURE_FRACTION_BITS;
+    let bits = ImageDesign::PARAMETERS.pressure_fraction_bits;
     let said = Uncertainty::of(&ImageDesign::CONSTANTS, bits, 0).rise(true, 0, 0);
     assert!(
         (said.pascals(bits) / squares.sqrt() - 1.0).abs() < 0.01,

@@ -31,21 +31,24 @@ impl Held {
 }
 
 /// Presses to `share` of the tables' pressure and holds for eight hours while the zero drifts, pascals an hour.
-fn hold<D: Design>(share: f64, drift: f64) -> Held {
-    let mut world = World::<D>::zeroed(rest::<D>());
+fn hold<D: Design + Copy>(design: D, share: f64, drift: f64) -> Held {
+    let mut world = World::zeroed(design, rest(&design));
     world.ask(fingertip::link::command::Command::Tare);
     for _ in 0..400 {
-        world.step(1000, Ok(sample::<D>(rest::<D>())));
+        world.step(1000, Ok(sample(&design, rest(&design))));
     }
-    let rise = share * full_scale::<D>();
+    let rise = share * full_scale(&design);
     for ms in 0..1000 {
-        world.step(1000, Ok(sample::<D>(rest::<D>() + rise * f64::from(ms) / 1000.0)));
+        world.step(
+            1000,
+            Ok(sample(&design, rest(&design) + rise * f64::from(ms) / 1000.0)),
+        );
     }
     let from = world.now;
     let mut held: Option<Held> = None;
     while world.now < from + 8 * HOUR {
         let hours = (world.now - from) as f64 / HOUR as f64;
-        let report = world.step(STEP, Ok(sample::<D>(rest::<D>() + rise + drift * hours)));
+        let report = world.step(STEP, Ok(sample(&design, rest(&design) + rise + drift * hours)));
         let reading = report.outcome.expect("a grasp is read");
         assert_eq!(reading.touch, Touch::Touched);
         if let Some(held) = &mut held {
@@ -68,11 +71,11 @@ fn hold<D: Design>(share: f64, drift: f64) -> Held {
 fn the_force_of_a_gauge_part_moves_by_less_than_a_percent_in_eight_hours() {
     for share in [0.5, 0.9] {
         for drift in [-2.0, 2.0] {
-            let held = hold::<ImageDesign>(share, drift);
+            let held = hold(ImageDesign, share, drift);
             assert_eq!(held.last.status(), Status::Ok);
             assert!(held.moved().abs() < 1.0, "{share}, {drift}: {}", held.moved());
         }
-        let (still, drifting) = (hold::<ImageDesign>(share, 0.0), hold::<ImageDesign>(share, 2.0));
+        let (still, drifting) = (hold(ImageDesign, share, 0.0), hold(ImageDesign, share, 2.0));
         assert!(still.moved().abs() < 1e-12);
         assert_faults_says(&format!(
             "| {:.0} % of full scale | gauge | 2 Pa/h | {:.2} | ok |",
@@ -85,7 +88,7 @@ fn the_force_of_a_gauge_part_moves_by_less_than_a_percent_in_eight_hours() {
 #[test]
 fn weather_moves_the_force_of_an_absolute_part_and_it_says_so() {
     for weather in [25.0, 100.0] {
-        let held = hold::<WithAbsolutePart>(0.5, weather);
+        let held = hold(WithAbsolutePart, 0.5, weather);
         let aged = held.aged.expect("it cannot be followed");
         assert!(matches!(held.last.status(), Status::Warning(Warnings::ZERO_AGED)));
         assert_faults_says(&format!(
@@ -99,7 +102,7 @@ fn weather_moves_the_force_of_an_absolute_part_and_it_says_so() {
 #[test]
 fn weather_is_followed_while_nothing_touches() {
     // 8 m of stairs in 25 s up, and down again.
-    let mut world = World::<WithAbsolutePart>::zeroed(rest::<WithAbsolutePart>());
+    let mut world = World::zeroed(WithAbsolutePart, rest(&WithAbsolutePart));
     world.ask(fingertip::link::command::Command::Tare);
     let mut worst = 0.0_f64;
     for ms in 0..60_000 {
@@ -109,10 +112,10 @@ fn weather_is_followed_while_nothing_touches() {
         } else {
             (seconds - 2.0).min(25.0) * 0.32
         };
-        let pascals = rest::<WithAbsolutePart>() - height * 12.0;
-        let report = world.step(1000, Ok(sample::<WithAbsolutePart>(pascals)));
+        let pascals = rest(&WithAbsolutePart) - height * 12.0;
+        let report = world.step(1000, Ok(sample(&WithAbsolutePart, pascals)));
         if let Ok(reading) = report.outcome {
-            worst = worst.max(host_tests::world::rise::<WithAbsolutePart>(&report).map_or(0.0, f64::abs));
+            worst = worst.max(host_tests::world::rise(&WithAbsolutePart, &report).map_or(0.0, f64::abs));
             assert_ne!(reading.touch, Touch::Touched);
         }
     }

@@ -5,8 +5,6 @@ use crate::units::PressureRise;
 /// Constants of the design that tables were generated for; written by the generator next to them.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct DesignConstants {
-    /// The design's `name`.
-    pub name: &'static str,
     /// First eight bytes, big-endian, of the SHA-256 of the design's canonical text.
     pub hash: u64,
     /// Version of the tables' layout and of the generator.

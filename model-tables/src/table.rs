@@ -14,6 +14,8 @@
 //!
 //! The tables of a design are a constant, so the compiler folds everything but the coefficients.
 
+pub mod loaded;
+
 use crate::units::{Micronewtons, Nanometres, PressureRise};
 
 /// Powers of `s` beside 1 that a segment's sums are made of.
@@ -110,6 +112,9 @@ pub(crate) struct Place {
 }
 
 impl Layout {
+    /// Words of a segment at most.
+    pub const MOST_WORDS: usize = 6;
+
     /// Words of a segment. The first two hold the constant terms of force and indentation (with
     /// [`Constant::Half`] also their linear coefficients), each of the others the coefficients of one power: force in
     /// the upper half, indentation in the lower.

@@ -3,7 +3,6 @@
 
 use super::chip;
 use crate::image::ImageDesign;
-use crate::signal::design::Design;
 use crate::transducer::counts::{BLOCK_LENGTH, Block, PERIOD, Ring};
 use crate::transducer::ratiometric;
 use core::sync::atomic::{AtomicU32, Ordering, fence};

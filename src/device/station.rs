@@ -5,7 +5,7 @@ use crate::device::supervisor::Start;
 use crate::link::command::{Command, CommandKind, Outcome, Request};
 use crate::link::telemetry::{Answer, Hello, Message};
 use crate::signal::calibration::Calibration;
-use crate::signal::design::Design;
+use crate::signal::design::{Design, Parameters};
 use crate::signal::pipeline::Pipeline;
 use crate::signal::report::Report;
 use crate::signal::zero::{StartUp, Zero};
@@ -13,6 +13,7 @@ use crate::status::{Fault, LastFault, ResetCause, Status, Stored, Warnings};
 use crate::storage::store::StoreError;
 use crate::transducer::driver::Sample;
 use crate::units::Microseconds;
+use model_tables::constants::DesignConstants;
 use model_tables::units::Nanometres;
 
 /// From one hello to the next, microseconds.
@@ -105,8 +106,19 @@ pub struct Station<D> {
 }
 
 impl<D: Design> Station<D> {
-    /// A station that has seen nothing yet.
-    pub fn new(beginning: &Beginning) -> Self {
+    /// A station of a design that has seen nothing yet.
+    pub fn new(design: D, beginning: &Beginning) -> Self {
+        let &Parameters {
+            constants:
+                DesignConstants {
+                    hash,
+                    table_version,
+                    ref transducer,
+                    ..
+                },
+            period,
+            ..
+        } = design.parameters();
         let Beginning {
             reset_cause,
             start,
@@ -118,19 +130,16 @@ impl<D: Design> Station<D> {
             .when(refused)
             .and(Warnings::CLOCK.when(beginning.clock_failed));
         let calibration = beginning.calibration.unwrap_or_default();
+        let start_up = StartUp::after(reset_cause, start.kept, transducer.quantity);
         Self {
             counters: Counters::default(),
-            pipeline: Pipeline::new(
-                StartUp::after(reset_cause, start.kept, D::CONSTANTS.transducer.quantity),
-                calibration,
-                standing,
-            ),
+            pipeline: Pipeline::new(design, start_up, calibration, standing),
             hello: Hello {
                 firmware: beginning.firmware,
                 reset_cause,
-                design_hash: D::CONSTANTS.hash,
-                table_version: D::CONSTANTS.table_version,
-                report_period: Pipeline::<D>::PERIOD,
+                design_hash: hash,
+                table_version,
+                report_period: period,
                 stored,
                 last_fault: start.fault,
                 last_fault_detail: start.detail,
@@ -190,7 +199,7 @@ impl<D: Design> Station<D> {
             self.status = status;
             say(&Message::Report {
                 report,
-                pressure_fraction_bits: D::PRESSURE_FRACTION_BITS as u8,
+                pressure_fraction_bits: self.pipeline.parameters().pressure_fraction_bits as u8,
             });
         }
         report
@@ -241,7 +250,7 @@ impl<D: Design> Station<D> {
             }
             Command::Rate { every } => {
                 self.every = every;
-                self.hello.report_period = u32::from(every) * Pipeline::<D>::PERIOD;
+                self.hello.report_period = u32::from(every) * self.pipeline.parameters().period;
                 Outcome::Done
             }
         };

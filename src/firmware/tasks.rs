@@ -16,12 +16,11 @@ use fingertip::board::{self, Board, Clock, Ears, Line, Memory, SLOT, Watchdog};
 use fingertip::device::station::{Beginning, Station, ToStore};
 use fingertip::device::supervisor::{Breadcrumb, GOOD_RUN, Roster, Stage};
 use fingertip::image::ImageDesign;
+use fingertip::image::generated::NAME;
 use fingertip::link::command::{self, Request};
 use fingertip::link::outbox::Outbox;
 use fingertip::link::telemetry::Message;
 use fingertip::link::wire::{Deframer, Encoded};
-use fingertip::signal::design::Design;
-use fingertip::signal::pipeline::Pipeline;
 use fingertip::signal::report::Report;
 use fingertip::status::{Fault, LastFault, Status, Stored};
 use fingertip::storage::store::{Identity, Store, StoreError};
@@ -34,7 +33,7 @@ use static_cell::{ConstStaticCell, StaticCell};
 const LOGGED: u32 = 250;
 
 /// From one report to the next, microseconds.
-const PERIOD: u32 = Pipeline::<ImageDesign>::PERIOD;
+const PERIOD: u32 = ImageDesign::PARAMETERS.period;
 
 /// From one look at the tasks, and one meal of the watchdog, to the next, microseconds.
 const MEALS: u64 = 16_000;
@@ -129,7 +128,7 @@ async fn main(spawner: Spawner) {
     defmt::info!(
         "fingertip {=str}, design {=str} ({=u64:016x}), reset by {}",
         env!("CARGO_PKG_VERSION"),
-        constants.name,
+        NAME,
         constants.hash,
         defmt::Display2Format(&reset_cause)
     );
@@ -156,7 +155,7 @@ async fn signal(
     mut watchdog: Watchdog,
     beginning: &Beginning,
 ) -> ! {
-    let mut station = Station::<ImageDesign>::new(beginning);
+    let mut station = Station::new(ImageDesign, beginning);
     let mut crumb = Breadcrumb {
         detail: Stage::Running as u32,
         ..beginning.start.crumb
@@ -310,7 +309,7 @@ impl Log {
             defmt::info!(
                 "{=u64} us: {=i32} Pa over rest, {=i32} uN, {=i32} nm",
                 report.time.0,
-                measurement.pressure_rise.0 >> ImageDesign::PRESSURE_FRACTION_BITS,
+                measurement.pressure_rise.0 >> ImageDesign::PARAMETERS.pressure_fraction_bits,
                 measurement.force.0,
                 measurement.indentation.0
             );

@@ -5,8 +5,6 @@ use embassy_time::Delay;
 use embassy_time::{Duration, Instant, Timer};
 use fingertip::board::Port;
 use fingertip::image::ImageDesign;
-use fingertip::signal::design::Design;
-use fingertip::signal::pipeline::Pipeline;
 use fingertip::transducer::driver::Driver;
 use model_tables::constants;
 
@@ -59,7 +57,7 @@ impl Pace {
         let Some(due) = self.due else {
             return;
         };
-        let period = Duration::from_micros(u64::from(Pipeline::<ImageDesign>::PERIOD));
+        let period = Duration::from_micros(u64::from(ImageDesign::PARAMETERS.period));
         Timer::at(due).await;
         self.due = Some((due + period).max(Instant::now()));
     }

@@ -1,6 +1,7 @@
-//! Pressure rise -> force and indentation, through the tables of the design.
+//! Pressure rise -> force and indentation with their 1-sigma, through the tables of the design.
 
 use crate::signal::design::Design;
+use crate::signal::report::Sigma;
 use crate::status::Warnings;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
@@ -18,26 +19,78 @@ pub struct Contact {
 /// Force and indentation at a rise, with what the tables add to the warnings. Below zero both are 0; below
 /// [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) that is flagged.
 #[inline]
-pub fn contact<D: Design>(rise: PressureRise, warnings: Warnings) -> Contact {
-    let lowest_rest = const { D::CONSTANTS.transducer.lowest_rest(D::PRESSURE_FRACTION_BITS) };
-    let reading = D::lookup(rise);
+pub fn contact(design: &impl Design, rise: PressureRise, warnings: Warnings) -> Contact {
+    let reading = design.lookup(rise);
     Contact {
         force: reading.force,
         indentation: reading.indentation,
         warnings: warnings
             .and(Warnings::SATURATED.when(reading.saturated))
-            .and(Warnings::BELOW_ZERO.when(rise < lowest_rest)),
+            .and(Warnings::BELOW_ZERO.when(rise < design.parameters().lowest_rest)),
+    }
+}
+
+/// One deviation of the rise through the tables: what they give so much further on, or back at their end; from that end where
+/// the rise is beyond it, and from zero where it is below. At least one unit: what is uncertain in the pressure is so in all three.
+// On its own: woven into the reading's own lookup it takes the registers that this one needs.
+#[inline(never)]
+pub fn through_tables(design: &impl Design, rise: PressureRise, at: &Contact, sigma: PressureRise) -> Sigma {
+    let last = design.parameters().last_rise.0;
+    let rise = rise.0.clamp(0, last);
+    let above = rise.saturating_add(sigma.0);
+    let other = if above > last {
+        rise.saturating_sub(sigma.0)
+    } else {
+        above
+    };
+    let other = design.lookup(PressureRise(other));
+    // Outputs of the tables are not negative, so no difference exceeds the word.
+    let apart = |one: i32, another: i32| (one - another).abs().max(1);
+    Sigma {
+        pressure_rise: sigma,
+        force: Micronewtons(apart(other.force.0, at.force.0)),
+        indentation: Nanometres(apart(other.indentation.0, at.indentation.0)),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::test_design::{FORCE_END, INDENTATION_END, Linear, RISE_END};
+    use crate::signal::design::Parameters;
+    use crate::signal::test_design::{FORCE_END, INDENTATION_END, Linear, RISE_END, TRANSDUCERS};
+    use model_tables::table::Reading;
     use proptest::prelude::*;
 
+    fn beside(design: &impl Design, rise: i32, sigma: i32) -> Sigma {
+        let rise = PressureRise(rise);
+        through_tables(
+            design,
+            rise,
+            &contact(design, rise, Warnings::NONE),
+            PressureRise(sigma),
+        )
+    }
+
+    /// Many counts to a micronewton and to a nanometre.
+    struct Shallow(Linear);
+
+    impl Design for Shallow {
+        fn parameters(&self) -> &Parameters {
+            self.0.parameters()
+        }
+
+        fn lookup(&self, rise: PressureRise) -> Reading {
+            let reading = self.0.lookup(rise);
+            Reading {
+                force: Micronewtons(reading.force.0 >> 12),
+                indentation: Nanometres(reading.indentation.0 >> 12),
+                ..reading
+            }
+        }
+    }
+
     fn at(rise: i32) -> Contact {
-        contact::<Linear>(PressureRise(rise), Warnings::NONE)
+        contact(&Linear::NEW, PressureRise(rise), Warnings::NONE)
     }
 
     #[test]
@@ -67,7 +120,34 @@ mod tests {
         assert_eq!((beyond.force, beyond.indentation), (end.force, end.indentation));
     }
 
+    #[test]
+    fn at_the_end_of_the_tables_it_is_taken_from_below() {
+        let sigma = beside(&Linear::NEW, RISE_END - 5, 700);
+        assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700));
+        let below = beside(&Linear::NEW, -9_000, 700);
+        assert_eq!(below.force.0, 700);
+    }
+
+    #[test]
+    fn beyond_the_end_it_is_what_it_is_at_the_end() {
+        for beyond in [1, 700, 10_000, i32::MAX - RISE_END] {
+            let sigma = beside(&Linear::NEW, RISE_END + beyond, 700);
+            assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700), "{beyond}");
+        }
+    }
+
     proptest! {
+        #[test]
+        fn no_deviation_overflows(rise in any::<i32>(), sigma in 0..=i32::MAX) {
+            for sigma in [
+                beside(&Linear::NEW, rise, sigma),
+                beside(&Linear::with(TRANSDUCERS[4]), rise, sigma),
+                beside(&Shallow(Linear::NEW), rise, sigma),
+            ] {
+                prop_assert!(sigma.force.0 > 0 && sigma.indentation.0 > 0);
+            }
+        }
+
         #[test]
         fn every_rise_has_an_answer_that_never_falls(rise in any::<i32>(), step in any::<u16>()) {
             let (low, high) = (at(rise), at(rise.saturating_add(i32::from(step))));

@@ -1,20 +1,114 @@
-//! The fingertip a signal path is built for, as a type: its constants and tables fold into the code.
+//! The fingertip that a signal path is for: folded into the code of an image, or loaded at run time.
 
+use crate::signal::drift::Pace;
+use crate::signal::filter::Leaps;
+use crate::signal::fluid::Fall;
+use crate::signal::scale::Scale;
+use crate::signal::tare::gates::Gates;
+use crate::signal::touch::Thresholds;
+use crate::signal::uncertainty::Uncertainty;
+use crate::transducer;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
+use model_tables::table::loaded::LoadedTables;
 use model_tables::units::PressureRise;
 
-/// A design with its tables; the build script writes the one of the image.
+/// A design with its tables.
 pub trait Design {
-    /// What is known of the design beside its tables.
-    const CONSTANTS: DesignConstants;
-
-    /// `k`: pressures are counted in `1 / 2^k` pascal, 0 to 16.
-    const PRESSURE_FRACTION_BITS: u32;
-
-    /// The last rise that the tables cover; beyond it they are saturated.
-    const LAST_RISE: PressureRise;
+    /// What the signal path needs of the design beside its tables.
+    fn parameters(&self) -> &Parameters;
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
-    fn lookup(rise: PressureRise) -> Reading;
+    fn lookup(&self, rise: PressureRise) -> Reading;
+}
+
+/// What the stages need of a design, each in its own form, worked out once: by the compiler for an image.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Parameters {
+    /// The design itself.
+    pub constants: DesignConstants,
+    /// `k`: pressures are counted in `1 / 2^k` pascal, 0 to 16.
+    pub pressure_fraction_bits: u32,
+    /// The last rise that the tables cover; beyond it they are saturated.
+    pub last_rise: PressureRise,
+    /// Below this rise a reading is flagged.
+    pub lowest_rest: PressureRise,
+    /// From one sample to the next, microseconds.
+    pub period: u32,
+    /// Of the transducer's pressure.
+    pub scale: Scale,
+    /// Of a zero, without a stored calibration.
+    pub gates: Gates,
+    /// Of the filter.
+    pub leaps: Leaps,
+    /// Of a touch.
+    pub thresholds: Thresholds,
+    /// Of the zero's drift.
+    pub pace: Pace,
+    /// Of the zero, when it is a leak.
+    pub fall: Fall,
+    /// Of a rise.
+    pub uncertainty: Uncertainty,
+}
+
+impl Parameters {
+    /// For a design whose tables count pressures in `1 / 2^fraction_bits` pascal and end at `last_rise`.
+    ///
+    /// # Panics
+    /// For more than 16 fraction bits: at compile time for an image; loaded tables have no more.
+    pub const fn of(constants: DesignConstants, fraction_bits: u32, last_rise: PressureRise) -> Self {
+        let period = transducer::period(&constants.transducer.kind);
+        let gates = Gates::of(&constants, fraction_bits);
+        Self {
+            pressure_fraction_bits: fraction_bits,
+            last_rise,
+            lowest_rest: constants.transducer.lowest_rest(fraction_bits),
+            period,
+            scale: Scale::of(fraction_bits),
+            gates,
+            leaps: Leaps::of(&constants, fraction_bits, period),
+            thresholds: Thresholds::of(&constants, fraction_bits),
+            pace: Pace::of(&constants, fraction_bits, gates.travel()),
+            fall: Fall::of(&constants, fraction_bits, gates.far),
+            uncertainty: Uncertainty::of(&constants, fraction_bits, gates.reach()),
+            constants,
+        }
+    }
+
+    /// Two samples further apart than this are not next to each other, microseconds.
+    pub const fn gap(&self) -> u64 {
+        20 * self.period as u64
+    }
+}
+
+/// A design that is known at run time only.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadedDesign<'a> {
+    parameters: Parameters,
+    tables: LoadedTables<'a>,
+}
+
+impl<'a> LoadedDesign<'a> {
+    /// The design of these constants, with its tables.
+    pub const fn new(constants: DesignConstants, tables: LoadedTables<'a>) -> Self {
+        let layout = tables.layout();
+        Self {
+            parameters: Parameters::of(
+                constants,
+                layout.pressure_fraction_bits,
+                PressureRise(layout.maximum),
+            ),
+            tables,
+        }
+    }
+}
+
+impl Design for LoadedDesign<'_> {
+    fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    fn lookup(&self, rise: PressureRise) -> Reading {
+        self.tables.lookup(rise)
+    }
 }

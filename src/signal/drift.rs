@@ -167,7 +167,6 @@ impl Drift {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::design::Design;
     use crate::signal::test_design::Linear;
     use proptest::prelude::*;
 

@@ -107,7 +107,6 @@ impl Fluid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::design::Design;
     use crate::signal::test_design::Linear;
 
     fn fluid() -> Fluid {

@@ -1,30 +1,26 @@
 //! The stages, called in order.
 
 use crate::signal::calibration::{Calibration, Gain};
-use crate::signal::contact::contact;
-use crate::signal::design::Design;
-use crate::signal::drift::{Drift, Pace};
-use crate::signal::filter::{Filter, GROUP_DELAY, Leaps};
-use crate::signal::fluid::{Fall, Fluid};
+use crate::signal::contact::{contact, through_tables};
+use crate::signal::design::{Design, Parameters};
+use crate::signal::drift::Drift;
+use crate::signal::filter::{Filter, GROUP_DELAY};
+use crate::signal::fluid::Fluid;
 use crate::signal::report::{Measurement, Report};
-use crate::signal::scale::Scale;
 use crate::signal::stuck::StuckDetector;
-use crate::signal::tare::gates::Gates;
 use crate::signal::tare::{Tare, TareRefusal};
 use crate::signal::temperature::Temperature;
-use crate::signal::touch::{Thresholds, TouchDetector};
-use crate::signal::uncertainty::{Uncertainty, through_tables};
+use crate::signal::touch::TouchDetector;
 use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, Touch, Warnings};
-use crate::transducer;
 use crate::transducer::driver::Sample;
 use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
-use core::marker::PhantomData;
 use model_tables::units::Nanometres;
 
 /// The signal path of one fingertip.
 #[derive(Clone, Debug)]
 pub struct Pipeline<D> {
+    design: D,
     calibration: Calibration,
     /// What qualifies every reading since start-up.
     standing: Warnings,
@@ -42,31 +38,16 @@ pub struct Pipeline<D> {
     /// When the last sample was measured, and how long after the one before it.
     measured: Microseconds,
     spacing: u64,
-    design: PhantomData<D>,
 }
 
 impl<D: Design> Pipeline<D> {
-    /// From one sample to the next, microseconds.
-    pub const PERIOD: u32 = transducer::period(&D::CONSTANTS.transducer.kind);
-
-    /// Two samples further apart than this are not next to each other, microseconds.
-    const GAP: u64 = 20 * Self::PERIOD as u64;
-
-    const SCALE: Scale = Scale::of(D::PRESSURE_FRACTION_BITS);
-    const GATES: Gates = Gates::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
-    const LEAPS: Leaps = Leaps::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::PERIOD);
-    const THRESHOLDS: Thresholds = Thresholds::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS);
-    const PACE: Pace = Pace::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.travel());
-    const FALL: Fall = Fall::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.far);
-    const UNCERTAINTY: Uncertainty =
-        Uncertainty::of(&D::CONSTANTS, D::PRESSURE_FRACTION_BITS, Self::GATES.reach());
-
-    /// A signal path that has seen nothing yet, with what is stored of this fingertip. `standing` qualifies every
+    /// A signal path of a design that has seen nothing yet, with what is stored of this fingertip. `standing` qualifies every
     /// reading.
-    pub fn new(start_up: StartUp, calibration: Calibration, standing: Warnings) -> Self {
-        let gates = match calibration.zero_counts(Self::SCALE) {
-            Some(zero) => Self::GATES.with_stored(zero),
-            None => Self::GATES,
+    pub fn new(design: D, start_up: StartUp, calibration: Calibration, standing: Warnings) -> Self {
+        let parameters = design.parameters();
+        let gates = match calibration.zero_counts(parameters.scale) {
+            Some(zero) => parameters.gates.with_stored(zero),
+            None => parameters.gates,
         };
         Self {
             calibration,
@@ -75,19 +56,19 @@ impl<D: Design> Pipeline<D> {
             temperature: Temperature::new(
                 calibration.coefficient,
                 calibration.temperature,
-                D::PRESSURE_FRACTION_BITS,
+                parameters.pressure_fraction_bits,
             ),
             celsius: None,
             tare: Tare::new(gates, start_up),
             gain: Gain::new(calibration.gain),
-            filter: Filter::new(Self::LEAPS),
-            detector: TouchDetector::new(Self::THRESHOLDS),
+            filter: Filter::new(parameters.leaps),
+            detector: TouchDetector::new(parameters.thresholds),
             touch: Touch::Unknown,
-            drift: Drift::new(Self::PACE),
-            fluid: Fluid::new(Self::FALL),
+            drift: Drift::new(parameters.pace),
+            fluid: Fluid::new(parameters.fall),
             measured: Microseconds(0),
             spacing: 0,
-            design: PhantomData,
+            design,
         }
     }
 
@@ -95,7 +76,8 @@ impl<D: Design> Pipeline<D> {
     // A boundary that stays in the image, so that the instructions of a report can be counted there.
     #[inline(never)]
     pub fn step(&mut self, now: Microseconds, sample: Result<Sample, Fault>) -> Report {
-        let age = sample.map_or(Self::PERIOD / 2, |sample| sample.age);
+        let period = self.parameters().period;
+        let age = sample.map_or(period / 2, |sample| sample.age);
         let measured = Microseconds(now.0.saturating_sub(u64::from(age)));
         let sample = sample.and_then(|sample| self.stuck.step(measured, sample.raw).map(|()| sample));
         // A reading is of the sample before this one, however long ago that was.
@@ -104,11 +86,11 @@ impl<D: Design> Pipeline<D> {
         let uneven = spacing.abs_diff(core::mem::replace(&mut self.spacing, spacing));
         let outcome = match sample {
             Ok(sample) => {
-                if spacing == 0 || spacing > Self::GAP {
+                if spacing == 0 || spacing > self.parameters().gap() {
                     self.tare.interrupt(measured);
                     self.filter.interrupt();
                 }
-                self.measure(measured, sample, uneven <= u64::from(Self::PERIOD) / 4)
+                self.measure(measured, sample, uneven <= u64::from(period) / 4)
             }
             Err(fault) => {
                 self.tare.interrupt(measured);
@@ -116,7 +98,7 @@ impl<D: Design> Pipeline<D> {
                 Err(fault)
             }
         };
-        let delay = u64::from(GROUP_DELAY * Self::PERIOD);
+        let delay = u64::from(GROUP_DELAY * period);
         Report {
             time: match outcome {
                 Ok(_) => before,
@@ -132,7 +114,7 @@ impl<D: Design> Pipeline<D> {
             self.celsius = sample.temperature;
             self.temperature.step(sample.temperature, self.touch);
         }
-        let Pressure(pressure) = Self::SCALE.pressure(sample.pressure);
+        let Pressure(pressure) = self.parameters().scale.pressure(sample.pressure);
         let pressure = Pressure(pressure.saturating_sub(self.temperature.correction()));
         let (rise, zero) = self.tare.step(time, pressure, self.drift.counts())?;
         if self.tare.take_moved() {
@@ -148,18 +130,19 @@ impl<D: Design> Pipeline<D> {
         self.fluid.step(time, rise, self.zero_over_lowest(), touch);
 
         let missed = self.temperature.missed();
+        let parameters = self.parameters();
         let warnings = warnings
             .and(self.standing)
             .and(self.fluid.suspicions())
             .and(Warnings::ZERO_AGED.when(aged && verified))
-            .and(Warnings::TEMPERATURE.when(missed > Self::THRESHOLDS.touch.0));
-        let contact = contact::<D>(rise, warnings);
-        let sigma = Self::UNCERTAINTY.rise(verified, drifted, missed);
+            .and(Warnings::TEMPERATURE.when(missed > parameters.thresholds.touch.0));
+        let contact = contact(&self.design, rise, warnings);
+        let sigma = parameters.uncertainty.rise(verified, drifted, missed);
         Ok(Measurement {
             pressure_rise: rise,
             force: contact.force,
             indentation: contact.indentation,
-            sigma: through_tables::<D>(rise, &contact, sigma),
+            sigma: through_tables(&self.design, rise, &contact, sigma),
             touch,
             warnings: contact.warnings,
         })
@@ -217,9 +200,10 @@ impl<D: Design> Pipeline<D> {
         let zero = self.zero().filter(|zero| zero.verified)?;
         let counts = i64::from(zero.pressure.0) + i64::from(self.temperature.correction());
         // 2^33 * 1000.
-        let millipascals = (counts * 1000) >> D::PRESSURE_FRACTION_BITS;
+        let parameters = self.parameters();
+        let millipascals = (counts * 1000) >> parameters.pressure_fraction_bits;
         let zero = Millipascals(i32::try_from(millipascals).ok()?);
-        let quantity = D::CONSTANTS.transducer.quantity;
+        let quantity = parameters.constants.transducer.quantity;
         Some(self.calibration.rezeroed(zero, self.celsius, quantity))
     }
 
@@ -229,12 +213,19 @@ impl<D: Design> Pipeline<D> {
         self.standing = self.standing.without(Warnings::CALIBRATION_REFUSED);
         self.fluid.clear();
         // What was stored is the zero that serves. Temperature goes on being compensated as since start-up.
-        self.tare.refer_to(match (calibration, self.zero()) {
-            (Some(_), Some(zero)) => Self::GATES.with_stored(zero.pressure),
-            _ => Self::GATES,
-        });
+        let gates = match (calibration, self.zero()) {
+            (Some(_), Some(zero)) => self.parameters().gates.with_stored(zero.pressure),
+            _ => self.parameters().gates,
+        };
+        self.tare.refer_to(gates);
         self.calibration = calibration.unwrap_or_default();
         self.gain = Gain::new(self.calibration.gain);
+    }
+
+    /// What the signal path needs of its design.
+    #[inline]
+    pub fn parameters(&self) -> &Parameters {
+        self.design.parameters()
     }
 
     /// The calibration that serves.

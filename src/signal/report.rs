@@ -58,8 +58,7 @@ impl Report {
     /// How far to believe the report.
     pub fn status(&self) -> Status {
         match self.outcome {
-            Ok(Measurement { warnings, .. }) if warnings == Warnings::NONE => Status::Ok,
-            Ok(Measurement { warnings, .. }) => Status::Warning(warnings),
+            Ok(Measurement { warnings, .. }) => Status::qualified(warnings),
             Err(fault) => Status::Fault(fault),
         }
     }

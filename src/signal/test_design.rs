@@ -1,12 +1,13 @@
 //! Fingertips with straight lines for tables, so that tests can expect by hand.
 
-use crate::signal::design::Design;
+use crate::signal::design::{Design, Parameters};
 use model_tables::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
 use model_tables::table::Reading;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-/// Rests at 20 kPa; 1 uN and 1 nm for a count of 1/256 Pa, up to 40 kPa over rest.
-pub(crate) struct Linear;
+/// 1 uN and 1 nm for a count of 1/256 Pa, up to the end of its tables.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Linear(Parameters);
 
 /// 40 kPa.
 pub(crate) const RISE_END: i32 = 40_000 << 8;
@@ -15,9 +16,9 @@ pub(crate) const FORCE_END: i32 = RISE_END;
 /// Indentation at the end, nanometres.
 pub(crate) const INDENTATION_END: i32 = RISE_END;
 
-impl Design for Linear {
-    const CONSTANTS: DesignConstants = DesignConstants {
-        name: "linear",
+impl Linear {
+    /// Of [`Self::NEW`].
+    pub(crate) const CONSTANTS: DesignConstants = DesignConstants {
         hash: 1,
         table_version: 1,
         certificate: 2,
@@ -35,22 +36,47 @@ impl Design for Linear {
         },
     };
 
-    const PRESSURE_FRACTION_BITS: u32 = 8;
+    /// A count is 1/256 Pa.
+    pub(crate) const PRESSURE_FRACTION_BITS: u32 = 8;
 
-    const LAST_RISE: PressureRise = PressureRise(RISE_END);
+    /// Rests at 20 kPa and is pressed up to 40 kPa over rest.
+    pub(crate) const NEW: Self = Self(Parameters::of(
+        Self::CONSTANTS,
+        Self::PRESSURE_FRACTION_BITS,
+        PressureRise(RISE_END),
+    ));
 
-    fn lookup(rise: PressureRise) -> Reading {
-        let held = rise.0.clamp(0, RISE_END);
+    /// Rests at 1 kPa and is pressed up to 10 kPa over that, with this transducer.
+    pub(crate) const fn with(transducer: Transducer) -> Self {
+        let constants = DesignConstants {
+            rest_pressure: 1_000,
+            maximum_pressure: 11_000,
+            transducer,
+            ..Self::CONSTANTS
+        };
+        let end = PressureRise(10_000 << 8);
+        Self(Parameters::of(constants, Self::PRESSURE_FRACTION_BITS, end))
+    }
+}
+
+impl Design for Linear {
+    fn parameters(&self) -> &Parameters {
+        &self.0
+    }
+
+    fn lookup(&self, rise: PressureRise) -> Reading {
+        let end = self.0.last_rise.0;
+        let held = rise.0.clamp(0, end);
         Reading {
             force: Micronewtons(held),
             indentation: Nanometres(held),
-            saturated: rise.0 > RISE_END,
+            saturated: rise.0 > end,
             negative: rise.0 < 0,
         }
     }
 }
 
-/// The transducers of [`With`]: every kind there is, and an analogue one of either quantity.
+/// Every kind of transducer there is, and an analogue one of either quantity.
 pub(crate) const TRANSDUCERS: [Transducer; 5] = [
     Linear::CONSTANTS.transducer,
     // NXP MPX4250A: Vs (0.004 P - 0.04) from 20 to 250 kPa absolute, so 4 to 96 % of the supply.
@@ -83,26 +109,3 @@ pub(crate) const TRANSDUCERS: [Transducer; 5] = [
         ..Linear::CONSTANTS.transducer
     },
 ];
-
-/// The same fingertip, at rest at 1 kPa and pressed up to 10 kPa over that, with one of the [`TRANSDUCERS`].
-pub(crate) struct With<const TRANSDUCER: usize>;
-
-impl<const TRANSDUCER: usize> Design for With<TRANSDUCER> {
-    const CONSTANTS: DesignConstants = DesignConstants {
-        rest_pressure: 1_000,
-        maximum_pressure: 11_000,
-        transducer: TRANSDUCERS[TRANSDUCER],
-        ..Linear::CONSTANTS
-    };
-
-    const PRESSURE_FRACTION_BITS: u32 = Linear::PRESSURE_FRACTION_BITS;
-
-    const LAST_RISE: PressureRise = PressureRise(10_000 << 8);
-
-    fn lookup(rise: PressureRise) -> Reading {
-        Reading {
-            saturated: rise > Self::LAST_RISE,
-            ..Linear::lookup(rise.min(Self::LAST_RISE))
-        }
-    }
-}

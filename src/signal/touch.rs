@@ -75,7 +75,6 @@ impl TouchDetector {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::design::Design;
     use crate::signal::test_design::Linear;
     use proptest::prelude::*;
 

@@ -2,7 +2,7 @@
 //! tables of a design.
 
 use fingertip::signal::contact::{Contact, contact};
-use fingertip::signal::design::Design;
+use fingertip::signal::design::{Design, Parameters};
 use fingertip::signal::report::Measurement;
 use fingertip::status::Warnings;
 use fingertip::units::{Pressure, saturate};
@@ -21,11 +21,11 @@ const CORNERS: [i32; 4] = [i32::MIN, -1, i32::MAX - 1, i32::MAX];
 pub const LENGTH: usize = CONSECUTIVE as usize + SPREAD as usize + CORNERS.len();
 
 /// The inputs, in the order the chip answers them.
-pub fn inputs<D: Design>() -> impl Iterator<Item = PressureRise> {
-    let constants = &D::CONSTANTS;
+pub fn inputs(design: &Parameters) -> impl Iterator<Item = PressureRise> + use<> {
+    let constants = &design.constants;
     let rise = constants.maximum_pressure.saturating_sub(constants.rest_pressure);
     // Below 2^31, so that the products below stay under 2^31 * 18/16 * 2^13.
-    let end = i64::from(Pressure::from_pascals(rise, D::PRESSURE_FRACTION_BITS).0);
+    let end = i64::from(Pressure::from_pascals(rise, design.pressure_fraction_bits).0);
     let consecutive = 0..CONSECUTIVE;
     let spread = (0..SPREAD).map(move |i| end * 18 / 16 * i / SPREAD - end / 16);
     consecutive
@@ -35,12 +35,12 @@ pub fn inputs<D: Design>() -> impl Iterator<Item = PressureRise> {
 }
 
 /// What chip and host answer to an input.
-pub fn answer<D: Design>(rise: PressureRise) -> Measurement {
+pub fn answer(design: &impl Design, rise: PressureRise) -> Measurement {
     let Contact {
         force,
         indentation,
         warnings,
-    } = contact::<D>(rise, Warnings::NONE);
+    } = contact(design, rise, Warnings::NONE);
     Measurement {
         pressure_rise: rise,
         force,
@@ -57,8 +57,8 @@ mod tests {
 
     #[test]
     fn the_sweep_covers_the_tables_and_both_sides() {
-        let end = ImageDesign::LAST_RISE.0;
-        let inputs: Vec<i32> = inputs::<ImageDesign>().map(|rise| rise.0).collect();
+        let end = ImageDesign::PARAMETERS.last_rise.0;
+        let inputs: Vec<i32> = inputs(&ImageDesign::PARAMETERS).map(|rise| rise.0).collect();
         assert_eq!(inputs.len(), LENGTH);
         assert_eq!(inputs[4095], 4095);
         assert!(inputs[4096] < 0);

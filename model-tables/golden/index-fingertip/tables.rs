@@ -1,8 +1,10 @@
 // Tables of the design `index-fingertip`, 128 bytes. Generated: change the design, not this file.
 
+/// Its `name`.
+pub const NAME: &str = "index-fingertip";
+
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    name: "index-fingertip",
     hash: 0x57e21f1b2d57bec1,
     table_version: 4,
     certificate: 0x549fcf4022cbe870,

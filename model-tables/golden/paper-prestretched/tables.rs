@@ -1,8 +1,10 @@
 // Tables of the design `paper-prestretched`, 112 bytes. Generated: change the design, not this file.
 
+/// Its `name`.
+pub const NAME: &str = "paper-prestretched";
+
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    name: "paper-prestretched",
     hash: 0x0b0805c0f73222b7,
     table_version: 4,
     certificate: 0x4b1a543d36b1a024,

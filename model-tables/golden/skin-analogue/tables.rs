@@ -1,8 +1,10 @@
 // Tables of the design `skin-analogue`, 112 bytes. Generated: change the design, not this file.
 
+/// Its `name`.
+pub const NAME: &str = "skin-analogue";
+
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    name: "skin-analogue",
     hash: 0x73a603700cd3b677,
     table_version: 4,
     certificate: 0x21a8c7fc0ffa92d6,

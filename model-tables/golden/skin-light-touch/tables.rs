@@ -1,8 +1,10 @@
 // Tables of the design `skin-light-touch`, 160 bytes. Generated: change the design, not this file.
 
+/// Its `name`.
+pub const NAME: &str = "skin-light-touch";
+
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    name: "skin-light-touch",
     hash: 0x43755a609c58964e,
     table_version: 4,
     certificate: 0x509f9ad5043e9ddd,

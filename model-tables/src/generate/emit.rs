@@ -8,6 +8,7 @@ use super::TABLE_VERSION;
 use super::certify::Errors;
 use super::design::{Generated, Limit, integer};
 use super::owned::OwnedTables;
+use crate::constants::DesignConstants;
 use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
@@ -18,6 +19,18 @@ impl Generated {
     /// Rust source of `TABLES` and `DESIGN`, for `include!`.
     pub fn rust_source(&self) -> String {
         rust_source(self)
+    }
+
+    /// What the firmware needs to know of the design beside its tables.
+    pub fn constants(&self) -> DesignConstants {
+        DesignConstants {
+            hash: self.hash(),
+            table_version: TABLE_VERSION,
+            certificate: self.certificate_hash(),
+            rest_pressure: integer(self.rest_pressure),
+            maximum_pressure: integer(self.rest_pressure + self.end.pressure_rise),
+            transducer: self.transducer(),
+        }
     }
 
     /// The tables as bytes; little-endian: `FTIP`, `u32` table version, `u64` design hash, the fields of
@@ -45,7 +58,8 @@ fn rust_source(generated: &Generated) -> String {
 
 fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     let tables = &generated.certified.tables;
-    let transducer = generated.transducer();
+    let constants = generated.constants();
+    let transducer = &constants.transducer;
     let layout = &tables.layout;
     let shape = format!(
         "model_tables::table::Tables<{}, {}>",
@@ -60,9 +74,10 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     )?;
     writeln!(
         out,
-        "/// What the firmware needs to know of the design beside its tables.\n\
+        "/// Its `name`.\n\
+         pub const NAME: &str = {:?};\n\n\
+         /// What the firmware needs to know of the design beside its tables.\n\
          pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {{\n\
-         \x20   name: {:?},\n\
          \x20   hash: {:#018x},\n\
          \x20   table_version: {},\n\
          \x20   certificate: {:#018x},\n\
@@ -77,11 +92,11 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
          \x20   }},\n\
          }};\n",
         generated.design.name,
-        generated.hash(),
-        TABLE_VERSION,
-        generated.certificate_hash(),
-        integer(generated.rest_pressure),
-        integer(generated.rest_pressure + generated.end.pressure_rise),
+        constants.hash,
+        constants.table_version,
+        constants.certificate,
+        constants.rest_pressure,
+        constants.maximum_pressure,
         transducer.range,
         transducer.resolution,
         transducer.noise,

@@ -22,7 +22,6 @@ const JUMP: Result<i32, Fault> = Err(Fault::Jump);
 
 #[test]
 fn leaps_of_a_design_are_its_noise_and_its_fastest_press() {
-    use crate::signal::design::Design;
     use crate::signal::test_design::Linear;
     // 8 grains of 10 Pa; 40 kPa in 4 ms; at 1/256 Pa.
     let leaps = Leaps::of(&Linear::CONSTANTS, 8, 1000);

@@ -1,7 +1,7 @@
 //! Every transducer in any air: samples as the part gives them, so the air is in those of an absolute one.
 
 use super::*;
-use crate::signal::test_design::{TRANSDUCERS, With};
+use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::{Status, Warnings};
 use model_tables::constants::{AIR, Quantity};
 use proptest::prelude::*;
@@ -13,18 +13,20 @@ const DENSEST: f64 = AIR[1] as f64;
 const GRAIN: f64 = 10.0;
 
 /// A fingertip in the air; one step is one sample of its transducer.
-struct Life<D> {
-    pipeline: Pipeline<D>,
+struct Life {
+    pipeline: Pipeline<Linear>,
     now: u64,
     /// Pascals.
     air: f64,
     random: u64,
 }
 
-impl<D: Design> Life<D> {
-    fn new(start_up: StartUp, calibration: Calibration, air: f64) -> Self {
+impl Life {
+    /// With one of the [`TRANSDUCERS`].
+    fn new(transducer: usize, start_up: StartUp, calibration: Calibration, air: f64) -> Self {
+        let design = Linear::with(TRANSDUCERS[transducer]);
         Self {
-            pipeline: Pipeline::new(start_up, calibration, Warnings::NONE),
+            pipeline: Pipeline::new(design, start_up, calibration, Warnings::NONE),
             now: 0,
             air,
             random: 0x9E37_79B9_7F4A_7C15,
@@ -32,29 +34,43 @@ impl<D: Design> Life<D> {
     }
 
     /// Switched on with nothing stored and told that nothing presses.
-    fn zeroed(air: f64) -> Self {
-        let mut life = Self::new(StartUp::Measured, Calibration::default(), air);
+    fn zeroed(transducer: usize, air: f64) -> Self {
+        let mut life = Self::new(transducer, StartUp::Measured, Calibration::default(), air);
         life.run(3.0, |_| 0.0);
         assert_eq!(life.tare(0.0), Ok(()));
         life.run(0.1, |_| 0.0);
         life
     }
 
-    const ABSOLUTE: bool = matches!(D::CONSTANTS.transducer.quantity, Quantity::Absolute);
+    fn is_absolute(&self) -> bool {
+        self.pipeline.parameters().constants.transducer.quantity == Quantity::Absolute
+    }
+
+    /// What a start says until someone says that nothing presses.
+    fn unverified(&self) -> Status {
+        if self.is_absolute() {
+            Status::Warning(Warnings::ZERO_UNVERIFIED)
+        } else {
+            Status::Ok
+        }
+    }
 
     fn step(&mut self, rise: f64) -> Report {
-        self.now += u64::from(Pipeline::<D>::PERIOD);
+        let Parameters {
+            constants, period, ..
+        } = *self.pipeline.parameters();
+        self.now += u64::from(period);
         self.random ^= self.random << 13;
         self.random ^= self.random >> 7;
         self.random ^= self.random << 17;
         let noise = (self.random % 4_000) as f64 / 1_000.0 - 2.0;
-        let air = if Self::ABSOLUTE { self.air } else { 0.0 };
-        let pascals = f64::from(D::CONSTANTS.rest_pressure) + air + rise + noise;
+        let air = if self.is_absolute() { self.air } else { 0.0 };
+        let pascals = f64::from(constants.rest_pressure) + air + rise + noise;
         let millipascals = (pascals * 1000.0).round() as i32;
         let sample = Sample {
             pressure: Millipascals(millipascals),
-            headroom: Millipascals(D::CONSTANTS.transducer.range[1] * 1000 - millipascals),
-            age: Pipeline::<D>::PERIOD / 2,
+            headroom: Millipascals(constants.transducer.range[1] * 1000 - millipascals),
+            age: period / 2,
             ..Sample::default()
         };
         self.pipeline.step(Microseconds(self.now), Ok(sample))
@@ -105,62 +121,53 @@ impl<D: Design> Life<D> {
         for report in self.run(0.4, |_| rise) {
             assert_eq!(report.status(), status, "air {}", self.air);
             let read = report.outcome.expect("a reading").pressure_rise;
-            let read = read.pascals(D::PRESSURE_FRACTION_BITS);
+            let read = read.pascals(Linear::PRESSURE_FRACTION_BITS);
             assert!((read - rise).abs() < GRAIN, "{read} for {rise} in {}", self.air);
         }
     }
 }
 
-/// What a start says until someone says that nothing presses.
-fn unverified<D: Design>() -> Status {
-    if Life::<D>::ABSOLUTE {
-        Status::Warning(Warnings::ZERO_UNVERIFIED)
-    } else {
-        Status::Ok
-    }
-}
-
 /// Start, tare, press, undo, save; another start in other air; a reset in a grasp; forget.
-fn whole_life<D: Design>(air: f64, later: f64, press: f64) {
-    let mut life = Life::<D>::new(StartUp::Measured, Calibration::default(), air);
+fn whole_life(transducer: usize, air: f64, later: f64, press: f64) {
+    let mut life = Life::new(transducer, StartUp::Measured, Calibration::default(), air);
     life.run(0.5, |_| 0.0);
-    life.holds(0.0, unverified::<D>());
+    life.holds(0.0, life.unverified());
     assert_eq!(life.tare(0.0), Ok(()));
     life.run(0.1, |_| 0.0);
     life.press(press, Status::Ok);
 
     life.pipeline.undo_tare().expect("there is one");
     life.run(0.1, |_| 0.0);
-    life.holds(0.0, unverified::<D>());
+    life.holds(0.0, life.unverified());
     assert_eq!(life.tare(0.0), Ok(()));
     life.run(0.1, |_| 0.0);
     let stored = life.pipeline.calibration_to_store().expect("it is verified");
-    assert!(stored.is_plausible(D::CONSTANTS.transducer.range));
+    assert!(stored.is_plausible(TRANSDUCERS[transducer].range));
     life.pipeline.calibrated(Some(stored));
     life.press(press, Status::Ok);
     assert_eq!(life.tare(0.0), Ok(()));
 
     // Switched on again, elsewhere.
-    let mut again = Life::<D>::new(StartUp::Measured, stored, later);
+    let mut again = Life::new(transducer, StartUp::Measured, stored, later);
     again.run(0.5, |_| 0.0);
-    again.press(press, unverified::<D>());
+    again.press(press, again.unverified());
     assert_eq!(again.tare(0.0), Ok(()));
     again.run(0.1, |_| 0.0);
     again.press(press, Status::Ok);
 
     // A reset in a grasp, as nobody saw it coming: with the zero from before, and without.
     let kept = again.pipeline.zero().expect("it is zeroed");
-    let mut reset = Life::<D>::new(StartUp::Kept(kept), stored, later);
+    let mut reset = Life::new(transducer, StartUp::Kept(kept), stored, later);
     reset.run(0.1, |_| press);
     reset.holds(press, Status::Ok);
     reset.pipeline.calibrated(None);
     reset.lift(press, Status::Ok);
     reset.press(press, Status::Ok);
 
-    let mut lost = Life::<D>::new(StartUp::Stored, stored, later);
+    let mut lost = Life::new(transducer, StartUp::Stored, stored, later);
     lost.run(0.1, |_| press);
     for report in lost.run(3.0, |_| press) {
-        if Life::<D>::ABSOLUTE {
+        if lost.is_absolute() {
             assert_eq!(report.outcome, Err(Fault::Zeroing));
         } else {
             assert_eq!(report.status(), Status::Warning(Warnings::ZERO_UNVERIFIED));
@@ -180,17 +187,7 @@ proptest! {
         later in THINNEST..=DENSEST,
         press in 200.0..9_900.0_f64,
     ) {
-        on(transducer, air, later, press);
-    }
-}
-
-fn on(transducer: usize, air: f64, later: f64, press: f64) {
-    match transducer {
-        0 => whole_life::<With<0>>(air, later, press),
-        1 => whole_life::<With<1>>(air, later, press),
-        2 => whole_life::<With<2>>(air, later, press),
-        3 => whole_life::<With<3>>(air, later, press),
-        _ => whole_life::<With<4>>(air, later, press),
+        whole_life(transducer, air, later, press);
     }
 }
 
@@ -203,7 +200,7 @@ fn every_transducer_reads_right_at_the_ends_of_the_air_and_at_sea_level() {
             [80_000.0, 101_325.0],
             [101_325.0, 80_000.0],
         ] {
-            on(transducer, air, later, 9_900.0);
+            whole_life(transducer, air, later, 9_900.0);
         }
     }
 }
@@ -211,7 +208,7 @@ fn every_transducer_reads_right_at_the_ends_of_the_air_and_at_sea_level() {
 #[test]
 fn an_absolute_transducer_that_finds_no_zero_at_start_has_a_reason_and_no_number() {
     let restless = |since: f64| 400.0 * (60.0 * since).sin();
-    let mut life = Life::<With<4>>::new(StartUp::Measured, Calibration::default(), 101_325.0);
+    let mut life = Life::new(4, StartUp::Measured, Calibration::default(), 101_325.0);
     for report in life.run(6.0, restless) {
         assert_eq!(report.outcome, Err(Fault::Zeroing));
     }
@@ -229,7 +226,7 @@ fn an_absolute_transducer_that_finds_no_zero_at_start_has_a_reason_and_no_number
 #[test]
 fn a_press_that_no_air_explains_is_no_zero_of_an_absolute_transducer() {
     // 108 kPa and 2.5 % of 90 kPa: up to 110.25 kPa over rest may be air.
-    let mut life = Life::<With<4>>::new(StartUp::Measured, Calibration::default(), DENSEST);
+    let mut life = Life::new(4, StartUp::Measured, Calibration::default(), DENSEST);
     for report in life.run(4.0, |_| 2_300.0) {
         assert_eq!(report.outcome, Err(Fault::Zeroing));
     }
@@ -240,7 +237,7 @@ fn a_press_that_no_air_explains_is_no_zero_of_an_absolute_transducer() {
 
 #[test]
 fn an_unverified_zero_of_an_absolute_transducer_may_be_off_by_most_of_the_air() {
-    let mut life = Life::<With<4>>::new(StartUp::Measured, Calibration::default(), 101_325.0);
+    let mut life = Life::new(4, StartUp::Measured, Calibration::default(), 101_325.0);
     life.run(0.5, |_| 0.0);
     let sigma = life.step(0.0).outcome.expect("a reading").sigma;
     // Half of 48 kPa and 2.25 kPa, uniform: over sqrt 3.
@@ -253,7 +250,7 @@ fn an_unverified_zero_of_an_absolute_transducer_may_be_off_by_most_of_the_air() 
 fn neither_weather_nor_a_climb_is_a_leak() {
     // From the coast to 4200 m as fast as it is followed, and faster.
     for seconds in [13_000.0, 600.0] {
-        let mut life = Life::<With<4>>::zeroed(DENSEST);
+        let mut life = Life::zeroed(4, DENSEST);
         let from = life.now;
         loop {
             let since = (life.now - from) as f64 / 1e6;
@@ -271,9 +268,9 @@ fn neither_weather_nor_a_climb_is_a_leak() {
 
 #[test]
 fn lower_than_the_thinnest_air_allows_is_a_leak() {
-    let mut life = Life::<With<1>>::zeroed(THINNEST);
+    let mut life = Life::zeroed(1, THINNEST);
     // An eighth of 1 kPa and 2.5 % of 230 kPa below the rest pressure in the thinnest air.
-    let leaks = |life: &mut Life<With<1>>, fall: f64| {
+    let leaks = |life: &mut Life, fall: f64| {
         let last = life.run(1.5, |_| -fall).pop().expect("a report");
         last.outcome
             .expect("a reading")
@@ -286,7 +283,7 @@ fn lower_than_the_thinnest_air_allows_is_a_leak() {
 
 #[test]
 fn a_zero_that_the_air_has_left_behind_gives_way_once_it_has_aged() {
-    let mut life = Life::<With<4>>::zeroed(90_000.0);
+    let mut life = Life::zeroed(4, 90_000.0);
     // Down a hill within a minute: denser air, which is no press.
     life.run(60.0, |since| 50.0 * since);
     assert_eq!(life.tare(3_000.0), Err(TareRefusal::Touched));

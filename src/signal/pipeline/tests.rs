@@ -30,7 +30,7 @@ fn pascals(pascals: i32) -> PressureRise {
 impl Bench {
     fn new(start_up: StartUp) -> Self {
         Self {
-            pipeline: Pipeline::new(start_up, Calibration::default(), Warnings::NONE),
+            pipeline: Pipeline::new(Linear::NEW, start_up, Calibration::default(), Warnings::NONE),
             milliseconds: 0,
         }
     }
@@ -217,7 +217,7 @@ fn temperature_is_compensated_untouched_and_held_in_contact() {
         gain: 0,
     };
     let mut bench = Bench {
-        pipeline: Pipeline::new(StartUp::Measured, calibration, Warnings::NONE),
+        pipeline: Pipeline::new(Linear::NEW, StartUp::Measured, calibration, Warnings::NONE),
         milliseconds: 0,
     };
     let warm = |pascals: f64, centidegrees: i16| {
@@ -246,14 +246,14 @@ fn what_is_stored_is_the_zero_that_serves_and_serves_at_the_next_start() {
     let calibration = bench.pipeline.calibration_to_store().expect("it is verified");
     assert!((calibration.zero.expect("a zero").0 - 20_100_000).abs() < 100);
     let mut next = Bench {
-        pipeline: Pipeline::new(StartUp::Measured, calibration, Warnings::NONE),
+        pipeline: Pipeline::new(Linear::NEW, StartUp::Measured, calibration, Warnings::NONE),
         milliseconds: 0,
     };
     // 300 Pa over the design's rest pressure, 200 over the stored zero.
     assert_eq!(next.steps(400, Ok(at(20_300.0))).status(), Status::Ok);
     // A still press at power-up of 300 Pa over it is not taken for the zero.
     let mut pressed = Bench {
-        pipeline: Pipeline::new(StartUp::Measured, calibration, Warnings::NONE),
+        pipeline: Pipeline::new(Linear::NEW, StartUp::Measured, calibration, Warnings::NONE),
         milliseconds: 0,
     };
     let report = pressed.steps(2_100, Ok(at(20_400.0)));
@@ -270,7 +270,7 @@ fn the_gain_trim_scales_the_rise() {
         ..Calibration::default()
     };
     let mut bench = Bench {
-        pipeline: Pipeline::new(StartUp::Measured, calibration, Warnings::NONE),
+        pipeline: Pipeline::new(Linear::NEW, StartUp::Measured, calibration, Warnings::NONE),
         milliseconds: 0,
     };
     bench.steps(400, Ok(at(20_000.0)));
@@ -286,6 +286,7 @@ fn the_gain_trim_scales_the_rise() {
 fn what_stands_since_start_up_qualifies_every_reading_until_it_is_seen_to() {
     let mut bench = Bench {
         pipeline: Pipeline::new(
+            Linear::NEW,
             StartUp::Measured,
             Calibration::default(),
             Warnings::CALIBRATION_REFUSED,
@@ -321,7 +322,7 @@ proptest! {
         stored in any::<bool>(),
     ) {
         let start_up = if stored { StartUp::Stored } else { StartUp::Measured };
-        let mut pipeline = Pipeline::<Linear>::new(start_up, Calibration::default(), Warnings::NONE);
+        let mut pipeline = Pipeline::new(Linear::NEW, start_up, Calibration::default(), Warnings::NONE);
         for (time, [pressure, headroom], age, fault) in steps {
             let sample = Sample {
                 pressure: Millipascals(pressure),

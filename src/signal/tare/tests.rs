@@ -293,13 +293,14 @@ fn a_stored_zero_of_an_absolute_part_is_of_other_air() {
 
 #[test]
 fn the_gates_of_an_absolute_part_hold_the_air() {
-    use crate::signal::test_design::With;
+    use crate::signal::test_design::{Linear, TRANSDUCERS};
+    let with = |transducer: usize| Linear::with(TRANSDUCERS[transducer]).parameters().gates;
     // Rests at 1 kPa; 2.5 % of 90 kPa; 1/256 Pa a count.
-    let gates = Gates::of(&With::<4>::CONSTANTS, 8);
+    let gates = with(4);
     assert_eq!(gates.expected, [Pressure(61_000 << 8), Pressure(109_000 << 8)]);
     assert_eq!(gates.far, 2_250 << 8);
     assert_eq!((gates.travel(), gates.reach()), (50_250 << 8, 26_250 << 8));
-    let gauge = Gates::of(&With::<0>::CONSTANTS, 8);
+    let gauge = with(0);
     assert_eq!(gauge.expected, [Pressure(1_000 << 8); 2]);
     assert_eq!((gauge.travel(), gauge.reach()), (2_500 << 8, 2_500 << 8));
 }

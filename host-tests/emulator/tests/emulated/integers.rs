@@ -46,8 +46,8 @@ fn host_and_chip_give_the_same_integers_everywhere_in_and_around_the_tables() {
         .plant(scenario)
         .expect("the default design can be pressed");
     let outcome = bench::run(&image, plant, LIMIT, &[], Readings::default()).expect("the image runs");
-    let expected: Vec<Measurement> = lookup_sweep::inputs::<ImageDesign>()
-        .map(lookup_sweep::answer::<ImageDesign>)
+    let expected: Vec<Measurement> = lookup_sweep::inputs(&ImageDesign::PARAMETERS)
+        .map(|rise| lookup_sweep::answer(&ImageDesign, rise))
         .collect();
     assert!(expected.len() >= 10_000);
     let readings = outcome.listener.readings;

@@ -8,7 +8,6 @@ use emulator::record::{Record, Recorder, Row};
 use emulator::scenario::Scenario;
 use fingertip::image::ImageDesign;
 use fingertip::signal::calibration::Calibration;
-use fingertip::signal::design::Design;
 use fingertip::status::{Status, Stored, Warnings};
 use fingertip::storage::store::Identity;
 use fingertip::units::Millipascals;

@@ -249,26 +249,45 @@ fn complaints(story: Story, record: &Record) -> Vec<String> {
     complaints
 }
 
-/// All stories of one kind in both airs.
-fn of_kind(design: &FingertipDesign) -> Vec<(f64, Vec<Told>)> {
+/// The stories of one kind in both airs that are wanted, by number of the air and of the story.
+fn of_kind(design: &FingertipDesign, wanted: impl Fn(usize, usize) -> bool) -> Vec<(f64, Vec<Told>)> {
     let image = firmware_for(design);
     let plant = design
         .plant(Scenario::named("long-rest").expect("it is shipped"))
         .expect("it can be pressed");
-    AIRS.map(|air| {
-        let told = Story::ALL.map(|story| tell(design, image, &plant, story, air));
-        (air, told.into())
-    })
-    .into()
+    let in_air = |(air_number, air_kpa)| {
+        let stories = Story::ALL.into_iter().enumerate();
+        let stories = stories.filter(|(number, _)| wanted(air_number, *number));
+        let told = stories.map(|(_, story)| tell(design, image, &plant, story, air_kpa));
+        (air_kpa, told.collect())
+    };
+    AIRS.into_iter().enumerate().map(in_air).collect()
+}
+
+/// Every kind meets every air and every story, and every air every story, in half the time of all of them.
+#[test]
+fn every_transducer_is_ok_and_right_after_its_zero_in_thick_and_thin_air() {
+    play(|kind, air, story| (kind + air + story).is_multiple_of(2));
 }
 
 #[test]
-fn every_transducer_is_ok_and_right_after_its_zero_in_thick_and_thin_air() {
+#[ignore = "minutes: the whole table of FAULTS.md"]
+fn every_transducer_in_every_air_and_every_story() {
+    play(|_, _, _| true);
+}
+
+/// Plays and judges the stories that are wanted, by number of the kind, of the air and of the story.
+fn play(wanted: impl Fn(usize, usize, usize) -> bool + Sync) {
     let kinds = kinds();
+    let wanted = &wanted;
     let all: Vec<_> = std::thread::scope(|scope| {
         let running: Vec<_> = kinds
             .iter()
-            .map(|(kind, design)| (*kind, scope.spawn(move || of_kind(design))))
+            .enumerate()
+            .map(|(number, (kind, design))| {
+                let wanted = move |air, story| wanted(number, air, story);
+                (*kind, scope.spawn(move || of_kind(design, wanted)))
+            })
             .collect();
         running
             .into_iter()
@@ -317,8 +336,12 @@ fn assert_documented(kind: &str, air: f64, told: &[Told]) {
         .filter_map(|cell| cell.trim().parse().ok())
         .collect();
     let (wrong, percents) = figures.split_last().expect("figures follow");
-    assert!(wrong.abs() < 0.5 && percents.len() == told.len(), "{begins}{row}");
-    for (documented, one) in percents.iter().zip(told) {
+    assert!(
+        wrong.abs() < 0.5 && percents.len() == Story::ALL.len(),
+        "{begins}{row}"
+    );
+    for one in told {
+        let documented = percents[one.story as usize];
         let allowed = 100.0 * 2.0 / one.reports as f64 + 0.05;
         assert!(
             (documented - one.ok_percent()).abs() <= allowed,

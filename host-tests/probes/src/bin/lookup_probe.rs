@@ -11,7 +11,6 @@ mod probe {
     use fingertip::board::{self, Board};
     use fingertip::image::ImageDesign;
     use fingertip::link::telemetry::{Frame, Hello, Message, encode};
-    use fingertip::signal::design::Design;
     use fingertip::signal::report::Report;
     use fingertip::transducer::counts::PERIOD;
     use panic_probe as _;
@@ -29,14 +28,14 @@ mod probe {
             ..
         } = Board::take(false);
         let mut sequence = 0_u16;
-        for rise in lookup_sweep::inputs::<ImageDesign>() {
+        for rise in lookup_sweep::inputs(&ImageDesign::PARAMETERS) {
             let report = Report {
                 time: clock.now(),
-                outcome: Ok(lookup_sweep::answer::<ImageDesign>(rise)),
+                outcome: Ok(lookup_sweep::answer(&ImageDesign, rise)),
             };
             let message = Message::Report {
                 report,
-                pressure_fraction_bits: ImageDesign::PRESSURE_FRACTION_BITS as u8,
+                pressure_fraction_bits: ImageDesign::PARAMETERS.pressure_fraction_bits as u8,
             };
             // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
             let frame = Frame {

@@ -1,8 +1,11 @@
 //! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
 
 use super::finite;
+use fingertip::signal::contact::contact;
+use fingertip::signal::design::{Design, LoadedDesign};
 use fingertip::status::{Status, Warnings};
 use model_tables::generate::{GenerateError, from_design_file};
+use model_tables::table::loaded::LoadedTables;
 use model_tables::units::PressureRise;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -32,19 +35,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let generated = from_design_file(file).map_err(|error| refusal(file, error))?;
     let tables = &generated.certified.tables;
-    let bits = tables.layout.pressure_fraction_bits;
-    let lowest_rest = generated.transducer().lowest_rest(bits);
+    let words = tables.little_endian();
+    let design = LoadedDesign::new(generated.constants(), LoadedTables::new(tables.layout, &words));
+    let bits = design.parameters().pressure_fraction_bits;
     let mut rows = Rows::new(COLUMNS);
     for &pascals in &arguments.pressure_rise_pa {
         let rise = PressureRise::from_pascals(pascals, bits);
-        let reading = tables.lookup(rise);
-        let status = if reading.saturated {
-            Status::Warning(Warnings::SATURATED)
-        } else if rise < lowest_rest {
-            Status::Warning(Warnings::BELOW_ZERO)
-        } else {
-            Status::Ok
-        };
+        let reading = contact(&design, rise, Warnings::NONE);
+        let status = Status::qualified(reading.warnings);
         rows.push(vec![
             Cell::Number(pascals),
             Cell::Number(reading.force.newtons()),
