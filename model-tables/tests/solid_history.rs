@@ -3,10 +3,13 @@
 mod domes;
 
 use domes::dome;
+use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
+use model_tables::material::preset::AGILUS30;
 use model_tables::material::relaxation::{Relaxation, Term};
-use model_tables::solid::history::{Drive, History, Instant};
+use model_tables::solid::history::{Drive, History, HistoryError, Instant};
 use model_tables::solid::mesh::Elements;
+use model_tables::solid::press::Press;
 use serde::Deserialize;
 use std::f64::consts::TAU;
 
@@ -104,10 +107,14 @@ impl Case {
         turns
     }
 
-    fn play(&self, elements: Elements) -> (Vec<Instant>, History) {
+    /// The states at the case's times up to one.
+    fn play(&self, elements: Elements, until: f64) -> (Vec<Instant>, History) {
         let mut history = self.history(elements);
         let mut found = vec![history.now()];
         for i in 1..self.t_s.len() {
+            if self.t_s[i] > until {
+                break;
+            }
             for [t, h] in self.turns(self.t_s[i - 1], self.t_s[i]) {
                 let h = if h.is_nan() { self.H_mm[i] } else { h };
                 history.advance(t, Drive::Indentation(1e-3 * h)).expect("a state");
@@ -118,71 +125,188 @@ impl Case {
     }
 }
 
+const MESH: Elements = Elements {
+    through: 2,
+    along: 60,
+};
+const COARSE: Elements = Elements {
+    through: 1,
+    along: 12,
+};
+
+fn series(terms: &[[f64; 2]]) -> Relaxation {
+    let terms: Vec<Term> = terms
+        .iter()
+        .map(|&[time, weight]| Term { time, weight })
+        .collect();
+    Relaxation::new(&terms, 20.0, 0.0)
+}
+
+fn dome_a() -> Design {
+    dome(9.0, 7.0, 1.0, AGILUS30)
+}
+
+fn pressed(design: &Design, relaxation: &Relaxation, elements: Elements, rows: &[[f64; 2]]) -> History {
+    let mut history = History::new(design, relaxation, elements, 0.0, 0.0).expect("a wall at rest");
+    for [time, millimetres] in rows {
+        history
+            .advance(*time, Drive::Indentation(1e-3 * millimetres))
+            .expect("a state");
+    }
+    history
+}
+
+/// The reference's own error is 0.25 % in pressure and 0.3 % in force (peaks, in time and mesh); its force scatters by up to 0.5 % as the contact's
+/// edge passes its elements, and single rows follow a turn by less than one of its steps.
 #[test]
-fn compare() {
-    let only = std::env::var("CASE").unwrap_or_default();
+fn pressure_and_force_are_those_of_an_independent_code() {
     for case in cases() {
-        if !case.id.contains(&only) {
-            continue;
-        }
-        let begin = std::time::Instant::now();
-        let (found, history) = case.play(Elements {
-            through: std::env::var("THROUGH")
-                .ok()
-                .and_then(|x| x.parse().ok())
-                .unwrap_or(2),
-            along: std::env::var("ALONG")
-                .ok()
-                .and_then(|x| x.parse().ok())
-                .unwrap_or(24),
-        });
-        let spent = begin.elapsed().as_secs_f64();
+        // In its last cycles the wall is met again in steps of 0.06 mm there.
+        let until = if case.id == "A_AG_SIN" { 1.9 } else { f64::INFINITY };
+        let (found, history) = case.play(MESH, until);
         let largest = |x: &[f64]| x.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        let (p, f) = (largest(&case.P_kPa), largest(&case.F_N));
-        let mut worst = [(0.0, 0); 3];
-        let mut lost = vec![];
+        let (pressure, force) = (largest(&case.P_kPa), largest(&case.F_N));
+        let mut squares = [0.0; 2];
         for (i, now) in found.iter().enumerate() {
             let errors = [
-                (1e-3 * now.pressure_rise - case.P_kPa[i]) / p * 100.0,
-                (now.force - case.F_N[i]) / f * 100.0,
-                1e3 * now.apex_depression - case.apex_depression_mm[i],
+                (1e-3 * now.pressure_rise - case.P_kPa[i]) / pressure,
+                (now.force - case.F_N[i]) / force,
             ];
-            for k in 0..3 {
-                if errors[k].abs() > f64::abs(worst[k].0) {
-                    worst[k] = (errors[k], i);
-                }
+            for (sum, error) in squares.iter_mut().zip(errors) {
+                assert!(error.abs() < 0.008, "{} at {} s: {error}", case.id, case.t_s[i]);
+                *sum += error * error;
             }
-            if i > 0 && now.in_contact() != (case.F_N[i] > 0.0) {
-                lost.push((case.t_s[i], now.force, case.F_N[i]));
-            }
-            if std::env::var("ROWS").is_ok() {
-                println!(
-                    "{:.5} {:.4} | {:.4} {:.4} | {:.5} {:.5} | {:.4} {:.4}",
-                    case.t_s[i],
-                    case.H_mm[i],
-                    1e-3 * now.pressure_rise,
-                    case.P_kPa[i],
-                    now.force,
-                    case.F_N[i],
-                    1e3 * now.apex_depression,
-                    case.apex_depression_mm[i]
-                );
-            }
+            let apex = 1e3 * now.apex_depression - case.apex_depression_mm[i];
+            assert!(apex.abs() < 0.03, "{} at {} s: {apex} mm", case.id, case.t_s[i]);
+            // Lost and met again between the same rows.
+            assert_eq!(
+                i > 0 && now.in_contact(),
+                case.F_N[i] > 0.0,
+                "{} at {} s",
+                case.id,
+                case.t_s[i]
+            );
         }
-        println!(
-            "{} steps {} it {} fac {} {:.2} s: P {:+.3} % @{:.4} F {:+.3} % @{:.4} apex {:+.4} mm @{:.4}; contact {:?}",
-            case.id,
-            history.steps(),
-            history.iterations(),
-            history.factorisations(),
-            spent,
-            worst[0].0,
-            case.t_s[worst[0].1],
-            worst[1].0,
-            case.t_s[worst[1].1],
-            worst[2].0,
-            case.t_s[worst[2].1],
-            lost
+        let rms = squares.map(|sum| (sum / found.len() as f64).sqrt());
+        assert!(rms.iter().all(|x| *x < 0.003), "{}: {rms:?}", case.id);
+        let [plate, wall] = history.works();
+        assert!(
+            (plate - wall).abs() < 0.003 * plate.abs().max(wall.abs()),
+            "{plate} {wall} J"
         );
     }
+}
+
+#[test]
+fn a_wall_without_a_series_is_elastic() {
+    let mut history = History::new(&dome_a(), &series(&[]), COARSE, 0.0, 0.0).expect("a wall");
+    let mut press = Press::new(&dome_a(), COARSE).expect("a wall");
+    for (i, millimetres) in [0.1, 0.5, 1.2, 0.3].into_iter().enumerate() {
+        let found = history
+            .advance((i + 1) as f64, Drive::Indentation(1e-3 * millimetres))
+            .expect("a state");
+        let still = press.contact_at(1e-3 * millimetres).expect("a state");
+        assert!((found.pressure_rise / still.pressure_rise - 1.0).abs() < 1e-5);
+        assert!((found.force / still.force - 1.0).abs() < 1e-5);
+    }
+}
+
+/// Steps of half the length: a term that relaxes within a step is of first order, one that does not of second.
+#[test]
+fn shorter_steps_converge() {
+    for (term, order) in [([1e-3, 40.0], 1), ([10.0, 4.0], 2)] {
+        let end = |parts: i32| {
+            let rows: Vec<[f64; 2]> = (1..=parts)
+                .map(|i| f64::from(i) / f64::from(parts))
+                .map(|part| [part, 0.4 * part])
+                .collect();
+            pressed(&dome_a(), &series(&[term]), COARSE, &rows)
+                .now()
+                .pressure_rise
+        };
+        let [coarse, middle, fine] = [40, 80, 160].map(end);
+        let ratio = (coarse - middle) / (middle - fine);
+        assert!(
+            ratio > 1.6 * f64::from(order),
+            "{term:?}: {coarse} {middle} {fine}"
+        );
+        assert!((middle / fine - 1.0).abs() < 0.01);
+    }
+}
+
+/// The wall is left behind, with less than its volume's rest pressure, and recovers; nothing is gained on the way.
+#[test]
+fn after_a_release_the_wall_recovers() {
+    let soft = series(&[[0.1, 20.0], [1.0, 4.0], [10.0, 1.5]]);
+    let mut history = pressed(&dome_a(), &soft, COARSE, &[[0.3, 1.0], [5.0, 1.0], [5.3, 0.0]]);
+    let mut before = history.now();
+    assert!(!before.in_contact() && before.pressure_rise < -1e3 && before.apex_depression > 0.3e-3);
+    for time in [6.0, 10.0, 20.0, 60.0, 200.0] {
+        let now = history.advance(time, Drive::Indentation(0.0)).expect("a state");
+        assert!(now.pressure_rise < 0.0 && now.pressure_rise > before.pressure_rise);
+        assert!(now.apex_depression < before.apex_depression);
+        before = now;
+    }
+    assert!(before.pressure_rise > -1.0 && before.apex_depression < 1e-7);
+    let [plate, wall] = history.works();
+    assert!(
+        plate > 0.0 && (plate - wall).abs() < 0.01 * plate,
+        "{plate} {wall}"
+    );
+    // Met again where it has recovered.
+    let again = history
+        .advance(200.1, Drive::Indentation(0.1e-3))
+        .expect("a state");
+    assert!(again.in_contact() && again.pressure_rise > 0.0);
+}
+
+/// The forces of a press by indentation, given as such, lead to its indentations.
+#[test]
+fn a_press_by_force_is_the_press_by_indentation() {
+    let soft = series(&[[0.05, 3.0], [2.0, 1.0]]);
+    let rows: Vec<[f64; 2]> = (1..=30).map(f64::from).map(|i| [0.02 * i, 0.02 * i]).collect();
+    let mut by_force = History::new(&dome_a(), &soft, COARSE, 0.0, 0.0).expect("a wall");
+    for (i, [time, millimetres]) in rows.iter().enumerate() {
+        let truth = pressed(&dome_a(), &soft, COARSE, &rows[..=i]).now();
+        let found = by_force
+            .advance(*time, Drive::Force(truth.force))
+            .expect("a state");
+        assert!((found.force / truth.force - 1.0).abs() < 1e-5);
+        // Between the rows the force is even here, and the travel there.
+        assert!((1e3 * found.indentation - millimetres).abs() < 2e-3, "{found:?}");
+    }
+    let free = by_force.advance(0.62, Drive::Force(0.0)).expect("a state");
+    assert!(!free.in_contact() && (free.indentation - free.apex_depression).abs() < 1e-12);
+    assert!(free.pressure_rise < 0.0);
+}
+
+#[test]
+fn refuses_what_is_beyond_it() {
+    let elastic = series(&[]);
+    let refused = |design: &Design| History::new(design, &elastic, COARSE, 0.0, 0.0).expect_err("refused");
+    let inflated = Design {
+        rest: RestBy::Pressure(1e3),
+        ..dome_a()
+    };
+    assert_eq!(refused(&inflated), HistoryError::Inflated);
+    let compliant = Design {
+        compliance: 1e-12,
+        ..dome_a()
+    };
+    assert_eq!(refused(&compliant), HistoryError::Compliant);
+    let mut history = pressed(&dome_a(), &elastic, COARSE, &[[1.0, 0.1]]);
+    let late = history
+        .advance(1.0, Drive::Indentation(0.0))
+        .expect_err("refused");
+    assert_eq!(
+        late,
+        HistoryError::NotAfter {
+            asked: 1.0,
+            before: 1.0
+        }
+    );
+    let deep = history
+        .advance(2.0, Drive::Indentation(8e-3))
+        .expect_err("refused");
+    assert!(deep.to_string().contains("press less deep"), "{deep}");
 }

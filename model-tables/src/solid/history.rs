@@ -28,6 +28,8 @@ const FIRST_TRAVEL: f64 = 1.0 / 16.0;
 const LARGEST_GROWTH: f64 = 2.0;
 /// Change of speed, over the greater of both, from which on the motion begins anew.
 const TURN: f64 = 0.3;
+/// Travel, over the height, in which no next state is found where there is none.
+const SMALLEST_TRAVEL: f64 = 1e-6;
 /// Halvings of a step that fails.
 const MOST_HALVINGS: u32 = 24;
 /// Energy that may be missing after a step, over the work done in it and over the most done so far.
@@ -350,7 +352,10 @@ impl History {
                     }
                     Err(rejected) => {
                         halvings += 1;
-                        if halvings > MOST_HALVINGS {
+                        let travel = (end - done) * (to - from).abs();
+                        let moves = matches!(drive, Drive::Indentation(_)) && travel > 0.0;
+                        let stuck = moves && travel < SMALLEST_TRAVEL * self.height;
+                        if halvings > MOST_HALVINGS || stuck && !matches!(rejected, Rejected::TooLong(_)) {
                             return Err(self.ends(rejected));
                         }
                         seconds *= match rejected {
