@@ -42,9 +42,9 @@ impl Design for WithAbsolutePart {
 
 /// Numbers that look random and are the same on every host (xorshift64*).
 #[derive(Clone, Debug)]
-pub struct Random(u64);
+pub struct Xorshift(u64);
 
-impl Random {
+impl Xorshift {
     /// The sequence of `seed`.
     pub fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(2).wrapping_add(1))

@@ -11,9 +11,8 @@ use fingertip::status::{Fault, Warnings};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::Millipascals;
 use host_tests::design;
-use host_tests::world::{Random, World, full_scale, rest, sample};
+use host_tests::world::{World, Xorshift, full_scale, rest, sample};
 use model_tables::generate::{self, Generated};
-use model_tables::table::loaded::LoadedTables;
 use model_tables::units::PressureRise;
 
 /// The default design, unless the image was built for another one.
@@ -22,9 +21,8 @@ fn generated() -> Option<Generated> {
     (ImageDesign::CONSTANTS.hash == generated.hash()).then_some(generated)
 }
 
-fn loaded<'a>(generated: &Generated, words: &'a [[u8; 4]]) -> LoadedDesign<'a> {
-    let tables = LoadedTables::new(generated.certified.tables.layout, words);
-    LoadedDesign::new(generated.constants(), tables)
+fn loaded(block: &[u8]) -> LoadedDesign<'_> {
+    LoadedDesign::read(block).expect("it was just written").0
 }
 
 #[test]
@@ -32,8 +30,8 @@ fn a_loaded_design_is_that_of_the_image() {
     let Some(generated) = generated() else {
         return;
     };
-    let words = generated.certified.tables.little_endian();
-    let loaded = loaded(&generated, &words);
+    let block = generated.binary();
+    let loaded = loaded(&block);
     assert_eq!(loaded.parameters(), ImageDesign.parameters());
     let end = ImageDesign::PARAMETERS.last_rise.0;
     for count in (-2_000..end + 2_000).step_by(97).chain([i32::MIN, -1, i32::MAX]) {
@@ -47,10 +45,10 @@ fn a_loaded_design_is_that_of_the_image() {
 }
 
 /// The reports, and what else goes on the line, of presses, pauses, faults, wild samples, commands and drift, drawn from a seed.
-fn life<D: Design + Clone>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
-    let mut random = Random::new(seed);
+fn life<D: Design + Copy>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
+    let mut random = Xorshift::new(seed);
     let (rest, full) = (rest(&design), full_scale(&design));
-    let mut world = World::zeroed(design.clone(), rest);
+    let mut world = World::zeroed(design, rest);
     let (mut from, mut to) = (0.0, 0.0);
     let mut reports = vec![];
     for millisecond in 0..20_000 {
@@ -87,8 +85,8 @@ fn reports_of_a_loaded_design_are_those_of_the_image() {
     let Some(generated) = generated() else {
         return;
     };
-    let words = generated.certified.tables.little_endian();
-    let loaded = loaded(&generated, &words);
+    let block = generated.binary();
+    let loaded = loaded(&block);
     for seed in 0..4 {
         let (tool, chip) = (life(loaded, seed), life(ImageDesign, seed));
         for (tool, chip) in tool.0.iter().zip(&chip.0) {

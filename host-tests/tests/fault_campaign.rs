@@ -8,7 +8,7 @@ use fingertip::status::{Fault, ResetCause, Status};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::Millipascals;
 use host_tests::assert_faults_says;
-use host_tests::world::{Random, World, beginning, full_scale, rest, rise, sample};
+use host_tests::world::{World, Xorshift, beginning, full_scale, rest, rise, sample};
 
 /// A reading that is off by more than this is wrong, pascals: 7 grains of the transducer. 6 a commanded tare may take
 /// away when a host says that nothing presses; a wild sample smaller than 4 passes for noise, and the filter takes a
@@ -41,7 +41,7 @@ const VERBS: [Verb; 6] = [
 struct Grasp(Vec<(f64, f64)>);
 
 impl Grasp {
-    fn random(random: &mut Random) -> Self {
+    fn random(random: &mut Xorshift) -> Self {
         let (mut time, mut corners) = (0.0, vec![(0.0, 0.0)]);
         let mut at = 0.0;
         while time < 5_000.0 {
@@ -86,7 +86,7 @@ struct Tally {
 }
 
 /// One sample of a faulty transducer.
-fn disturbed(verb: Verb, pascals: f64, i: u64, random: &mut Random) -> Result<Sample, Fault> {
+fn disturbed(verb: Verb, pascals: f64, i: u64, random: &mut Xorshift) -> Result<Sample, Fault> {
     let sound = sample(&ImageDesign, pascals);
     match verb {
         Verb::Off => Err(Fault::SensorAbsent),
@@ -106,7 +106,7 @@ fn disturbed(verb: Verb, pascals: f64, i: u64, random: &mut Random) -> Result<Sa
 
 /// One life of five seconds.
 fn live(seed: u64, tally: &mut Tally) {
-    let mut random = Random::new(seed);
+    let mut random = Xorshift::new(seed);
     let base = rest(&ImageDesign) + 200.0 * (random.share() - 0.5);
     let mut world = World::zeroed(ImageDesign, base);
     let grasp = Grasp::random(&mut random);

@@ -26,7 +26,7 @@
 //! [`design`] (what the fingertip is) of a [`material`] -> [`membrane`] (thin walls) or [`solid`] (walls that bend), with the
 //! [`solver`], which knows no physics -> `model` (either of them behind one interface, and which of them a design needs) ->
 //! [`curve`] (pressure rise -> force and indentation) -> `generate` (fits and certifies) -> [`table`] (integers for the
-//! chip, in the quantities of [`units`], beside the [`constants`] of the design). A design comes from a file by
+//! chip, in the quantities of [`units`], beside the [`constants`] of the design), or a [`block`] of bytes that is loaded. A design comes from a file by
 //! `design_file`. Beside it all stands the feedback [`actuator`].
 //!
 //! The command line, calibration and sizing are the package `designer`; other ways to solve and to look up, and campaigns,
@@ -60,6 +60,7 @@
 #![forbid(unsafe_code)]
 
 pub mod actuator;
+pub mod block;
 pub mod constants;
 pub mod curve;
 pub mod design;

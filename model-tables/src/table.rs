@@ -14,7 +14,10 @@
 //!
 //! The tables of a design are a constant, so the compiler folds everything but the coefficients.
 
+pub mod error;
 pub mod loaded;
+mod rising;
+mod segments;
 
 use crate::units::{Micronewtons, Nanometres, PressureRise};
 

@@ -56,6 +56,31 @@ fn an_answer_does_not_depend_on_what_else_is_asked() {
     }
 }
 
+/// The dimpled state of the thin dome: alike on every mesh, of more pressure and less force than the flat one, as the dimple's ridge is all that
+/// touches. A thick dome has none.
+#[test]
+fn a_thin_dome_has_another_state_beside_the_path() {
+    let rises = [[1, 24], [2, 24], [2, 60]].map(|[through, along]| {
+        let mut press = Press::new(&THIN, Elements { through, along }).expect("a rest state");
+        let path = press.contact_at(1.8e-3).expect("a state");
+        let other = press
+            .other_state(1.8e-3)
+            .expect("a state of the path")
+            .expect("another");
+        assert!(other.is_stable, "{other:?}");
+        assert!(other.contact.pressure_rise > 1.2 * path.pressure_rise && other.contact.force < path.force);
+        other.contact.pressure_rise
+    });
+    assert!(
+        rises.iter().all(|rise| (rise / rises[2] - 1.0).abs() < 0.03),
+        "{rises:?}"
+    );
+    let mut thick = Press::new(&dome(9.0, 7.0, 1.0, AGILUS30), FULL).expect("a rest state");
+    for indentation in [0.0, 1e-3, 2.5e-3] {
+        assert_eq!(thick.other_state(indentation), Ok(None));
+    }
+}
+
 /// Strain energy against the work of plate and fluid: within 0.5 %, with a rigid path and with compliance, flat and buckling walls alike.
 #[test]
 fn the_energy_is_the_work_along_the_path() {

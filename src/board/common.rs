@@ -2,7 +2,7 @@
 
 use super::chosen::{BAUD, CALIBRATION, Interrupts, Pins, Region, WATCHDOG, clocks, region};
 #[cfg(transducer = "ratiometric")]
-use super::converter::Converter;
+use super::converter::DmaConverter;
 #[cfg(not(transducer = "ratiometric"))]
 use super::i2c::I2cBus;
 use super::memory::Patient;
@@ -70,7 +70,7 @@ pub struct Board {
 
 /// What the transducer is on: the converter, ...
 #[cfg(transducer = "ratiometric")]
-pub type Port = Converter;
+pub type Port = DmaConverter;
 
 /// ... or the bus.
 #[cfg(not(transducer = "ratiometric"))]
@@ -94,7 +94,7 @@ impl Board {
         watchdog.unleash();
 
         #[cfg(transducer = "ratiometric")]
-        let port = (!gave_up).then(|| Converter::new(Adc::new(pins.converter)));
+        let port = (!gave_up).then(|| DmaConverter::new(Adc::new(pins.converter)));
         #[cfg(not(transducer = "ratiometric"))]
         let port = (!gave_up).then_some(I2cBus(pins.bus));
 

@@ -18,11 +18,11 @@ const SUPPLY_MEASURED: bool = ratiometric::supply_measured(&ImageDesign::CONSTAN
 static RING: [Block; 2] = [const { [const { AtomicU32::new(0) }; BLOCK_LENGTH / 2] }; 2];
 
 /// ADC1 on the board's analogue pins.
-pub struct Converter {
+pub struct DmaConverter {
     ticker: Ticker,
 }
 
-impl Converter {
+impl DmaConverter {
     /// The ticks come this long after the end of a block, microseconds.
     const MARGIN: u64 = 20;
 
@@ -36,7 +36,7 @@ impl Converter {
     }
 }
 
-impl ratiometric::Converter for Converter {
+impl ratiometric::Converter for DmaConverter {
     const CONVERSION: u32 = 10;
 
     fn restart(&mut self) {

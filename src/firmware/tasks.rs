@@ -2,7 +2,7 @@
 //! it, [`remember`] stores the calibration. The first one feeds the watchdog, while all four report.
 
 use crate::firmware::retained;
-use crate::firmware::transducer::{self as chosen, Pace};
+use crate::firmware::transducer::{self as chosen, SampleTimer};
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering};
 use defmt_rtt as _;
@@ -161,7 +161,7 @@ async fn signal(
         ..beginning.start.crumb
     };
     let mut log = Log::default();
-    let mut pace = Pace::new(transducer.is_some());
+    let mut pace = SampleTimer::new(transducer.is_some());
     let mut keeper = transducer.map(|transducer| Keeper::new(transducer, Delay));
     let (mut last_sample, mut next_meal, mut next_note) = (None, 0, 0);
     loop {

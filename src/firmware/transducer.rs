@@ -38,12 +38,12 @@ pub(crate) fn transducer(port: Port) -> impl Driver {
 }
 
 /// Says when the next sample is due: a part on a bus measures when it is told, a converter by itself.
-pub(crate) struct Pace {
+pub(crate) struct SampleTimer {
     /// Nothing, where a converter's ticks pace it.
     due: Option<Instant>,
 }
 
-impl Pace {
+impl SampleTimer {
     /// The pace of the transducer, or of none.
     pub(crate) fn new(measures: bool) -> Self {
         let ticks = measures && cfg!(transducer = "ratiometric");

@@ -3,6 +3,7 @@
 use crate::signal::scale::Scale;
 use crate::signal::temperature;
 use crate::units::{Centidegrees, Millipascals, Pressure, saturate};
+use model_tables::block::StoredCalibration;
 use model_tables::constants::Quantity;
 use model_tables::units::PressureRise;
 
@@ -32,6 +33,21 @@ impl Calibration {
         self.zero.is_none_or(|zero| i64::from(zero.0).abs() <= beyond)
             && self.coefficient.unsigned_abs() <= temperature::LARGEST_COEFFICIENT.unsigned_abs()
             && self.gain.unsigned_abs() <= LARGEST_GAIN.unsigned_abs()
+    }
+
+    /// The one that a block of a tip's data holds, for a transducer of this range in pascals; nothing where a value cannot be.
+    pub fn stored(stored: &StoredCalibration, range: [i32; 2]) -> Option<Self> {
+        let temperature = match stored.temperature {
+            i32::MIN => None,
+            found => Some(Centidegrees(i16::try_from(found).ok()?)),
+        };
+        let calibration = Self {
+            zero: (stored.zero != i32::MIN).then_some(Millipascals(stored.zero)),
+            temperature,
+            coefficient: stored.coefficient,
+            gain: stored.gain,
+        };
+        calibration.is_plausible(range).then_some(calibration)
     }
 
     /// This with a new zero; where the old one was at another temperature, the two give the coefficient. Not of an absolute
@@ -124,6 +140,43 @@ mod tests {
         let warm = zeroed(cold, 101_600_000, 3_000);
         assert_eq!(warm.coefficient, 0);
         assert_eq!(warm.zero, Some(Millipascals(101_600_000)));
+    }
+
+    #[test]
+    fn a_blocks_calibration_is_read_with_its_range() {
+        let stored = StoredCalibration {
+            zero: 20_000_000,
+            temperature: -1_550,
+            coefficient: 7,
+            gain: -LARGEST_GAIN,
+        };
+        let read = |stored| Calibration::stored(&stored, [0, 100_000]);
+        let expected = Calibration {
+            zero: Some(Millipascals(20_000_000)),
+            temperature: Some(Centidegrees(-1_550)),
+            coefficient: 7,
+            gain: -LARGEST_GAIN,
+        };
+        assert_eq!(read(stored), Some(expected));
+        let none = StoredCalibration {
+            zero: i32::MIN,
+            temperature: i32::MIN,
+            ..stored
+        };
+        let read_none = read(none).expect("it is plausible");
+        assert_eq!((read_none.zero, read_none.temperature), (None, None));
+        for wrong in [
+            StoredCalibration {
+                temperature: 40_000,
+                ..stored
+            },
+            StoredCalibration {
+                gain: LARGEST_GAIN + 1,
+                ..stored
+            },
+        ] {
+            assert_eq!(read(wrong), None, "{wrong:?}");
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The fingertip that a signal path is for: folded into the code of an image, or loaded at run time.
 
+use crate::signal::calibration::Calibration;
 use crate::signal::drift::Pace;
 use crate::signal::filter::Leaps;
 use crate::signal::fluid::Fall;
@@ -8,6 +9,9 @@ use crate::signal::tare::gates::Gates;
 use crate::signal::touch::Thresholds;
 use crate::signal::uncertainty::Uncertainty;
 use crate::transducer;
+use model_tables::block::BlockError;
+use model_tables::block::read::TipBlock;
+use model_tables::block::section::SectionKind;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
 use model_tables::table::loaded::LoadedTables;
@@ -89,17 +93,26 @@ pub struct LoadedDesign<'a> {
 }
 
 impl<'a> LoadedDesign<'a> {
-    /// The design of these constants, with its tables.
-    pub const fn new(constants: DesignConstants, tables: LoadedTables<'a>) -> Self {
-        let layout = tables.layout();
-        Self {
-            parameters: Parameters::of(
-                constants,
-                layout.pressure_fraction_bits,
-                PressureRise(layout.maximum),
+    /// The design in a block of a tip's data, with what is stored there of the one fingertip.
+    ///
+    /// # Errors
+    /// [`BlockError`].
+    pub fn read(block: &'a [u8]) -> Result<(Self, Option<Calibration>), BlockError> {
+        let tip = TipBlock::read(block)?;
+        let calibration = match &tip.calibration {
+            None => None,
+            Some(stored) => Some(
+                Calibration::stored(stored, tip.constants.transducer.range)
+                    .ok_or(BlockError::Value(SectionKind::Calibration, "a value"))?,
             ),
-            tables,
-        }
+        };
+        let layout = tip.tables.layout();
+        let end = PressureRise(layout.maximum);
+        let design = Self {
+            parameters: Parameters::of(tip.constants, layout.pressure_fraction_bits, end),
+            tables: tip.tables,
+        };
+        Ok((design, calibration))
     }
 }
 

@@ -18,7 +18,7 @@ const TEMPERATURE: u32 = 6_291_456;
 
 /// The part.
 #[derive(Debug)]
-pub(crate) struct Abp2 {
+pub(crate) struct Abp2Chip {
     /// Counts at the ends of the range.
     pub(crate) counts: [f64; 2],
     /// The range, gauge pressures in pascals.
@@ -32,7 +32,7 @@ pub(crate) struct Abp2 {
     answer: Vec<u8>,
 }
 
-impl Abp2 {
+impl Abp2Chip {
     /// The part powered up, with nothing measured.
     pub(crate) fn new(counts: [f64; 2], range: [f64; 2]) -> Self {
         Self {

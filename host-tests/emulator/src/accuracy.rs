@@ -17,7 +17,7 @@ const WRONG: f64 = 5.0;
 
 /// What a run comes to.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Accuracy {
+pub struct RunAccuracy {
     /// Reports with values.
     pub readings: usize,
     /// Median error of the force, share of reading, over the reports from 5 % of full scale up.
@@ -93,7 +93,7 @@ pub fn is_wrong(row: &Row, plant: &Plant) -> bool {
     explained(reported, [low - allowed, high + allowed], plant) != [true; 3]
 }
 
-impl Accuracy {
+impl RunAccuracy {
     /// Over all rows with values that the firmware vouches for.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>, plant: &Plant) -> Self {
         let rows: Vec<&Row> = rows.into_iter().filter(|row| row.status == Status::Ok).collect();
@@ -170,7 +170,7 @@ mod tests {
         // Full scale is 8 kPa, force 1.856 N: 5 % of it is at about 455 Pa.
         let mut rows = vec![row(4e3, 0.001, 0.0), row(6e3, -0.004, 0.0), row(7e3, 0.002, 0.0)];
         rows.extend([row(300.0, 0.5, 0.0); 9]);
-        let accuracy = Accuracy::of(&rows, &plant);
+        let accuracy = RunAccuracy::of(&rows, &plant);
         assert!((accuracy.force_median - 0.002).abs() < 1e-12);
         assert!(accuracy.indentation_median.abs() < 1e-12);
         assert_eq!(accuracy.readings, 12);
@@ -181,12 +181,12 @@ mod tests {
         let plant = press(8e3, ramp());
         // dF/dP at 4 kPa is 2e-4 (1 + 2 * 4e3 / 5e4) = 2.32e-4: 20 Pa are 4.64 mN of 864 mN.
         let rows = [row(4e3, 0.0053, 19.9), row(4e3, -0.0053, -19.9)];
-        let accuracy = Accuracy::of(&rows, &plant);
+        let accuracy = RunAccuracy::of(&rows, &plant);
         assert!((accuracy.pressure_within - 1.0).abs() < 1e-12);
         assert!((accuracy.force_within - 1.0).abs() < 1e-12);
         assert!((accuracy.pressure_error - 19.9).abs() < 1e-9);
         let rows = [row(4e3, 0.0055, 20.1), row(4e3, 0.0, 0.0)];
-        let accuracy = Accuracy::of(&rows, &plant);
+        let accuracy = RunAccuracy::of(&rows, &plant);
         assert!((accuracy.pressure_within - 0.5).abs() < 1e-12);
         assert!((accuracy.force_within - 0.5).abs() < 1e-12);
     }
@@ -195,7 +195,7 @@ mod tests {
     fn what_the_tables_may_be_off_is_explained_as_well() {
         // 20 Pa explain 0.537 % of the force at 4 kPa (above), and tables of 0.1 % as much more.
         let plant = press(8e3, ramp()).with_tables_allowed([0.001, 0.0]);
-        let force_within = |share: f64| Accuracy::of(&[row(4e3, share, 0.0)], &plant).force_within;
+        let force_within = |share: f64| RunAccuracy::of(&[row(4e3, share, 0.0)], &plant).force_within;
         assert!((force_within(0.0063) - 1.0).abs() < 1e-12);
         assert!(force_within(0.0065).abs() < 1e-12);
     }
@@ -258,7 +258,7 @@ mod tests {
             reported: None,
             ..row(4e3, 0.0, 0.0)
         };
-        let accuracy = Accuracy::of(&[fault], &plant);
+        let accuracy = RunAccuracy::of(&[fault], &plant);
         assert_eq!(accuracy.readings, 0);
         assert!(accuracy.force_median.is_nan());
     }

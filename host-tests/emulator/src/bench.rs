@@ -45,7 +45,7 @@ pub type Arrivals = BTreeMap<u64, Vec<u64>>;
 
 /// What a run leaves behind.
 #[derive(Debug)]
-pub struct Outcome<L> {
+pub struct RunOutcome<L> {
     /// The listener with what it kept.
     pub listener: L,
     /// Virtual time, seconds.
@@ -102,7 +102,7 @@ pub fn run<L: Listener>(
     duration: f64,
     counted: &[(&str, &str)],
     listener: L,
-) -> Result<Outcome<L>, BenchError> {
+) -> Result<RunOutcome<L>, BenchError> {
     run_watching(image, plant, duration, counted, &[], listener)
 }
 
@@ -117,7 +117,7 @@ pub fn run_watching<L: Listener>(
     counted: &[(&str, &str)],
     watched: &[u64],
     listener: L,
-) -> Result<Outcome<L>, BenchError> {
+) -> Result<RunOutcome<L>, BenchError> {
     let counted = counted
         .iter()
         .map(|(owner, name)| -> Result<Counted, ImageError> {
@@ -155,7 +155,7 @@ pub fn run_watching<L: Listener>(
     let (time, instructions) = finished
         .stop
         .map_or((0.0, 0), |stop| (seconds(stop.at), stop.instruction_count));
-    Ok(Outcome {
+    Ok(RunOutcome {
         listener: finished.driver.listener,
         time,
         instructions,

@@ -2,7 +2,7 @@
 //! bus, its serial wire to the host.
 
 use crate::sensor::Sensor;
-use crate::transducer::{Output, Transducer};
+use crate::transducer::{ElectricalOutput, EmulatedTransducer};
 use rigless::chip::Timeline;
 use rigless::chip::uart::Peer;
 use rigless::cpu::armv7m::windows;
@@ -59,7 +59,7 @@ pub(crate) struct Nucleo {
 
 impl Nucleo {
     /// The board as it is powered on, with a transducer, and a host on its serial wire.
-    pub(crate) fn new(transducer: &Transducer) -> Result<Self, Error> {
+    pub(crate) fn new(transducer: &EmulatedTransducer) -> Result<Self, Error> {
         let mut mcu = Stm32f427::new()?;
         mcu.rcc.attach_crystals(CRYSTAL, NO_CRYSTAL);
         mcu.set_supply(SUPPLY);
@@ -83,15 +83,15 @@ impl Nucleo {
     }
 
     /// What the transducer does from now on.
-    pub(crate) fn set_transducer(&mut self, output: Output) {
+    pub(crate) fn set_transducer(&mut self, output: ElectricalOutput) {
         match output {
-            Output::Share(output, supply) => {
+            ElectricalOutput::Share(output, supply) => {
                 for (channel, share) in [(self.transducer, output), (self.supply, supply)] {
                     let microvolts = share * f64::from(REFERENCE_MICROVOLTS) + HALF_CODE_MICROVOLTS;
                     self.mcu.adc[TRANSDUCER_CONVERTER].set_input(channel, microvolts as u32);
                 }
             }
-            Output::Pressure(pascals, wiring) => {
+            ElectricalOutput::Pressure(pascals, wiring) => {
                 if let Some(sensor) = self.mcu.i2c[BUS].chip_mut::<Sensor>(ON_THE_BUS) {
                     sensor.set(pascals, wiring);
                 }

@@ -2,7 +2,7 @@
 
 use crate::plant::Plant;
 use crate::scenario::{Scenario, WireFault};
-use crate::transducer::{Part, Transducer, Wiring};
+use crate::transducer::{EmulatedTransducer, Part, Wiring};
 use model_tables::curve::CurveFailure;
 use model_tables::curve::{Contact, Curve};
 use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
@@ -19,7 +19,7 @@ pub struct FingertipDesign {
     pub path: PathBuf,
     file: DesignFile,
     max_indentation: f64,
-    transducer: Transducer,
+    transducer: EmulatedTransducer,
 }
 
 /// Why a design cannot be pressed.
@@ -108,7 +108,7 @@ impl FingertipDesign {
             )),
             TransducerKindSection::Ms5837 => on_the_bus(Part::Ms5837(MS5837)),
         };
-        let transducer = Transducer {
+        let transducer = EmulatedTransducer {
             quantity: section.quantity,
             range: section.own_range_kpa().map(|kilopascals| kilopascals * 1e3),
             output_at_range,

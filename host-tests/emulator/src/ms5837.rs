@@ -37,7 +37,7 @@ const CONVERSIONS: [u64; 6] = [600, 1_200, 2_300, 4_600, 9_100, 18_100];
 
 /// The part.
 #[derive(Debug)]
-pub(crate) struct Ms5837 {
+pub(crate) struct Ms5837Chip {
     model: Model,
     /// The absolute pressure on it, pascals.
     pub(crate) pascals: f64,
@@ -49,7 +49,7 @@ pub(crate) struct Ms5837 {
     answer: Vec<u8>,
 }
 
-impl Ms5837 {
+impl Ms5837Chip {
     /// The part powered up.
     pub(crate) fn new(model: Model) -> Self {
         Self {
@@ -131,9 +131,9 @@ mod tests {
 
     #[test]
     fn the_examples_pressure_is_the_examples_word() {
-        let part = Ms5837 {
+        let part = Ms5837Chip {
             pascals: 110_002.0,
-            ..Ms5837::new(TWO_BAR)
+            ..Ms5837Chip::new(TWO_BAR)
         };
         assert_eq!(part.temperature_word(), 8_077_636);
         // The example rounds down to a pascal, which is 23 counts.
@@ -146,9 +146,9 @@ mod tests {
 
     #[test]
     fn the_thirty_bar_part_reads_a_twentieth_by_the_two_bar_parts_formula() {
-        let part = Ms5837 {
+        let part = Ms5837Chip {
             pascals: 101_325.0,
-            ..Ms5837::new(THIRTY_BAR)
+            ..Ms5837Chip::new(THIRTY_BAR)
         };
         let word = f64::from(part.pressure_word());
         let [_, c1, c2, ..] = THIRTY_BAR.prom.map(f64::from);

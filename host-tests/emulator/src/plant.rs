@@ -2,7 +2,7 @@
 
 use crate::noise::Noise;
 use crate::scenario::Scenario;
-use crate::transducer::{Output, Part, Transducer, Wiring};
+use crate::transducer::{ElectricalOutput, EmulatedTransducer, Part, Wiring};
 use model_tables::curve::{Contact, Curve};
 
 /// A report is made of samples up to one period before and after its time, and a part takes up to a period to measure one.
@@ -16,7 +16,7 @@ pub struct Plant {
     rest_pressure: f64,
     /// The deepest the design is made for, metres.
     max_indentation: f64,
-    transducer: Transducer,
+    transducer: EmulatedTransducer,
     scenario: Scenario,
     noise: Noise,
     /// Shares of reading of force and indentation that the tables may be off.
@@ -31,7 +31,7 @@ impl Plant {
         curve: Curve,
         rest_pressure: f64,
         max_indentation: f64,
-        transducer: Transducer,
+        transducer: EmulatedTransducer,
         scenario: Scenario,
     ) -> Self {
         let noise = Noise::new(scenario.seed);
@@ -69,7 +69,7 @@ impl Plant {
 
     /// The same with another transducer in its fluid.
     #[must_use]
-    pub fn with_transducer(self, transducer: Transducer) -> Self {
+    pub fn with_transducer(self, transducer: EmulatedTransducer) -> Self {
         Self { transducer, ..self }
     }
 
@@ -105,7 +105,7 @@ impl Plant {
     }
 
     /// The transducer in its fluid.
-    pub fn transducer(&self) -> Transducer {
+    pub fn transducer(&self) -> EmulatedTransducer {
         self.transducer
     }
 
@@ -126,7 +126,7 @@ impl Plant {
     }
 
     /// What the transducer does to the board at a time in seconds. Each call draws new noise.
-    pub fn output(&mut self, time: f64) -> Output {
+    pub fn output(&mut self, time: f64) -> ElectricalOutput {
         // Drawn in every case, so that a fault leaves the noise after it as it would have been.
         let noise = self.transducer.noise * self.noise.deviate();
         let share = self.scenario.indentation_share(time);
@@ -148,9 +148,9 @@ impl Plant {
                     Wiring::Short => 0.0,
                     _ => supply * self.transducer.output(pressure),
                 };
-                Output::Share(output, supply)
+                ElectricalOutput::Share(output, supply)
             }
-            (_, wiring) => Output::Pressure(pressure, wiring),
+            (_, wiring) => ElectricalOutput::Pressure(pressure, wiring),
         }
     }
 }
@@ -176,7 +176,7 @@ pub(crate) mod tests {
             .collect();
         let curve = Curve::new(points).expect("the closed form is monotone");
         let max_indentation = curve.end().indentation;
-        let transducer = Transducer {
+        let transducer = EmulatedTransducer {
             quantity: Quantity::Gauge,
             range: [0.0, 100e3],
             output_at_range: [0.1, 0.9],
@@ -223,8 +223,8 @@ pub(crate) mod tests {
 
     fn share(plant: &mut Plant, time: f64) -> f64 {
         match plant.output(time) {
-            Output::Share(share, _) => share,
-            Output::Pressure(..) => unreachable!("the transducer is analogue"),
+            ElectricalOutput::Share(share, _) => share,
+            ElectricalOutput::Pressure(..) => unreachable!("the transducer is analogue"),
         }
     }
 

@@ -39,7 +39,7 @@ pub struct Row {
 
 /// Everything that came over the wire in one run.
 #[derive(Debug, Default)]
-pub struct Record {
+pub struct Recording {
     /// The reports in order.
     pub rows: Vec<Row>,
     /// From the instant of each report to the end of its last byte on the line, seconds, in order.
@@ -58,7 +58,7 @@ pub struct Record {
 pub struct Recorder<F> {
     decoder: Decoder,
     sequence: Option<u16>,
-    record: Record,
+    record: Recording,
     on_row: F,
 }
 
@@ -68,13 +68,13 @@ impl<F: FnMut(&Row) + Send + 'static> Recorder<F> {
         Self {
             decoder: Decoder::default(),
             sequence: None,
-            record: Record::default(),
+            record: Recording::default(),
             on_row,
         }
     }
 
     /// The record.
-    pub fn into_record(self) -> Record {
+    pub fn into_record(self) -> Recording {
         self.record
     }
 
@@ -205,7 +205,7 @@ mod tests {
         }
     }
 
-    fn recorded(frames: &[Frame]) -> Record {
+    fn recorded(frames: &[Frame]) -> Recording {
         let plant = press(8e3, ramp());
         let mut recorder = Recorder::new(|_| {});
         let moment = Moment {

@@ -1,9 +1,9 @@
 //! A part on the board's bus, and what can happen to it there: a DPS310 as the emulator's authors model it, an ABP2 or an
 //! MS5837-02BA by their datasheets.
 
-use crate::abp2::Abp2;
-use crate::ms5837::{self, Ms5837};
-use crate::transducer::{Part, Transducer, Wiring};
+use crate::abp2::Abp2Chip;
+use crate::ms5837::{self, Ms5837Chip};
+use crate::transducer::{EmulatedTransducer, Part, Wiring};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rigless::chip::Timeline;
@@ -30,8 +30,8 @@ const ONE_IN: u64 = 7;
 #[derive(Debug)]
 enum Chip {
     Dps310(Box<Dps310>),
-    Abp2(Abp2),
-    Ms5837(Ms5837),
+    Abp2(Abp2Chip),
+    Ms5837(Ms5837Chip),
 }
 
 /// The part behind its wires.
@@ -55,7 +55,7 @@ pub(crate) struct Sensor {
 
 impl Sensor {
     /// The part of a transducer, powered up; nothing if it is on no bus.
-    pub(crate) fn new(transducer: &Transducer) -> Option<Self> {
+    pub(crate) fn new(transducer: &EmulatedTransducer) -> Option<Self> {
         let (chip, address) = match transducer.part {
             Part::Analogue => return None,
             Part::Dps310(address) | Part::Spl06(address) => {
@@ -67,11 +67,11 @@ impl Sensor {
                 (Chip::Dps310(Box::new(Dps310::new(sdo))), address)
             }
             Part::Abp2(address, counts) => {
-                let part = Abp2::new(counts.map(f64::from), transducer.range);
+                let part = Abp2Chip::new(counts.map(f64::from), transducer.range);
                 (Chip::Abp2(part), address)
             }
-            Part::Ms5837(address) => (Chip::Ms5837(Ms5837::new(ms5837::TWO_BAR)), address),
-            Part::Ms5837ThirtyBar(address) => (Chip::Ms5837(Ms5837::new(ms5837::THIRTY_BAR)), address),
+            Part::Ms5837(address) => (Chip::Ms5837(Ms5837Chip::new(ms5837::TWO_BAR)), address),
+            Part::Ms5837ThirtyBar(address) => (Chip::Ms5837(Ms5837Chip::new(ms5837::THIRTY_BAR)), address),
         };
         Some(Self {
             chip,

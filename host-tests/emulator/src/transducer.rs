@@ -5,7 +5,7 @@ use model_tables::constants::Quantity;
 
 /// What the transducer does to a pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Transducer {
+pub struct EmulatedTransducer {
     /// What it measures.
     pub quantity: Quantity,
     /// Pressures at the two ends of its own range, pascals, ascending; gauge or absolute as `quantity` is.
@@ -41,7 +41,7 @@ pub enum Part {
 
 /// What the transducer does to the board at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Output {
+pub enum ElectricalOutput {
     /// A voltage and the transducer's supply, as shares of the converter's reference, 0 .. 1.
     Share(f64, f64),
     /// A pressure on a part on the bus, pascals, gauge or absolute as the part measures, and what is wrong with it.
@@ -83,7 +83,7 @@ pub enum Wiring {
 
 impl Wiring {
     /// Whether it can happen to a transducer.
-    pub fn concerns(self, transducer: &Transducer) -> bool {
+    pub fn concerns(self, transducer: &EmulatedTransducer) -> bool {
         let analogue = transducer.part == Part::Analogue;
         match self {
             Self::Sound => true,
@@ -94,7 +94,7 @@ impl Wiring {
     }
 }
 
-impl Transducer {
+impl EmulatedTransducer {
     /// The pressure that it measures, pascals, where the gauge pressure in the fluid and the pressure of the air are these.
     pub fn measured(&self, gauge: f64, air: f64) -> f64 {
         match self.quantity {
@@ -135,7 +135,7 @@ impl Transducer {
 mod tests {
     use super::*;
 
-    const HUNDRED_KPA: Transducer = Transducer {
+    const HUNDRED_KPA: EmulatedTransducer = EmulatedTransducer {
         quantity: Quantity::Gauge,
         range: [0.0, 100e3],
         output_at_range: [0.1, 0.9],
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn an_absolute_part_measures_the_air_too() {
-        let absolute = Transducer {
+        let absolute = EmulatedTransducer {
             quantity: Quantity::Absolute,
             ..HUNDRED_KPA
         };
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn its_fineness_is_noise_or_resolution() {
-        let coarse = Transducer {
+        let coarse = EmulatedTransducer {
             resolution: 30.0,
             ..HUNDRED_KPA
         };

@@ -54,6 +54,28 @@ pub fn answer(design: &impl Design, rise: PressureRise) -> Measurement {
 mod tests {
     use super::*;
     use fingertip::image::ImageDesign;
+    use fingertip::image::generated::{NAME, TABLES};
+    use fingertip::signal::design::LoadedDesign;
+    use model_tables::block::write::TipData;
+
+    #[test]
+    fn a_loaded_block_answers_as_the_image_does() {
+        let block = TipData {
+            constants: ImageDesign::CONSTANTS,
+            layout: TABLES.layout,
+            words: TABLES.segments.as_flattened(),
+            name: NAME,
+            calibration: None,
+        }
+        .write();
+        let (loaded, _) = LoadedDesign::read(&block).expect("the image's tables can be loaded");
+        let mut answers = 0;
+        for rise in inputs(&ImageDesign::PARAMETERS) {
+            assert_eq!(answer(&loaded, rise), answer(&ImageDesign, rise), "{rise:?}");
+            answers += 1;
+        }
+        assert_eq!(answers, LENGTH);
+    }
 
     #[test]
     fn the_sweep_covers_the_tables_and_both_sides() {

@@ -1,6 +1,6 @@
 //! A small campaign of random designs: no state may be wrong, and every refusal has a reason that holds.
 
-use compare::campaign::{self, Tally};
+use compare::campaign::{self, Tally, solids};
 
 /// Reasons that are physics: the law unstable, a pole that inflation does not stretch so far, a plain membrane that
 /// would have to push where it leaves the plate, a compliance on which a softening dome inflates by itself.
@@ -29,4 +29,16 @@ fn random_designs_are_solved_or_refused_for_a_true_reason() {
     }
     let tally = Tally::of(results.iter().flat_map(|(_, judged)| judged));
     assert!(tally.converged > 1050, "{tally}");
+}
+
+/// All of it: `cargo campaign solids --designs 2000`.
+#[test]
+fn random_solids_give_one_answer_and_state_their_error() {
+    let mut counts = solids::Counts::default();
+    for index in 0..16 {
+        let judged = solids::judge(index);
+        counts.add(&judged);
+        assert!(counts.holds(), "{judged:?}");
+    }
+    assert!(counts.verdicts[&solids::Verdict::Agrees] >= 12, "{counts}");
 }

@@ -1,15 +1,15 @@
 //! The forms in which tables are written.
 //!
-//! Binary, little-endian: `FTIP`; `u32` table version; `u64` design hash; the ten fields of
-//! [`crate::table::Layout`] in their order, four bytes each (powers as how far they go: 2, 4, 6 or 8; constants in a
-//! half word or a whole one: 0 or 1); `u32` segments, words of a segment; then the words, `i32`, segment by segment.
+//! Rust source and the binary block give the same fields: those that [`crate::block::section`] describes.
 
 use super::TABLE_VERSION;
 use super::certify::Errors;
 use super::design::{Generated, Limit, integer};
 use super::owned::OwnedTables;
+use crate::block::field::{Field, Visit};
+use crate::block::section;
+use crate::block::write::TipData;
 use crate::constants::DesignConstants;
-use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
 
@@ -33,10 +33,17 @@ impl Generated {
         }
     }
 
-    /// The tables as bytes; little-endian: `FTIP`, `u32` table version, `u64` design hash, the fields of
-    /// [`crate::table::Layout`] (four bytes each), `u32` numbers of segments and of words in each, then the words.
+    /// The tip's data as a [`crate::block`], without a calibration.
     pub fn binary(&self) -> Vec<u8> {
-        binary(self)
+        let tables = &self.certified.tables;
+        TipData {
+            constants: self.constants(),
+            layout: tables.layout,
+            words: &tables.words,
+            name: &self.design.name,
+            calibration: None,
+        }
+        .write()
     }
 
     /// The tables as CSV: one row a word.
@@ -58,8 +65,6 @@ fn rust_source(generated: &Generated) -> String {
 
 fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     let tables = &generated.certified.tables;
-    let constants = generated.constants();
-    let transducer = &constants.transducer;
     let layout = &tables.layout;
     let shape = format!(
         "model_tables::table::Tables<{}, {}>",
@@ -72,37 +77,25 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
         generated.design.name,
         tables.bytes()
     )?;
+    let mut constants = generated.constants();
     writeln!(
         out,
         "/// Its `name`.\n\
          pub const NAME: &str = {:?};\n\n\
          /// What the firmware needs to know of the design beside its tables.\n\
-         pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {{\n\
-         \x20   hash: {:#018x},\n\
-         \x20   table_version: {},\n\
-         \x20   certificate: {:#018x},\n\
-         \x20   rest_pressure: {},\n\
-         \x20   maximum_pressure: {},\n\
-         \x20   transducer: model_tables::constants::Transducer {{\n\
-         \x20       range: {:?},\n\
-         \x20       resolution: {},\n\
-         \x20       noise: {},\n\
-         \x20       quantity: model_tables::constants::Quantity::{:?},\n\
-         \x20       kind: model_tables::constants::TransducerKind::{:?},\n\
-         \x20   }},\n\
-         }};\n",
-        generated.design.name,
-        constants.hash,
-        constants.table_version,
-        constants.certificate,
-        constants.rest_pressure,
-        constants.maximum_pressure,
-        transducer.range,
-        transducer.resolution,
-        transducer.noise,
-        transducer.quantity,
-        transducer.kind,
+         pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {{",
+        generated.design.name
     )?;
+    let mut source = Source { out, indent: 4 };
+    section::identity(&mut constants, &mut source)?;
+    section::pressures(&mut constants, &mut source)?;
+    writeln!(
+        source.out,
+        "    transducer: model_tables::constants::Transducer {{"
+    )?;
+    source.indent = 8;
+    section::transducer(&mut constants.transducer, &mut source)?;
+    writeln!(source.out, "    }},\n}};\n")?;
     writeln!(
         out,
         "/// The type of [`TABLES`].\npub type DesignTables = {shape};\n"
@@ -113,14 +106,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
          pub const TABLES: DesignTables = model_tables::table::Tables {{\n\
          \x20   layout: model_tables::table::Layout {{"
     )?;
-    for (name, value) in fields(layout) {
-        let value = match name {
-            "powers" => format!("model_tables::table::Powers::{:?}", layout.powers),
-            "constant" => format!("model_tables::table::Constant::{:?}", layout.constant),
-            _ => value.to_string(),
-        };
-        writeln!(out, "        {name}: {value},")?;
-    }
+    section::layout(&mut tables.layout.clone(), &mut Source { out, indent: 8 })?;
     writeln!(out, "    }},\n    segments: [")?;
     for index in 0..tables.segments() {
         writeln!(out, "        {:?},", tables.segment(index))?;
@@ -128,43 +114,34 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     writeln!(out, "    ],\n}};")
 }
 
-fn binary(generated: &Generated) -> Vec<u8> {
-    let tables = &generated.certified.tables;
-    let mut bytes = Vec::from(*b"FTIP");
-    bytes.extend(TABLE_VERSION.to_le_bytes());
-    bytes.extend(generated.hash().to_le_bytes());
-    for field in fields(&tables.layout) {
-        bytes.extend((field.1 as i32).to_le_bytes());
-    }
-    for size in [tables.segments(), tables.layout.words()] {
-        bytes.extend((size as u32).to_le_bytes());
-    }
-    for word in &tables.words {
-        bytes.extend(word.to_le_bytes());
-    }
-    bytes
+/// A line of Rust source for each field.
+struct Source<'a> {
+    out: &'a mut String,
+    indent: usize,
 }
 
-/// Names and values of a layout, in the order of its fields.
-fn fields(layout: &Layout) -> [(&'static str, i64); 10] {
-    let powers = match layout.powers {
-        Powers::Two => 2,
-        Powers::Four => 4,
-        Powers::Six => 6,
-        Powers::Eight => 8,
-    };
-    [
-        ("pressure_fraction_bits", layout.pressure_fraction_bits.into()),
-        ("maximum", layout.maximum.into()),
-        ("bias", layout.bias.into()),
-        ("octaves", layout.octaves.into()),
-        ("halvings", layout.halvings.into()),
-        ("powers", powers),
-        ("constant", (layout.constant == Constant::Whole).into()),
-        ("first_index", layout.first_index.into()),
-        ("force_shift", layout.force_shift.into()),
-        ("indentation_shift", layout.indentation_shift.into()),
-    ]
+impl Visit for Source<'_> {
+    type Stop = fmt::Error;
+
+    fn field<T: Field>(&mut self, name: &'static str, value: &mut T) -> fmt::Result {
+        write!(self.out, "{:1$}{name}: ", "", self.indent)?;
+        value.spell(self.out)?;
+        writeln!(self.out, ",")
+    }
+}
+
+/// A line of TOML for each field that is a word.
+struct Words<'a>(&'a mut String);
+
+impl Visit for Words<'_> {
+    type Stop = fmt::Error;
+
+    fn field<T: Field>(&mut self, name: &'static str, value: &mut T) -> fmt::Result {
+        let mut bytes = Vec::new();
+        value.put(&mut bytes);
+        let word = i32::get(&bytes).ok_or(fmt::Error)?;
+        writeln!(self.0, "{name} = {word}")
+    }
 }
 
 fn csv(generated: &Generated) -> String {
@@ -252,9 +229,7 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
         out,
         "[layout] # an input count is 2^-pressure_fraction_bits pascal"
     )?;
-    for (name, value) in fields(&tables.layout) {
-        writeln!(out, "{name} = {value}")?;
-    }
+    section::layout(&mut tables.layout.clone(), &mut Words(out))?;
     writeln!(out, "segments = {}", tables.segments())?;
     writeln!(out, "words_per_segment = {}", tables.layout.words())?;
     let asked = generated.asked_percent();

@@ -13,11 +13,6 @@ pub struct OwnedTables {
 }
 
 impl OwnedTables {
-    /// The words as a chip has them in its memory.
-    pub fn little_endian(&self) -> Vec<[u8; 4]> {
-        self.words.iter().map(|word| word.to_le_bytes()).collect()
-    }
-
     /// Number of segments.
     pub fn segments(&self) -> usize {
         self.words.len() / self.layout.words()

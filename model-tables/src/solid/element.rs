@@ -171,6 +171,9 @@ pub fn stress<T: Real>(material: &Material, deformation: Deformation<T>, pressur
     }
 }
 
+/// Where a deformation's components in the plane of the meridian are.
+const IN_PLANE: [usize; 4] = [0, 1, 3, 4];
+
 /// Second derivatives of the density, in the order of the [`Deformation`], and the volume ratio's first.
 #[inline(always)]
 pub fn stiffness<T: Real>(
@@ -191,8 +194,6 @@ pub fn stiffness<T: Real>(
     let by_ff = (first + squares * second) * 2.0 + f * f * curvature * 4.0;
     let deformed = [f11, f12, f21, f22];
     let cofactor = [f22, T::from(0.0) - f21, T::from(0.0) - f12, f11];
-    // Of the in-plane components, and where they are among all.
-    const PLACES: [usize; 4] = [0, 1, 3, 4];
     let by_square = curvature * 4.0;
     let by_volume = f * f * volume_stiffness + T::from(2.0 * second);
     let hoop = pressure + determinant * f * volume_stiffness;
@@ -211,12 +212,12 @@ pub fn stiffness<T: Real>(
             if (i, j) == (1, 2) {
                 sum = sum - by_d;
             }
-            k[PLACES[i]][PLACES[j]] = sum;
-            k[PLACES[j]][PLACES[i]] = sum;
+            k[IN_PLANE[i]][IN_PLANE[j]] = sum;
+            k[IN_PLANE[j]][IN_PLANE[i]] = sum;
         }
         let sum = by_sf * deformed[i] + hoop * cofactor[i];
-        k[PLACES[i]][2] = sum;
-        k[2][PLACES[i]] = sum;
+        k[IN_PLANE[i]][2] = sum;
+        k[2][IN_PLANE[i]] = sum;
     }
     k[2][2] = by_ff + determinant * determinant * volume_stiffness;
     let by_deformation = [

@@ -29,6 +29,17 @@ const STEP_LIMIT: f64 = 0.5;
 const RENEWAL: f64 = 0.1;
 /// A step that leaves more than this part of the residual is the last with its factors.
 const CONTRACTION: f64 = 0.1;
+/// A step that leaves more than this part although the plate's part is of its own state is the last with the wall's.
+const WALL_CONTRACTION: f64 = 0.5;
+
+/// Which part of the factors is of the latest iterate.
+#[derive(PartialEq)]
+enum Renewed {
+    Nothing,
+    /// What the plate adds.
+    Plate,
+    All,
+}
 
 /// How a state follows the plate, at a fixed equation of the fluid.
 #[derive(Clone, Debug)]
@@ -181,7 +192,8 @@ impl Wall {
 
     /// Solves for the state in balance with a plate at a height and the fluid's equation, starting from `state`.
     ///
-    /// The equations are factored where the factors of an iteration before bring the residual down too slowly.
+    /// The equations are factored where the factors of an iteration before bring the residual down too slowly: first with the plate's part of now,
+    /// and where that is still slow, as where the law softens, all of them.
     ///
     /// # Errors
     /// [`Failure`]; `state` is then of no use.
@@ -189,14 +201,14 @@ impl Wall {
         let mut before = f64::INFINITY;
         // Not set up yet.
         let mut moved = f64::INFINITY;
-        let mut factors_hold = false;
+        let mut renewed = Renewed::Nothing;
+        let mut shortened = false;
         for _ in 0..MAX_ITERATIONS {
             let balance = self.balance(state, plate, fluid);
             self.iterations += 1;
             if !balance.residual.is_finite() {
                 return Err(Failure::Singular);
             }
-
             let force = balance.force / self.mesh.thickness;
             if balance.residual < TOLERANCE * self.stiffening() + RELATIVE_TOLERANCE * force {
                 // Admissible only right side out: the equations go on beyond.
@@ -207,20 +219,27 @@ impl Wall {
                     Err(Failure::InsideOut)
                 };
             }
-            if moved > RENEWAL * self.mesh.thickness {
+            let contraction = balance.residual / before;
+            before = balance.residual;
+            renewed = if moved > RENEWAL * self.mesh.thickness
+                || renewed == Renewed::Plate && contraction > WALL_CONTRACTION
+            {
                 self.set_up(state);
                 self.factor(state, plate, 0).ok_or(Failure::Singular)?;
                 // Good enough also where the contact's edge moves on.
                 self.follow_pressure();
                 moved = 0.0;
-            } else if !factors_hold || balance.residual > CONTRACTION * before {
+                Renewed::All
+            } else if shortened || contraction > CONTRACTION {
                 self.factor(state, plate, usize::MAX).ok_or(Failure::Singular)?;
-            }
-            before = balance.residual;
+                Renewed::Plate
+            } else {
+                Renewed::Nothing
+            };
             let excess = fluid.excess(&balance, state);
             let largest = self.solve(fluid, excess).ok_or(Failure::Singular)?;
             let limit = STEP_LIMIT * self.mesh.thickness / largest;
-            factors_hold = limit >= 1.0;
+            shortened = limit < 1.0;
             moved += largest * limit.min(1.0);
             state.add(limit.min(1.0), &self.step);
         }

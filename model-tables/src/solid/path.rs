@@ -17,7 +17,7 @@ use super::Failure;
 use super::equilibrium::{Tangent, Wall};
 use super::section::{self, ContactEdge};
 use super::state::{Balance, Fluid, State};
-use super::station::{Kept, Station, between, force, hermite, pressure, work};
+use super::station::{Kept, Station, between, force, hermite, work};
 use crate::limit::EndsBy;
 
 /// The first step, over the height.
@@ -39,21 +39,8 @@ const LARGEST_CORRECTION: f64 = 0.1;
 const ENERGY_TOLERANCE: f64 = 5e-3;
 /// The same in the first step, where the contact is smaller than an element and its force no power of the indentation.
 const FIRST_ENERGY_TOLERANCE: f64 = 0.2;
-/// Difference of forces or pressure rises from which on two states at one indentation are two, relative.
-const DISTINCT: f64 = 5e-3;
 /// Halvings on the way to an asked state.
 const MOST_HALVINGS: usize = 12;
-
-/// Another state in balance, beside the path's.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Other {
-    /// Its indentation.
-    pub indentation: f64,
-    /// Gauge pressure of the fluid.
-    pub fluid: f64,
-    /// Force on the plate.
-    pub force: f64,
-}
 
 /// Why a state is not the next of the path.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +48,7 @@ enum Rejected {
     Failed(Failure),
     Touches(EndsBy),
     /// In balance, but of another branch, or too far from the last to tell.
-    Elsewhere(Option<Other>),
+    Elsewhere,
 }
 
 /// Why there is no state.
@@ -89,9 +76,6 @@ pub struct Path {
     /// Steps that keep their length, after one that failed.
     cautious: u32,
     ends_by: Option<EndsBy>,
-    /// States that were rejected, not yet passed by the path.
-    candidates: Vec<Other>,
-    other: Option<Other>,
     /// The state in work.
     work: State,
     guess: State,
@@ -127,8 +111,6 @@ impl Path {
             height,
             cautious: 0,
             ends_by: None,
-            candidates: Vec::new(),
-            other: None,
         }
     }
 
@@ -139,11 +121,6 @@ impl Path {
     /// The rest state.
     pub fn rest(&self) -> &Kept {
         &self.stations[0].kept
-    }
-
-    /// Another state in balance that was met on the way, the first.
-    pub fn other(&self) -> Option<Other> {
-        self.other
     }
 
     /// The state at an indentation.
@@ -203,7 +180,7 @@ impl Path {
                         reached: below.kept.indentation,
                         failure: match rejected {
                             Rejected::Failed(failure) => failure,
-                            Rejected::Touches(_) | Rejected::Elsewhere(_) => Failure::Elsewhere,
+                            Rejected::Touches(_) | Rejected::Elsewhere => Failure::Elsewhere,
                         },
                     });
                 }
@@ -243,7 +220,6 @@ impl Path {
                     } else if self.cautious < u32::MAX {
                         self.cautious -= 1;
                     }
-                    self.pass(&last, &station);
                     self.stations.push(station);
                     return Ok(());
                 }
@@ -255,12 +231,8 @@ impl Path {
                             self.cautious = u32::MAX;
                             (LIMIT_TOLERANCE, ends_by)
                         }
-                        Rejected::Elsewhere(other) => {
-                            self.candidates.extend(other);
-                            (SMALLEST_STEP, EndsBy::NoFurtherState)
-                        }
                         Rejected::Failed(Failure::InsideOut) => (SMALLEST_STEP, EndsBy::WallFolds),
-                        Rejected::Failed(_) => (SMALLEST_STEP, EndsBy::NoFurtherState),
+                        Rejected::Failed(_) | Rejected::Elsewhere => (SMALLEST_STEP, EndsBy::NoFurtherState),
                     };
                     if self.step < floor * self.height {
                         let touches = matches!(rejected, Rejected::Touches(_));
@@ -272,28 +244,6 @@ impl Path {
                 }
             }
         }
-    }
-
-    /// Which of the rejected states up to a new one of the path are states of their own.
-    fn pass(&mut self, last: &Station, next: &Station) {
-        let rest = self.rest().state.fluid;
-        let mut other = self.other;
-        self.candidates.retain(|candidate| {
-            if candidate.indentation > next.kept.indentation {
-                return true;
-            }
-            let [of_path, of_other] = [
-                between(last, next, candidate.indentation, pressure)[0] - rest,
-                candidate.fluid - rest,
-            ];
-            let [force, _] = between(last, next, candidate.indentation, force);
-            let distinct = |a: f64, b: f64| (a - b).abs() > DISTINCT * a.abs().max(b.abs());
-            if other.is_none() && (distinct(of_path, of_other) || distinct(force, candidate.force)) {
-                other = Some(*candidate);
-            }
-            false
-        });
-        self.other = other;
     }
 
     /// A guess for the state at an indentation beyond the last: the parabola with its value and slope, through the one before.
@@ -385,15 +335,8 @@ impl Path {
         let corrected = corrections.map(|(guess, found)| (guess - found).abs());
         let corrected = corrected.fold(0.0, f64::max) / wall.mesh.thickness;
         let strain = (missing / allowed).max(corrected / LARGEST_CORRECTION);
-        if !wall.is_stable(fluid) {
-            return Err(Rejected::Elsewhere(None));
-        }
-        if strain > 1.0 {
-            return Err(Rejected::Elsewhere(Some(Other {
-                indentation,
-                fluid: kept.state.fluid,
-                force: kept.balance.force,
-            })));
+        if strain > 1.0 || !wall.is_stable(fluid) {
+            return Err(Rejected::Elsewhere);
         }
         Ok((kept, strain))
     }

@@ -1,11 +1,12 @@
 //! Pressing a solid fingertip: its rest state, states at asked indentations, the end of the press.
 
+use super::branch;
 use super::equilibrium::Wall;
 use super::inflation;
 use super::mesh::Elements;
-use super::path::{Other, Path, Stop};
+use super::path::{Path, Stop};
 use super::section::{self, Station};
-use super::state::Fluid;
+use super::state::{Balance, Fluid};
 use super::station::Kept;
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};
@@ -94,6 +95,15 @@ pub struct PressedState {
     pub work: f64,
     /// Stretch of the middle of the wall at the pole.
     pub pole_stretch: f64,
+}
+
+/// A state in balance beside that of the path from rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OtherState {
+    /// Its pressure rise and force.
+    pub contact: Contact,
+    /// Whether a wall can stay in it: the energy is a minimum. Else it is the least to get over on the way to another.
+    pub is_stable: bool,
 }
 
 impl PressedState {
@@ -223,11 +233,16 @@ impl Press {
             return Err(SolidError::NotAnIndentation { asked: indentation });
         }
         self.solve(indentation)?;
-        Ok(Contact {
+        Ok(self.contact(indentation, self.asked.state.fluid, &self.asked.balance))
+    }
+
+    /// A state in SI units.
+    fn contact(&self, indentation: f64, pressure: f64, balance: &Balance) -> Contact {
+        Contact {
             indentation,
-            pressure_rise: (self.asked.state.fluid - self.fluid.pressure) * self.modulus,
-            force: self.asked.balance.force * self.modulus * self.length * self.length,
-        })
+            pressure_rise: (pressure - self.fluid.pressure) * self.modulus,
+            force: balance.force * self.modulus * self.length * self.length,
+        }
     }
 
     /// Solves the state at an indentation.
@@ -259,18 +274,19 @@ impl Press {
         }
     }
 
-    /// Another state in balance that was met on the way: a contact that lies elsewhere than on the path from rest.
-    pub fn other_state(&self) -> Option<Contact> {
-        let Other {
-            indentation,
-            fluid,
-            force,
-        } = self.path.other()?;
-        Some(Contact {
-            indentation: indentation * self.length,
-            pressure_rise: (fluid - self.fluid.pressure) * self.modulus,
-            force: force * self.modulus * self.length * self.length,
-        })
+    /// Another state in balance at an indentation in metres, 0 ..= limit, where one is found.
+    ///
+    /// # Errors
+    /// As [`Press::at_indentation`].
+    pub fn other_state(&mut self, indentation: f64) -> Result<Option<OtherState>, SolidError> {
+        self.contact_at(indentation)?;
+        let rest = &self.path.rest().state;
+        let plate = self.height - self.asked.indentation;
+        let found = branch::beside(&mut self.wall, &self.fluid, rest, &self.asked, plate);
+        Ok(found.map(|found| OtherState {
+            contact: self.contact(indentation, found.state.fluid, &found.balance),
+            is_stable: found.is_stable,
+        }))
     }
 
     /// The largest `I1` in the wall at an indentation in metres, 0 ..= limit, outside the crease at the rim.

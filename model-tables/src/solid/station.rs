@@ -103,8 +103,3 @@ pub(super) fn between(
 pub(super) fn force(station: &Station) -> [f64; 2] {
     [station.kept.balance.force, station.tangent.force]
 }
-
-/// Pressure of the fluid and its derivative.
-pub(super) fn pressure(station: &Station) -> [f64; 2] {
-    [station.kept.state.fluid, station.tangent.state.fluid]
-}

@@ -1,43 +1,81 @@
 //! Tables that are known at run time only: their layout is data, and their words are bytes of a file or of a flash.
+//!
+//! They are checked once, when they are loaded: the layout is one that the lookup computes, there is a segment for every
+//! input, zero reads zero, and neither output ever falls ([`super::rising`]).
 
+use crate::table::error::TablesError;
+use crate::table::rising::rises;
+use crate::table::segments::Segments;
 use crate::table::{Layout, Reading};
 use crate::units::PressureRise;
 
+/// Most fraction bits of a pascal.
+pub const MOST_FRACTION_BITS: u32 = 16;
+/// Last input and bias are below this, so that their sum fits a word.
+pub const INPUTS_END: i32 = 1 << 30;
+/// An octave is cut in halves at most so often.
+pub const MOST_HALVINGS: u32 = 3;
+/// Most bits of a shift of a word.
+const MOST_SHIFT: u32 = 31;
+
 /// Tables whose words lie in memory as little-endian bytes, at any address; reads exactly as [`crate::table::Tables`] does.
 #[derive(Clone, Copy, Debug)]
-pub struct LoadedTables<'a> {
-    layout: Layout,
-    words: &'a [[u8; 4]],
-}
+pub struct LoadedTables<'a>(Segments<'a>);
 
 impl<'a> LoadedTables<'a> {
-    /// Tables of a layout that the generator wrote, with its words, [`Layout::words`] a segment, the segment of the
-    /// largest inputs first.
-    pub const fn new(layout: Layout, words: &'a [[u8; 4]]) -> Self {
-        Self { layout, words }
+    /// Tables of a layout, with [`Layout::words`] words a segment, the segment of the largest inputs first.
+    ///
+    /// # Errors
+    /// [`TablesError`]: such tables may answer wrongly.
+    pub fn new(layout: Layout, words: &'a [[u8; 4]]) -> Result<Self, TablesError> {
+        check_layout(&layout)?;
+        let number = |count: i32| layout.place(PressureRise(count)).number;
+        if number(layout.maximum) != layout.first_index {
+            return Err(TablesError::Layout("first_index"));
+        }
+        // Numbers grow downwards, to 255 at most.
+        let segments = (number(0) - layout.first_index + 1) as usize;
+        let (needed, found) = (segments * layout.words(), words.len());
+        if needed != found {
+            return Err(TablesError::Words { needed, found });
+        }
+        let tables = Segments { layout, words };
+        let zero = tables.lookup(PressureRise(0));
+        if (zero.force.0, zero.indentation.0) != (0, 0) {
+            return Err(TablesError::Zero);
+        }
+        rises(&tables)?;
+        Ok(Self(tables))
     }
 
     /// Where the segments lie and how their words are read.
     pub const fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
-    /// Number of segments.
-    pub fn segments(&self) -> usize {
-        self.words.len() / self.layout.words()
+        &self.0.layout
     }
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     pub fn lookup(&self, rise: PressureRise) -> Reading {
-        let place = self.layout.place(rise);
-        let index = place.number.wrapping_sub(self.layout.first_index) as usize;
-        let index = index.min(self.segments().saturating_sub(1));
-        let width = self.layout.words();
-        let mut words = [0; Layout::MOST_WORDS];
-        let segment = self.words.iter().skip(index * width).take(width);
-        for (word, bytes) in words.iter_mut().zip(segment) {
-            *word = i32::from_le_bytes(*bytes);
-        }
-        self.layout.reading(rise, place, &words)
+        self.0.lookup(rise)
+    }
+}
+
+/// Whether every field is one that the lookup computes with.
+fn check_layout(layout: &Layout) -> Result<(), TablesError> {
+    let halvings = if layout.octaves == 1 { MOST_HALVINGS } else { 0 };
+    let fields = [
+        (
+            "pressure_fraction_bits",
+            layout.pressure_fraction_bits <= MOST_FRACTION_BITS,
+        ),
+        ("maximum", (1..INPUTS_END).contains(&layout.maximum)),
+        ("bias", (1..INPUTS_END).contains(&layout.bias)),
+        ("octaves", (1..=2).contains(&layout.octaves)),
+        ("halvings", layout.halvings <= halvings),
+        ("force_shift", layout.force_shift <= MOST_SHIFT),
+        ("indentation_shift", layout.indentation_shift <= MOST_SHIFT),
+    ];
+    match fields.into_iter().find(|(_, holds)| !holds) {
+        Some((field, _)) => Err(TablesError::Layout(field)),
+        None => Ok(()),
     }
 }

@@ -1,7 +1,7 @@
 //! The error budget of the default design against what the running image reports.
 
 use crate::{design, press_hold_release};
-use emulator::accuracy::Accuracy;
+use emulator::accuracy::RunAccuracy;
 use host_tests::assert_readme_figure;
 use host_tests::budget::{Budget, PLACES};
 use model_tables::generate;
@@ -14,7 +14,7 @@ fn the_demo_stays_within_its_error_budget() {
     let run = press_hold_release();
     let generated = generate::from_design_file(&design().path).expect("the default design");
     let budget = Budget::of(&generated);
-    let all = Accuracy::of(run.record.rows.iter(), &run.plant);
+    let all = RunAccuracy::of(run.record.rows.iter(), &run.plant);
     println!(
         "pressure rise: {:.3} Pa of error (RMS) over the demo, {:.3} Pa budgeted",
         all.pressure_error,
@@ -33,7 +33,7 @@ fn the_demo_stays_within_its_error_budget() {
     of_the_chip.terms.retain(|term| !term.name.starts_with("model"));
     let hold = run.record.rows.iter();
     let hold = hold.filter(|row| run.plant.scenario().phase_at(row.time) == "hold");
-    let hold = Accuracy::of(hold, &run.plant);
+    let hold = RunAccuracy::of(hold, &run.plant);
     let budgeted = of_the_chip.sum(PLACES.len() - 1);
     let observed = [hold.force_median, hold.indentation_median].map(|share| 100.0 * share);
     println!(

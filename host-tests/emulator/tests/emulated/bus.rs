@@ -4,7 +4,7 @@ use crate::{design_with, firmware_for};
 use emulator::accuracy::is_wrong;
 use emulator::bench;
 use emulator::plant::Plant;
-use emulator::record::{Record, Recorder, Row};
+use emulator::record::{Recorder, Recording, Row};
 use emulator::scenario::{Scenario, WireFault};
 use emulator::transducer::Wiring;
 use fingertip::status::{Fault, Status};
@@ -20,7 +20,7 @@ struct Run {
     kind: &'static str,
     /// From one sample to the next, seconds.
     sample: f64,
-    record: Record,
+    record: Recording,
     plant: Plant,
     scenario: Scenario,
     resets: Vec<String>,

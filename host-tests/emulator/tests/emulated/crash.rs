@@ -4,7 +4,7 @@
 use crate::{design, firmware};
 use emulator::bench;
 use emulator::inlined;
-use emulator::record::{Record, Recorder, Row};
+use emulator::record::{Recorder, Recording, Row};
 use emulator::scenario::{Event, Happening, Scenario};
 use fingertip::device::supervisor::{RESET_LIMIT, Stage};
 use fingertip::link::command::{CommandKind, Outcome};
@@ -77,7 +77,7 @@ fn hello_with(address: u64, instructions: [u16; 2], over: f64, cause: ResetCause
         "{:?}",
         outcome.resets
     );
-    let record: Record = outcome.listener.into_record();
+    let record: Recording = outcome.listener.into_record();
     assert!(record.rows.iter().all(|row| row.reported.is_none()));
     let after = record.rows.iter().filter(|row| row.time > over);
     assert!(after.clone().count() > 700, "{} reports", record.rows.len());

@@ -19,11 +19,11 @@ mod stored;
 mod supply;
 mod transducers;
 
-use emulator::bench::{self, Outcome};
+use emulator::bench::{self, RunOutcome};
 use emulator::fingertip_design::{FingertipDesign, FingertipDesignError, default_path};
 use emulator::image::Image;
 use emulator::plant::Plant;
-use emulator::record::{Record, Recorder, Row};
+use emulator::record::{Recorder, Recording, Row};
 use emulator::scenario::Scenario;
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -91,7 +91,7 @@ fn design() -> FingertipDesign {
 /// What came of one scenario.
 struct Run {
     plant: Plant,
-    record: Record,
+    record: Recording,
     instructions: u64,
     time: f64,
     calls: Vec<u64>,
@@ -107,7 +107,7 @@ fn run(scenario: &str) -> Run {
         .plant(scenario)
         .expect("the default design can be pressed");
     let recorder = Recorder::new(|_: &Row| {});
-    let outcome: Outcome<_> =
+    let outcome: RunOutcome<_> =
         bench::run(firmware(), plant.clone(), duration, SIGNAL_PATH, recorder).expect("the image runs");
     Run {
         plant,

@@ -1,7 +1,7 @@
 //! A press is reported as it is.
 
 use crate::{Run, design, press_hold_release, run};
-use emulator::accuracy::{Accuracy, is_wrong};
+use emulator::accuracy::{RunAccuracy, is_wrong};
 use emulator::record::Row;
 use fingertip::status::Status;
 
@@ -16,13 +16,13 @@ const PERIOD: f64 = 1e-3;
 /// Time that the first samples after power-on take to become a report with a time of its own, seconds.
 const FIRST: f64 = 5e-3;
 
-fn of_phase(run: &Run, name: &str) -> Accuracy {
+fn of_phase(run: &Run, name: &str) -> RunAccuracy {
     let rows = run
         .record
         .rows
         .iter()
         .filter(|row| run.plant.scenario().phase_at(row.time) == name);
-    Accuracy::of(rows, &run.plant)
+    RunAccuracy::of(rows, &run.plant)
 }
 
 #[test]

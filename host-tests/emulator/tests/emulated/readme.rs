@@ -2,7 +2,7 @@
 //! packages, because panics name their files.
 
 use crate::{firmware, press_hold_release, small_board};
-use emulator::accuracy::Accuracy;
+use emulator::accuracy::RunAccuracy;
 use host_tests::assert_readme_figure;
 
 #[test]
@@ -22,7 +22,7 @@ fn cost_of_the_image() {
 #[test]
 fn accuracy_of_the_press() {
     let run = press_hold_release();
-    let all = Accuracy::of(run.record.rows.iter(), &run.plant);
+    let all = RunAccuracy::of(run.record.rows.iter(), &run.plant);
     println!("{all:?}");
     let percent = |share: f64| 100.0 * share;
     assert_readme_figure(

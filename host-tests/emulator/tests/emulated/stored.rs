@@ -4,7 +4,7 @@
 use crate::{design, firmware};
 use emulator::bench;
 use emulator::image::Image;
-use emulator::record::{Record, Recorder, Row};
+use emulator::record::{Recorder, Recording, Row};
 use emulator::scenario::Scenario;
 use fingertip::image::ImageDesign;
 use fingertip::signal::calibration::Calibration;
@@ -37,7 +37,7 @@ pub(crate) fn with_stored(
 }
 
 /// Runs the default scenario with this hash in the stored record.
-fn run(design_hash: u64) -> Record {
+fn run(design_hash: u64) -> Recording {
     let constants = ImageDesign::CONSTANTS;
     let calibration = Calibration {
         zero: Some(Millipascals(constants.rest_pressure * 1000)),
@@ -56,7 +56,7 @@ fn run(design_hash: u64) -> Record {
 }
 
 /// Reported over true pressure rise in the hold, and the statuses there.
-fn held(record: &Record) -> (f64, Vec<Status>) {
+fn held(record: &Recording) -> (f64, Vec<Status>) {
     let rows = record.rows.iter().filter(|row| (1.6..1.95).contains(&row.time));
     let ratio = |row: &Row| row.reported.expect("a reading").pressure_rise / row.truth.pressure_rise;
     let ratios: Vec<f64> = rows.clone().map(ratio).collect();

@@ -8,9 +8,9 @@ use emulator::bench;
 use emulator::fingertip_design::FingertipDesign;
 use emulator::image::Image;
 use emulator::plant::Plant;
-use emulator::record::{Record, Recorder, Row};
+use emulator::record::{Recorder, Recording, Row};
 use emulator::scenario::{Event, Happening, Scenario};
-use emulator::transducer::{Part, Transducer};
+use emulator::transducer::{EmulatedTransducer, Part};
 use fingertip::link::command::{CommandKind, Outcome};
 use fingertip::signal::calibration::Calibration;
 use fingertip::status::{Fault, Status, Stored};
@@ -225,7 +225,7 @@ fn tell(design: &FingertipDesign, image: &Image, plant: &Plant, story: Story, ai
 }
 
 /// What the firmware said beside its reports that it should not have.
-fn complaints(story: Story, record: &Record) -> Vec<String> {
+fn complaints(story: Story, record: &Recording) -> Vec<String> {
     let mut complaints = vec![];
     let answers: Vec<(CommandKind, Outcome)> = record
         .answers
@@ -353,10 +353,10 @@ fn assert_documented(kind: &str, air: f64, told: &[Told]) {
 }
 
 /// Runs the image of a design with another part in the place of its own, in air of a pressure, kilopascals.
-fn with_part(design: &FingertipDesign, part: Part, air_kpa: f64) -> Record {
+fn with_part(design: &FingertipDesign, part: Part, air_kpa: f64) -> Recording {
     let scenario = Story::Reset.scenario(air_kpa);
     let plant = design.plant(scenario).expect("it can be pressed");
-    let transducer = Transducer {
+    let transducer = EmulatedTransducer {
         part,
         ..plant.transducer()
     };

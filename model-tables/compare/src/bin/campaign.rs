@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use compare::campaign::draw::Case;
 use compare::campaign::judge::{Judged, Verdict};
-use compare::campaign::{self, Tally, walls};
+use compare::campaign::{self, Tally, solids, walls};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use output::{Refusal, files};
@@ -27,15 +27,18 @@ enum Campaign {
     Designs(MembraneArguments),
     /// Holds the model that `kind = "auto"` takes for random walls to the refined solid
     #[command(after_help = "Example:\n  cargo campaign walls --designs 200 --seed 0")]
-    Walls(WallArguments),
+    Walls(DrawArguments),
+    /// Asks random solids alone, in lists, by half steps and on finer meshes
+    #[command(after_help = "Example:\n  cargo campaign solids --designs 2000 --seed 0")]
+    Solids(DrawArguments),
 }
 
 #[derive(Debug, Args)]
-struct WallArguments {
-    /// Walls to draw
+struct DrawArguments {
+    /// Designs to draw
     #[arg(long, default_value_t = 200)]
     designs: u64,
-    /// The number of the first wall, which is all that a draw depends on
+    /// The number of the first design, which is all that a draw depends on
     #[arg(long, default_value_t = 0)]
     seed: u64,
 }
@@ -132,6 +135,7 @@ fn main() -> ExitCode {
     let kept = match Arguments::parse().campaign {
         Campaign::Designs(arguments) => designs(&arguments),
         Campaign::Walls(arguments) => Ok(judge_walls(&arguments)),
+        Campaign::Solids(arguments) => Ok(judge_solids(&arguments)),
     };
     match kept {
         Ok(true) => ExitCode::SUCCESS,
@@ -144,7 +148,7 @@ fn main() -> ExitCode {
 }
 
 /// Whether no error was let through that is larger than allowed.
-fn judge_walls(arguments: &WallArguments) -> bool {
+fn judge_walls(arguments: &DrawArguments) -> bool {
     let mut worst = [0.0_f64; walls::ASKED.len()];
     let mut without = 0;
     for done in 0..arguments.designs {
@@ -173,6 +177,24 @@ fn judge_walls(arguments: &WallArguments) -> bool {
         kept &= *worst <= asked;
     }
     kept
+}
+
+/// Whether no solid's answer depended on the way or was off by more than stated; a line for each that was.
+fn judge_solids(arguments: &DrawArguments) -> bool {
+    let mut counts = solids::Counts::default();
+    for done in 0..arguments.designs {
+        let judged = solids::judge(arguments.seed + done);
+        counts.add(&judged);
+        let mut one = solids::Counts::default();
+        one.add(&judged);
+        if !one.holds() {
+            println!("{judged:?}");
+        }
+        eprint!("\r{} of {} solids", done + 1, arguments.designs);
+    }
+    eprintln!();
+    print!("{counts}");
+    counts.holds()
 }
 
 /// Whether no state was wrong.

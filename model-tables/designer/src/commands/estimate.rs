@@ -5,7 +5,6 @@ use fingertip::signal::contact::contact;
 use fingertip::signal::design::{Design, LoadedDesign};
 use fingertip::status::{Status, Warnings};
 use model_tables::generate::{GenerateError, from_design_file};
-use model_tables::table::loaded::LoadedTables;
 use model_tables::units::PressureRise;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -34,9 +33,8 @@ pub(super) fn refusal(file: &Path, error: GenerateError) -> Refusal {
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let generated = from_design_file(file).map_err(|error| refusal(file, error))?;
-    let tables = &generated.certified.tables;
-    let words = tables.little_endian();
-    let design = LoadedDesign::new(generated.constants(), LoadedTables::new(tables.layout, &words));
+    let block = generated.binary();
+    let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;
     let mut rows = Rows::new(COLUMNS);
     for &pascals in &arguments.pressure_rise_pa {

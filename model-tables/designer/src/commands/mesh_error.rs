@@ -42,13 +42,16 @@ fn difference(found: &[Contact], truth: &[Contact]) -> f64 {
 pub(super) fn note(design: &Design, elements: Elements, found: &[Contact]) -> String {
     let finer = finer(elements);
     let kind = Kind::Solid(finer);
+    // Of first order through the wall, as at the singular corner of the rim: `n` elements are `n + 1` times as far off as from `n + 1`.
+    let times = finer.through / (finer.through - elements.through);
     let truth: Result<Vec<Contact>, ModelError> = Press::new(design, finer).and_then(|mut press| {
         let depths = found.iter().map(|contact| contact.indentation);
         depths.map(|depth| Ok(press.contact_at(depth)?)).collect()
     });
     match truth {
         Ok(truth) => format!(
-            "error of the mesh: force and pressure rise differ from those of the {kind} by at most {:.2} %",
+            "error of the mesh: force and pressure rise differ from those of the {kind} by at most {:.2} %, and by up to {times} \
+             times that from those of ever finer meshes",
             100.0 * difference(found, &truth)
         ),
         Err(error) => {

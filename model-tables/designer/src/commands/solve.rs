@@ -3,7 +3,7 @@
 use super::model::{self, Model};
 use super::{Field, bench, finite, mesh_error, read, refuse_plain, warn, warn_of_instability};
 use model_tables::curve::Contact;
-use model_tables::design_file::DesignFile;
+use model_tables::design_file::{Calibration, DesignFile};
 use model_tables::material::stability::Margin;
 use model_tables::membrane::press::Press;
 use model_tables::membrane::state::PressedState;
@@ -11,7 +11,7 @@ use model_tables::model::ModelError;
 use model_tables::model::{Fingertip, Kind};
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
-use output::rows::{Cell, Rows};
+use output::rows::{Cell, Rows, plain};
 use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 
@@ -141,16 +141,31 @@ fn solid(
     }
     let mut notes: Vec<String> = model.note.iter().cloned().collect();
     notes.push(mesh_error::note(&model.design, elements, &contacts));
-    notes.extend(press.other_state().map(|other| {
-        format!(
-            "other states exist: one at {:.6} mm has a pressure rise of {:.6} kPa and a force of {:.6} N; these are \
-             the states that a press from rest passes",
-            calibration.indentation_read(other.indentation) * 1e3,
-            calibration.pressure_read(other.pressure_rise) * 1e-3,
-            other.force
-        )
-    }));
+    notes.extend(other_state(&mut press, &contacts, calibration));
     let mut rung = Fingertip::Solid(Box::new(press));
     bench::warn_of_strain(&arguments.design, design_file, &mut rung, deepest);
     Ok(CommandAnswer { rows, notes })
+}
+
+/// A note on the first of the states beside which another is in balance.
+fn other_state(
+    press: &mut solid::press::Press,
+    contacts: &[Contact],
+    calibration: &Calibration,
+) -> Option<String> {
+    let other = contacts
+        .iter()
+        .find_map(|contact| press.other_state(contact.indentation).ok().flatten())?;
+    let stays = if other.is_stable {
+        ""
+    } else {
+        ", in which the wall does not stay"
+    };
+    Some(format!(
+        "other states exist: at {} mm also one with a pressure rise of {:.6} kPa and a force of {:.6} N{stays}; given are \
+         the states that a press from rest passes",
+        plain(calibration.indentation_read(other.contact.indentation) * 1e3, 6),
+        calibration.pressure_read(other.contact.pressure_rise) * 1e-3,
+        other.contact.force
+    ))
 }

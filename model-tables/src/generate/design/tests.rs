@@ -1,4 +1,5 @@
 use super::*;
+use crate::block::read::TipBlock;
 use crate::constants::Quantity;
 use crate::generate::{OwnedTables, tables as make_tables};
 use crate::membrane::TensionField;
@@ -220,14 +221,21 @@ fn refuses_a_design_without_the_sections_tables_need() {
 fn writes_what_the_chip_includes() {
     let generated = from_design(shipped("skin-analogue")).expect("tables");
     let source = generated.rust_source();
-    assert!(source.contains("name: \"skin-analogue\""));
+    assert!(source.contains("pub const NAME: &str = \"skin-analogue\";"));
     // 8.269 kPa is the reference state's pressure; 10 % and 90 % of 65536.
     assert!(source.contains("rest_pressure: 8269,"));
     assert!(source.contains("Ratiometric { output: [6554, 58982], supply_measured: false }"));
     let tables = &generated.certified.tables;
     let binary = generated.binary();
-    assert_eq!(&binary[..4], b"FTIP");
-    assert_eq!(binary.len(), 4 + 4 + 8 + 10 * 4 + 2 * 4 + tables.bytes());
+    let tip = TipBlock::read(&binary).expect("what was generated can be loaded");
+    assert_eq!(
+        (tip.constants, tip.name),
+        (generated.constants(), "skin-analogue")
+    );
+    for count in (-100..tables.layout.maximum + 100).step_by(61) {
+        let rise = PressureRise(count);
+        assert_eq!(tip.tables.lookup(rise), tables.lookup(rise), "{count}");
+    }
     let rows = generated.csv().lines().count();
     assert_eq!(rows, 1 + tables.words.len());
 }

@@ -91,7 +91,7 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
         return Err("the firmware sent no report".into());
     }
 
-    let accuracy = emulator::accuracy::Accuracy::of(&record.rows, &plant);
+    let accuracy = emulator::accuracy::RunAccuracy::of(&record.rows, &plant);
     let caption = Caption {
         title: format!("{} on {}", options.scenario, design.name()),
         subtitle: format!(

@@ -1,16 +1,16 @@
 //! What the run comes to.
 
 use crate::say::say;
-use emulator::accuracy::{Accuracy, is_wrong};
+use emulator::accuracy::{RunAccuracy, is_wrong};
 use emulator::plant::Plant;
-use emulator::record::{Record, Row};
+use emulator::record::{Recording, Row};
 use fingertip::status::{Fault, Status, Warnings};
 
 /// No fault of anything: the zero is being measured.
 pub(crate) const ZEROING: Status = Status::Fault(Fault::Zeroing);
 
 /// Prints accuracy phase by phase and over all, then what else came over the wire.
-pub(crate) fn print(record: &Record, plant: &Plant, accuracy: &Accuracy) {
+pub(crate) fn print(record: &Recording, plant: &Plant, accuracy: &RunAccuracy) {
     say!(
         "\n                       median error / %        within 2 sigma of {} Pa / %      rms error",
         plant.transducer().noise
@@ -18,7 +18,10 @@ pub(crate) fn print(record: &Record, plant: &Plant, accuracy: &Accuracy) {
     say!("phase      readings   force  indentation   pressure   force  indentation   pressure / Pa");
     for phase in phases(plant) {
         let of_phase = |row: &&Row| plant.scenario().phase_at(row.time) == phase;
-        print_line(phase, &Accuracy::of(record.rows.iter().filter(of_phase), plant));
+        print_line(
+            phase,
+            &RunAccuracy::of(record.rows.iter().filter(of_phase), plant),
+        );
     }
     print_line("all", accuracy);
     say!("(median errors: percent of reading, from 5 % of full scale up)");
@@ -43,7 +46,7 @@ pub(crate) fn print(record: &Record, plant: &Plant, accuracy: &Accuracy) {
     }
 }
 
-fn print_line(name: &str, accuracy: &Accuracy) {
+fn print_line(name: &str, accuracy: &RunAccuracy) {
     let percent = |share: f64, decimals: usize| {
         if share.is_nan() {
             "-".to_owned()

@@ -1,0 +1,173 @@
+//! The values of a section: each has a fixed length in bytes and a spelling in Rust source. A section describes its fields
+//! once, in order, to a [`Visit`]: the reader, the writer, and whoever prints them.
+
+use crate::constants::{Quantity, TransducerKind};
+use crate::table::{Constant, Powers};
+#[cfg(feature = "std")]
+use std::fmt::{self, Write};
+
+/// A value of fixed length; numbers are little-endian.
+pub trait Field: Copy {
+    /// Bytes.
+    const LENGTH: usize;
+
+    /// The value of so many bytes, if they are one.
+    fn get(bytes: &[u8]) -> Option<Self>;
+
+    /// Adds the bytes.
+    #[cfg(feature = "std")]
+    fn put(&self, out: &mut Vec<u8>);
+
+    /// Adds the value as Rust source.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    #[cfg(feature = "std")]
+    fn spell(&self, out: &mut String) -> fmt::Result;
+}
+
+/// Goes over the fields of a section.
+pub trait Visit {
+    /// Why it stops.
+    type Stop;
+
+    /// The next field.
+    ///
+    /// # Errors
+    /// The reason to stop.
+    fn field<T: Field>(&mut self, name: &'static str, value: &mut T) -> Result<(), Self::Stop>;
+}
+
+macro_rules! integer {
+    ($($type:ty, $spelling:literal;)*) => {$(
+        impl Field for $type {
+            const LENGTH: usize = size_of::<$type>();
+
+            fn get(bytes: &[u8]) -> Option<Self> {
+                bytes.try_into().ok().map(<$type>::from_le_bytes)
+            }
+
+            #[cfg(feature = "std")]
+            fn put(&self, out: &mut Vec<u8>) {
+                out.extend(self.to_le_bytes());
+            }
+
+            #[cfg(feature = "std")]
+            fn spell(&self, out: &mut String) -> fmt::Result {
+                write!(out, $spelling, self)
+            }
+        }
+    )*};
+}
+
+integer! {
+    u8, "{}";
+    u16, "{}";
+    i32, "{}";
+    u32, "{}";
+    u64, "{:#018x}"; // hashes
+}
+
+impl<T: Field> Field for [T; 2] {
+    const LENGTH: usize = 2 * T::LENGTH;
+
+    fn get(bytes: &[u8]) -> Option<Self> {
+        let (first, second) = bytes.split_at_checked(T::LENGTH)?;
+        Some([T::get(first)?, T::get(second)?])
+    }
+
+    #[cfg(feature = "std")]
+    fn put(&self, out: &mut Vec<u8>) {
+        for value in self {
+            value.put(out);
+        }
+    }
+
+    #[cfg(feature = "std")]
+    fn spell(&self, out: &mut String) -> fmt::Result {
+        let [first, second] = self;
+        out.push('[');
+        first.spell(out)?;
+        out.push_str(", ");
+        second.spell(out)?;
+        out.push(']');
+        Ok(())
+    }
+}
+
+/// Values that are one of few, as a word with their code.
+macro_rules! choice {
+    ($type:ty, $path:literal: $($code:literal => $value:path),*) => {
+        impl Field for $type {
+            const LENGTH: usize = 4;
+
+            fn get(bytes: &[u8]) -> Option<Self> {
+                match u32::get(bytes)? {
+                    $($code => Some($value),)*
+                    _ => None,
+                }
+            }
+
+            #[cfg(feature = "std")]
+            fn put(&self, out: &mut Vec<u8>) {
+                let code: u32 = match self {
+                    $($value => $code,)*
+                };
+                code.put(out);
+            }
+
+            #[cfg(feature = "std")]
+            fn spell(&self, out: &mut String) -> fmt::Result {
+                write!(out, concat!("model_tables::", $path, "::{:?}"), self)
+            }
+        }
+    };
+}
+
+choice!(Powers, "table::Powers": 2 => Powers::Two, 4 => Powers::Four, 6 => Powers::Six, 8 => Powers::Eight);
+choice!(Constant, "table::Constant": 0 => Constant::Half, 1 => Constant::Whole);
+choice!(Quantity, "constants::Quantity": 0 => Quantity::Gauge, 1 => Quantity::Absolute);
+
+/// A code, an address, whether the supply is measured, a zero; then two numbers. What a kind has not is 0.
+impl Field for TransducerKind {
+    const LENGTH: usize = 4 + <[u32; 2]>::LENGTH;
+
+    fn get(bytes: &[u8]) -> Option<Self> {
+        let (head, pair) = bytes.split_at_checked(4)?;
+        let pair = <[u32; 2]>::get(pair)?;
+        let (rises, none) = (pair[0] < pair[1], pair == [0; 2]);
+        match *head {
+            [0, 0, supply @ 0..=1, 0] if rises && pair[1] <= 65_536 => Some(Self::Ratiometric {
+                output: pair,
+                supply_measured: supply == 1,
+            }),
+            [1, address @ 0..=0x7F, 0, 0] if rises && pair[1] < 1 << 24 => Some(Self::Abp2 {
+                address,
+                counts: pair,
+            }),
+            [2, address @ 0..=0x7F, 0, 0] if none => Some(Self::Ms5837 { address }),
+            [3, address @ 0..=0x7F, 0, 0] if none => Some(Self::Dps310 { address }),
+            _ => None,
+        }
+    }
+
+    #[cfg(feature = "std")]
+    fn put(&self, out: &mut Vec<u8>) {
+        let (head, pair) = match *self {
+            Self::Ratiometric {
+                output,
+                supply_measured,
+            } => ([0, 0, u8::from(supply_measured), 0], output),
+            Self::Abp2 { address, counts } => ([1, address, 0, 0], counts),
+            Self::Ms5837 { address } => ([2, address, 0, 0], [0; 2]),
+            Self::Dps310 { address } => ([3, address, 0, 0], [0; 2]),
+        };
+        out.extend(head);
+        pair.put(out);
+    }
+
+    #[cfg(feature = "std")]
+    fn spell(&self, out: &mut String) -> fmt::Result {
+        write!(out, "model_tables::constants::TransducerKind::{self:?}")
+    }
+}

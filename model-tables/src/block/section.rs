@@ -1,0 +1,105 @@
+//! What a block holds: its head and its sections, each described once. Units and ranges are those of the types.
+
+use super::StoredCalibration;
+use super::field::Visit;
+use crate::constants::{DesignConstants, Transducer};
+use crate::table::Layout;
+
+/// The kinds of sections, by their number.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub enum SectionKind {
+    /// What the firmware needs to know of the design beside its tables.
+    Constants = 1,
+    /// Pressure rise to force and indentation of a flat plate, and the wall elastic.
+    Tables = 2,
+    /// What is known of this one fingertip.
+    Calibration = 3,
+    /// The design's name.
+    Name = 4,
+}
+
+/// Numbers that later layouts give to the wall's relaxation, other objects than a plate, and the feedback membrane. A block with
+/// one of these is for newer firmware: without them its readings would be wrong.
+pub const RESERVED: [u16; 3] = [5, 6, 7];
+
+impl SectionKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Constants, Self::Tables, Self::Calibration, Self::Name];
+
+    /// The only version of it so far.
+    pub const VERSION: u16 = 1;
+
+    /// The kind of a number.
+    pub fn of(number: u16) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| *kind as u16 == number)
+    }
+
+    /// What it is called.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Constants => "constants",
+            Self::Tables => "tables",
+            Self::Calibration => "calibration",
+            Self::Name => "name",
+        }
+    }
+}
+
+/// Of the head: which design it is.
+///
+/// # Errors
+/// The visitor's.
+pub fn identity<V: Visit>(value: &mut DesignConstants, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("hash", &mut value.hash)?;
+    visit.field("table_version", &mut value.table_version)?;
+    visit.field("certificate", &mut value.certificate)
+}
+
+/// The pressures of the design: the first part of its constants.
+///
+/// # Errors
+/// The visitor's.
+pub fn pressures<V: Visit>(value: &mut DesignConstants, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("rest_pressure", &mut value.rest_pressure)?;
+    visit.field("maximum_pressure", &mut value.maximum_pressure)
+}
+
+/// The second part of the constants.
+///
+/// # Errors
+/// The visitor's.
+pub fn transducer<V: Visit>(value: &mut Transducer, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("range", &mut value.range)?;
+    visit.field("resolution", &mut value.resolution)?;
+    visit.field("noise", &mut value.noise)?;
+    visit.field("quantity", &mut value.quantity)?;
+    visit.field("kind", &mut value.kind)
+}
+
+/// The first part of the tables; the words of the segments follow.
+///
+/// # Errors
+/// The visitor's.
+pub fn layout<V: Visit>(value: &mut Layout, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("pressure_fraction_bits", &mut value.pressure_fraction_bits)?;
+    visit.field("maximum", &mut value.maximum)?;
+    visit.field("bias", &mut value.bias)?;
+    visit.field("octaves", &mut value.octaves)?;
+    visit.field("halvings", &mut value.halvings)?;
+    visit.field("powers", &mut value.powers)?;
+    visit.field("constant", &mut value.constant)?;
+    visit.field("first_index", &mut value.first_index)?;
+    visit.field("force_shift", &mut value.force_shift)?;
+    visit.field("indentation_shift", &mut value.indentation_shift)
+}
+
+/// The calibration.
+///
+/// # Errors
+/// The visitor's.
+pub fn calibration<V: Visit>(value: &mut StoredCalibration, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("zero", &mut value.zero)?;
+    visit.field("temperature", &mut value.temperature)?;
+    visit.field("coefficient", &mut value.coefficient)?;
+    visit.field("gain", &mut value.gain)
+}

@@ -1,0 +1,240 @@
+use super::field::{Field, Visit};
+use super::read::TipBlock;
+use super::section::{self, SectionKind};
+use super::write::{TipData, sign};
+use super::*;
+use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
+use crate::table::{Constant, Layout, Powers};
+use crate::units::PressureRise;
+use std::collections::BTreeSet;
+use std::convert::Infallible;
+
+const CONSTANTS: DesignConstants = DesignConstants {
+    hash: 0x0123_4567_89AB_CDEF,
+    table_version: 4,
+    certificate: 0xFEDC_BA98_7654_3210,
+    rest_pressure: 20_000,
+    maximum_pressure: 60_000,
+    transducer: Transducer {
+        range: [0, 100_000],
+        resolution: 10_000,
+        noise: 5_000,
+        quantity: Quantity::Gauge,
+        kind: TransducerKind::Ratiometric {
+            output: [6_554, 58_982],
+            supply_measured: false,
+        },
+    },
+};
+
+/// One segment of two octaves; both outputs are near the rise.
+const LAYOUT: Layout = Layout {
+    pressure_fraction_bits: 2,
+    maximum: 11,
+    bias: 4,
+    octaves: 1,
+    halvings: 0,
+    powers: Powers::Two,
+    constant: Constant::Whole,
+    first_index: 28,
+    force_shift: 4,
+    indentation_shift: 4,
+};
+
+/// Force and indentation are the rise: `U/2 - 4 + U (1/2 - s)` in octaves that end at `U` = 16 and 8.
+const WORDS: [i32; 8] = [
+    4 << 18,
+    4 << 18,
+    (16 << 2) << 16 | 16 << 2,
+    0,
+    0,
+    0,
+    (8 << 2) << 16 | 8 << 2,
+    0,
+];
+
+const CALIBRATION: StoredCalibration = StoredCalibration {
+    zero: 20_123_000,
+    temperature: i32::MIN,
+    coefficient: -5,
+    gain: 1_000,
+};
+
+const DATA: TipData<'_> = TipData {
+    constants: CONSTANTS,
+    layout: LAYOUT,
+    words: &WORDS,
+    name: "a-tip_1",
+    calibration: Some(CALIBRATION),
+};
+
+fn error(block: &[u8]) -> BlockError {
+    TipBlock::read(block).expect_err("it is refused")
+}
+
+/// A block with these bytes from there on, and its check made anew.
+fn changed(at: usize, bytes: &[u8]) -> Vec<u8> {
+    let mut block = DATA.write();
+    block[at..at + bytes.len()].copy_from_slice(bytes);
+    sign(&mut block);
+    block
+}
+
+#[test]
+fn what_is_written_is_read() {
+    for calibration in [None, Some(CALIBRATION)] {
+        let mut block = TipData { calibration, ..DATA }.write();
+        block.extend([0xFF; 5]); // the rest of a slot
+        let tip = TipBlock::read(&block).expect("it is whole");
+        assert_eq!(
+            (tip.constants, tip.name, tip.calibration),
+            (CONSTANTS, "a-tip_1", calibration)
+        );
+        assert_eq!(*tip.tables.layout(), LAYOUT);
+        for rise in [-5, 0, 1, 3, 4, 7, 11, 12, i32::MAX] {
+            let reading = tip.tables.lookup(PressureRise(rise));
+            let held = rise.clamp(0, 11);
+            assert_eq!((reading.force.0, reading.indentation.0), (held, held), "{rise}");
+            assert_eq!((reading.negative, reading.saturated), (rise < 0, rise > 11));
+        }
+    }
+}
+
+#[test]
+fn a_block_that_is_cut_off_changed_or_another_ones_is_refused_by_reason() {
+    let block = DATA.write();
+    assert_eq!(error(b""), BlockError::NoBlock);
+    assert_eq!(error(b"FTIQ"), BlockError::NoBlock);
+    for length in 4..block.len() {
+        assert!(
+            matches!(error(&block[..length]), BlockError::Short { .. }),
+            "{length}"
+        );
+    }
+    assert_eq!(error(&changed(4, &[2, 0])), BlockError::LayoutVersion(2));
+    // Every bit counts: of the magic, of the version, of the length, else the check.
+    for bit in 0..8 * block.len() {
+        let mut block = block.clone();
+        block[bit / 8] ^= 1 << (bit % 8);
+        let expected = match bit / 8 {
+            0..4 => matches!(error(&block), BlockError::NoBlock),
+            4..6 => matches!(error(&block), BlockError::LayoutVersion(_)),
+            8..12 => matches!(error(&block), BlockError::Short { .. } | BlockError::Check),
+            _ => error(&block) == BlockError::Check,
+        };
+        assert!(expected, "bit {bit}: {:?}", error(&block));
+    }
+}
+
+#[test]
+fn a_section_that_is_not_known_fails_the_whole_block() {
+    let entry = |section: usize| HEAD + ENTRY * section;
+    for number in section::RESERVED.into_iter().chain([0, 8, u16::MAX]) {
+        let block = changed(entry(3), &number.to_le_bytes());
+        assert_eq!(error(&block), BlockError::UnknownSection(number));
+    }
+    assert_eq!(
+        error(&changed(entry(1) + 2, &[2, 0])),
+        BlockError::SectionVersion(SectionKind::Tables, 2)
+    );
+    // Twice the same, and out of order.
+    assert_eq!(error(&changed(entry(1), &[1, 0])), BlockError::Directory);
+    assert_eq!(error(&changed(entry(0), &[3, 0])), BlockError::Directory);
+    // Longer than the block, before its place, overlapping.
+    for (at, bytes) in [
+        (entry(3) + 8, u32::MAX),
+        (entry(0) + 4, 0),
+        (entry(1) + 4, 92),
+        (36, 3),
+        (36, u32::MAX),
+    ] {
+        let found = error(&changed(at, &bytes.to_le_bytes()));
+        assert!(
+            matches!(found, BlockError::Directory),
+            "{bytes} at {at}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn values_and_tables_out_of_their_ranges_are_refused_by_name() {
+    // After head and four entries: constants from 88 on, tables from 128 on (see `LAYOUT.md`).
+    let word = |at: usize, value: i32| error(&changed(at, &value.to_le_bytes()));
+    let of_constants = |field| BlockError::Value(SectionKind::Constants, field);
+    assert_eq!(word(88, i32::MIN), of_constants("rest_pressure"));
+    assert_eq!(word(92, 20_000), of_constants("maximum_pressure"));
+    assert_eq!(word(96, 100_000), of_constants("range"));
+    assert_eq!(word(104, 0), of_constants("resolution"));
+    assert_eq!(word(108, -1), of_constants("noise"));
+    assert_eq!(word(112, 2), of_constants("quantity"));
+    assert_eq!(word(116, 4), of_constants("kind"));
+    let tables = 128;
+    for (at, value, field) in [
+        (0, 17, "pressure_fraction_bits"),
+        (4, 0, "maximum"),
+        (4, i32::MIN, "maximum"),
+        (8, 0, "bias"),
+        (12, 3, "octaves"),
+        (16, 4, "halvings"),
+        (28, 27, "first_index"),
+        (32, 32, "force_shift"),
+        (36, -1, "indentation_shift"),
+    ] {
+        let expected = BlockError::Tables(TablesError::Layout(field));
+        assert_eq!(word(tables + at, value), expected, "{value} at {at}");
+    }
+    for (at, field) in [(20, "powers"), (24, "constant")] {
+        assert_eq!(
+            word(tables + at, 3),
+            BlockError::Value(SectionKind::Tables, field)
+        );
+    }
+    let words = tables + 40;
+    assert_eq!(word(words + 16, 1 << 18), BlockError::Tables(TablesError::Zero));
+    // The upper octave begins below the end of the lower one, or falls within itself.
+    assert_eq!(word(words, 1 << 18), BlockError::Tables(TablesError::Falls(3)));
+    assert_eq!(
+        word(words + 8, -64 << 16),
+        BlockError::Tables(TablesError::Falls(4))
+    );
+    let name = DATA.write().len() - 7;
+    assert_eq!(
+        error(&changed(name, b"\n")),
+        BlockError::Value(SectionKind::Name, "name")
+    );
+}
+
+/// The page gives the fields that are read and written, with their lengths and the order.
+#[test]
+fn the_page_lists_every_field_where_it_lies() {
+    const PAGE: &str = include_str!("LAYOUT.md");
+    struct Rows(usize);
+    impl Visit for Rows {
+        type Stop = Infallible;
+
+        fn field<T: Field>(&mut self, name: &'static str, _: &mut T) -> Result<(), Infallible> {
+            let row = format!("| {} | {} | `{name}` |", self.0, T::LENGTH);
+            assert!(PAGE.contains(&row), "{row}");
+            self.0 += T::LENGTH;
+            Ok(())
+        }
+    }
+    let (mut constants, mut layout, mut calibration) = (CONSTANTS, LAYOUT, CALIBRATION);
+    let mut rows = Rows(16);
+    let Ok(()) = section::identity(&mut constants, &mut rows);
+    assert_eq!(rows.0, HEAD - 4);
+    let mut rows = Rows(0);
+    let Ok(()) = section::pressures(&mut constants, &mut rows);
+    let Ok(()) = section::transducer(&mut constants.transducer, &mut rows);
+    let mut rows = Rows(0);
+    let Ok(()) = section::layout(&mut layout, &mut rows);
+    let mut rows = Rows(0);
+    let Ok(()) = section::calibration(&mut calibration, &mut rows);
+    let numbers: BTreeSet<String> = SectionKind::ALL
+        .iter()
+        .map(|&kind| format!("| {} | {} |", kind as u16, kind.word()))
+        .collect();
+    for row in numbers {
+        assert!(PAGE.contains(&row), "{row}");
+    }
+}

@@ -1,0 +1,115 @@
+//! The data of a tip -> a block of bytes.
+
+use super::field::{Field, Visit};
+use super::section::{self, SectionKind};
+use super::{CHECK_AT, ENTRY, HEAD, LAYOUT_VERSION, MAGIC, StoredCalibration, aligned, check};
+use crate::constants::DesignConstants;
+use crate::table::Layout;
+use core::convert::Infallible;
+
+/// What a block is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct TipData<'a> {
+    /// The design beside its tables.
+    pub constants: DesignConstants,
+    /// Where the segments lie.
+    pub layout: Layout,
+    /// Their words.
+    pub words: &'a [i32],
+    /// The design's name.
+    pub name: &'a str,
+    /// What is known of this one fingertip, if anything.
+    pub calibration: Option<StoredCalibration>,
+}
+
+/// Adds the bytes of each field.
+struct Bytes(Vec<u8>);
+
+impl Visit for Bytes {
+    type Stop = Infallible;
+
+    fn field<T: Field>(&mut self, _name: &'static str, value: &mut T) -> Result<(), Infallible> {
+        value.put(&mut self.0);
+        Ok(())
+    }
+}
+
+/// The bytes that a description of fields gives.
+fn described(describe: impl FnOnce(&mut Bytes) -> Result<(), Infallible>) -> Vec<u8> {
+    let mut bytes = Bytes(Vec::new());
+    let Ok(()) = describe(&mut bytes);
+    bytes.0
+}
+
+impl TipData<'_> {
+    /// The block.
+    pub fn write(&self) -> Vec<u8> {
+        let Self {
+            mut constants,
+            mut layout,
+            mut calibration,
+            ..
+        } = *self;
+        let identity = described(|visit| section::identity(&mut constants, visit));
+        let mut sections = vec![
+            (
+                SectionKind::Constants,
+                described(|visit| {
+                    section::pressures(&mut constants, visit)?;
+                    section::transducer(&mut constants.transducer, visit)
+                }),
+            ),
+            (
+                SectionKind::Tables,
+                described(|visit| {
+                    section::layout(&mut layout, visit)?;
+                    self.words
+                        .iter()
+                        .try_for_each(|&word| visit.field("word", &mut { word }))
+                }),
+            ),
+        ];
+        if let Some(calibration) = &mut calibration {
+            let bytes = described(|visit| section::calibration(calibration, visit));
+            sections.push((SectionKind::Calibration, bytes));
+        }
+        sections.push((SectionKind::Name, self.name.as_bytes().to_vec()));
+        block(&identity, &sections)
+    }
+}
+
+/// Head, directory, sections, each from a multiple of four on.
+fn block(identity: &[u8], sections: &[(SectionKind, Vec<u8>)]) -> Vec<u8> {
+    let head = HEAD + ENTRY * sections.len();
+    let mut bytes = Vec::from(MAGIC);
+    LAYOUT_VERSION.put(&mut bytes);
+    (head as u16).put(&mut bytes);
+    // Length and check, known at the end.
+    [0_u32; 2].put(&mut bytes);
+    bytes.extend(identity);
+    (sections.len() as u32).put(&mut bytes);
+    let mut end = head;
+    for (kind, section) in sections {
+        (*kind as u16).put(&mut bytes);
+        SectionKind::VERSION.put(&mut bytes);
+        let start = aligned(end);
+        [start as u32, section.len() as u32].put(&mut bytes);
+        end = start + section.len();
+    }
+    for (_, section) in sections {
+        bytes.resize(aligned(bytes.len()), 0);
+        bytes.extend(section);
+    }
+    let total = bytes.len() as u32;
+    bytes[CHECK_AT - 4..CHECK_AT].copy_from_slice(&total.to_le_bytes());
+    sign(&mut bytes);
+    bytes
+}
+
+/// Puts the check into a block whose other bytes are final.
+pub fn sign(block: &mut [u8]) {
+    let sum = check(block);
+    if let Some(place) = block.get_mut(CHECK_AT..CHECK_AT + 4) {
+        place.copy_from_slice(&sum.to_le_bytes());
+    }
+}
