@@ -396,7 +396,7 @@ impl History {
         let mut seconds = self.next.seconds;
         if matches!(drive, Drive::Indentation(_)) && self.speed.abs() > 0.0 {
             // Well above the wall the plate does nothing.
-            let gap = (self.height - self.indentation - self.apex(&self.state)).max(0.0);
+            let gap = (self.height - self.indentation - self.top(&self.state)).max(0.0);
             seconds = seconds.min((self.next.travel + 0.5 * gap) / self.speed.abs());
         }
         let parts = libm::ceil(left / seconds * (1.0 - 1e-9)).max(1.0);
@@ -502,10 +502,14 @@ impl History {
     fn settle_force(&mut self, force: f64) -> Result<(f64, Balance), Rejected> {
         if force <= 0.0 {
             let balance = self.settle(-self.height)?;
-            return Ok((self.height - self.apex(&self.trial), balance));
+            return Ok((self.height - self.top(&self.trial), balance));
         }
         let largest = LARGEST_TRAVEL * self.height;
-        let mut indentation = self.height - self.apex(&self.trial);
+        let mut indentation = if self.force > 0.0 {
+            self.indentation
+        } else {
+            self.height - self.top(&self.trial)
+        };
         for _ in 0..FORCE_ITERATIONS {
             let balance = self.settle(indentation)?;
             let missing = force - balance.force;
@@ -520,7 +524,7 @@ impl History {
             };
             let step = missing / stiffness;
             // Before first touch there is no stiffness, and after it little.
-            let touch = self.height - self.apex(&self.trial) - indentation;
+            let touch = self.height - self.top(&self.trial) - indentation;
             indentation += if stiffness > 0.0 {
                 step.clamp(-largest, largest)
             } else {
@@ -557,6 +561,14 @@ impl History {
             travel: (growth * travel.max(self.next.travel)).min(LARGEST_TRAVEL * self.height),
         };
         self.steps += 1;
+    }
+
+    /// Height of the highest node of the outer surface: beside the pole where that is pressed in.
+    fn top(&self, state: &State) -> f64 {
+        let mesh = &self.wall.mesh;
+        let heights =
+            (0..mesh.stations()).map(|station| state.nodes[mesh.node(station, mesh.layers() - 1)][1]);
+        heights.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Height of the outer pole.
