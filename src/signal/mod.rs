@@ -9,6 +9,7 @@ pub mod drift;
 pub mod filter;
 pub mod fluid;
 pub mod pipeline;
+pub mod relaxation;
 pub mod report;
 pub mod scale;
 pub mod stuck;
