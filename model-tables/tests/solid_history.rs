@@ -247,7 +247,10 @@ fn after_a_release_the_wall_recovers() {
     for time in [6.0, 10.0, 20.0, 60.0, 200.0, 500.0] {
         let now = history.advance(time, Drive::Indentation(0.0)).expect("a state");
         // At last the plate, at first touch, bears what the mesh leaves.
-            assert!(now.pressure_rise < 0.1 && now.pressure_rise > before.pressure_rise, "{now:?}");
+        assert!(
+            now.pressure_rise < 0.1 && now.pressure_rise > before.pressure_rise,
+            "{now:?}"
+        );
         assert!(now.apex_depression < before.apex_depression);
         before = now;
     }

@@ -137,16 +137,17 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         }
         let convolved = scaled(of_area, sum, self::root(of_area, place));
         let by_area = scaled(of_area, i64::from(rise.0), i64::from(place));
-        let force = self.between(step, convolved, by_area).clamp(0, i64::from(i32::MAX)) as i32;
-        let recovering = TERMS > 0 && force == 0 && rise.0 < 0;
+        let force = self
+            .between(step, convolved, by_area)
+            .clamp(0, i64::from(i32::MAX)) as i32;
+        let recovering = force == 0 && rise.0 < 0;
         RelaxedReading {
             elastic,
             force: Micronewtons(force),
             indentation: reading.indentation,
             warnings: Warnings::SATURATED
                 .when(reading.saturated)
-                .and(Warnings::RECOVERING.when(recovering))
-                .and(Warnings::BELOW_ZERO.when(TERMS == 0 && rise < design.parameters().lowest_rest)),
+                .and(Warnings::RECOVERING.when(recovering)),
         }
     }
 

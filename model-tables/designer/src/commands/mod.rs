@@ -7,6 +7,7 @@ mod actuator;
 mod bench;
 mod calibration;
 mod estimate;
+mod estimate_in_time;
 mod fit;
 mod history;
 mod materials;
