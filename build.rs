@@ -99,6 +99,10 @@ fn tables(design: &Path) -> Result<String, String> {
     if generated.limits() != [Limit::Accuracy; 2] {
         println!("cargo::warning={}: {}", design.display(), generated.choice());
     }
+    if let Some(error) = generated.own_error() {
+        // Cargo shows it with -vv, and the certificate has it.
+        println!("{}: {error}", design.display());
+    }
     Ok(generated.rust_source())
 }
 

@@ -34,7 +34,7 @@ fn a_loaded_design_is_that_of_the_image() {
     let loaded = loaded(&block);
     assert_eq!(loaded.parameters(), ImageDesign.parameters());
     let end = ImageDesign::PARAMETERS.last_rise.0;
-    for count in (-2_000..end + 2_000).step_by(97).chain([i32::MIN, -1, i32::MAX]) {
+    for count in (-2_000..end + 2_000).step_by(97).chain([-i32::MAX, -1, i32::MAX]) {
         let rise = PressureRise(count);
         let [tool, chip] = [
             contact(&loaded, rise, Warnings::NONE),

@@ -36,7 +36,7 @@ pub enum Quantity {
 
 /// Standard deviations of one sample below zero that noise is believed to explain: filtered white noise gets there
 /// less than once in 10^30 reports.
-const BELOW_ZERO_DEVIATIONS: i64 = 8;
+pub const BELOW_ZERO_DEVIATIONS: i64 = 8;
 
 /// The pressure transducer of a design.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

@@ -96,8 +96,7 @@ pub struct Reading {
     pub force: Micronewtons,
     /// Indentation of the pole.
     pub indentation: Nanometres,
-    /// The input lay above the tables: force and indentation are lower bounds. (Also said of `i32::MIN`, the other end of
-    /// the word.)
+    /// The input lay above the tables: force and indentation are lower bounds.
     pub saturated: bool,
     /// The input was negative and read as zero.
     pub negative: bool,
@@ -133,7 +132,7 @@ impl Layout {
     #[allow(clippy::inline_always)] // part of the lookup
     pub(crate) fn place(&self, rise: PressureRise) -> Place {
         let held = rise.0.clamp(0, self.maximum);
-        // The sign of a difference, as a comparison costs an instruction more; it leaves the word for `i32::MIN` alone.
+        // The sign of a difference, as a comparison costs an instruction more. A rise is -(2^31 - 1) at least: no overflow.
         let saturated = held.wrapping_sub(rise.0) < 0;
         // Neither of two positive `i32` leaves the `u32` in their sum.
         let y = (held as u32).wrapping_add(self.bias as u32);
@@ -261,7 +260,7 @@ impl<const SEGMENTS: usize, const WORDS: usize> Tables<SEGMENTS, WORDS> {
     /// Bytes of the coefficients; the layout becomes immediates of the code.
     pub const BYTES: usize = size_of::<[[i32; WORDS]; SEGMENTS]>();
 
-    /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
+    /// Force and indentation at a pressure rise. Total: every rise has an answer.
     #[inline(always)]
     #[allow(clippy::inline_always)] // so that the layout folds into the code of the one call site
     pub fn lookup(&self, rise: PressureRise) -> Reading {

@@ -2,15 +2,29 @@
 
 /// Pressure over the rest pressure, in counts of `1 / 2^k` pascal.
 ///
-/// `k` belongs to a design and is [`crate::table::Layout::pressure_fraction_bits`]. Any `i32` is valid.
+/// `k` belongs to a design and is [`crate::table::Layout::pressure_fraction_bits`]. From `-(2^31 - 1)` to `2^31 - 1`, so that the
+/// lookup can take a rise from any that is not negative and stay in the word.
 #[derive(Clone, Copy, Debug, Default, Eq, Ord, PartialEq, PartialOrd)]
 pub struct PressureRise(pub i32);
 
 impl PressureRise {
-    /// The nearest count to a pressure rise in pascals, held at the ends of the word (NaN gives 0).
+    /// The nearest rise to a number of counts.
+    #[inline]
+    pub const fn held(counts: i64) -> Self {
+        const MOST: i64 = i32::MAX as i64;
+        Self(if counts > MOST {
+            i32::MAX
+        } else if counts < -MOST {
+            -i32::MAX
+        } else {
+            counts as i32
+        })
+    }
+
+    /// The nearest count to a pressure rise in pascals, held at the ends of what a rise can be (NaN gives 0).
     pub fn from_pascals(pascals: f64, fraction_bits: u32) -> Self {
         // A float to integer cast saturates.
-        Self(libm::round(libm::ldexp(pascals, fraction_bits as i32)) as i32)
+        Self::held(libm::round(libm::ldexp(pascals, fraction_bits as i32)) as i64)
     }
 
     /// The pressure rise in pascals.
@@ -63,7 +77,7 @@ mod tests {
         assert_eq!(PressureRise::from_pascals(1e300, 8), PressureRise(i32::MAX));
         assert_eq!(
             PressureRise::from_pascals(f64::NEG_INFINITY, 0),
-            PressureRise(i32::MIN)
+            PressureRise(-i32::MAX)
         );
         assert_eq!(PressureRise::from_pascals(f64::NAN, 8), PressureRise(0));
     }

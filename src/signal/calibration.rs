@@ -2,7 +2,7 @@
 
 use crate::signal::scale::Scale;
 use crate::signal::temperature;
-use crate::units::{Centidegrees, Millipascals, Pressure, saturate};
+use crate::units::{Centidegrees, Millipascals, Pressure};
 use model_tables::block::StoredCalibration;
 use model_tables::constants::Quantity;
 use model_tables::units::PressureRise;
@@ -85,11 +85,11 @@ impl Gain {
         Self((((1_000_000 + trim as i64) << 24) / 1_000_000) as i32)
     }
 
-    /// A rise times the gain, held at the ends of the word.
+    /// A rise times the gain, held at the ends of what a rise can be.
     #[inline]
     pub const fn apply_to(self, rise: PressureRise) -> PressureRise {
         // 2^31 * 2^25.
-        PressureRise(saturate((rise.0 as i64 * self.0 as i64) >> 24))
+        PressureRise::held((rise.0 as i64 * self.0 as i64) >> 24)
     }
 }
 
@@ -101,7 +101,7 @@ mod tests {
     fn the_gain_is_a_trim_in_parts_per_million() {
         let apply = |trim, rise| Gain::new(trim).apply_to(PressureRise(rise)).0;
         assert_eq!(apply(0, 123_456_789), 123_456_789);
-        assert_eq!(apply(0, i32::MIN), i32::MIN);
+        assert_eq!(apply(0, i32::MIN), -i32::MAX);
         assert!((apply(25_000, 1_000_000) - 1_025_000).abs() <= 1);
         assert_eq!(apply(LARGEST_GAIN, i32::MAX), i32::MAX);
     }

@@ -5,7 +5,7 @@ use fingertip::signal::contact::{Contact, contact};
 use fingertip::signal::design::{Design, Parameters};
 use fingertip::signal::report::Measurement;
 use fingertip::status::Warnings;
-use fingertip::units::{Pressure, saturate};
+use fingertip::units::Pressure;
 use model_tables::units::PressureRise;
 
 /// Every count from 0: the segments are narrowest there.
@@ -14,7 +14,7 @@ const CONSECUTIVE: i64 = 4096;
 /// Evenly spaced from a sixteenth below zero to a sixteenth beyond the end.
 const SPREAD: i64 = 8192;
 
-/// The ends of the word and the neighbours of zero.
+/// The ends of what a rise can be, and the neighbours of zero.
 const CORNERS: [i32; 4] = [i32::MIN, -1, i32::MAX - 1, i32::MAX];
 
 /// How many inputs there are.
@@ -31,7 +31,7 @@ pub fn inputs(design: &Parameters) -> impl Iterator<Item = PressureRise> + use<>
     consecutive
         .chain(spread)
         .chain(CORNERS.map(i64::from))
-        .map(|rise| PressureRise(saturate(rise)))
+        .map(PressureRise::held)
 }
 
 /// What chip and host answer to an input.

@@ -258,7 +258,7 @@ fn estimate_agrees_with_the_model_and_flags_both_ends() {
         .map(|row| 1e3 * row[2].parse::<f64>().expect("a number"))
         .collect();
     // The transducer tells 10 Pa apart: eight times that below zero is noise still.
-    let list = format!("{},{},{},1e6,-5,-79,-81", rises[0], rises[1], rises[2]);
+    let list = format!("{},{},{},1e6,-5,-79,-81,-1e12", rises[0], rises[1], rises[2]);
     let (header, rows) = csv(&["estimate", &design, "--pressure-rise-pa", &list]);
     assert_eq!(header, "pressure_rise_pa,force_n,indentation_mm,status");
     for (row, solved) in rows.iter().zip(&solved) {
@@ -271,7 +271,7 @@ fn estimate_agrees_with_the_model_and_flags_both_ends() {
     let held: f64 = rows[3][2].parse().expect("a number");
     assert!((2.4975..2.5 * (1.0 + 1.0 / 64.0)).contains(&held), "{held}");
     assert_eq!([&rows[4][3], &rows[5][3]], ["ok", "ok"]);
-    assert_eq!(rows[6][3], "warning: below zero");
+    assert_eq!([&rows[6][3], &rows[7][3]], ["warning: below zero"; 2]);
 }
 
 #[test]
@@ -330,6 +330,103 @@ fn a_refused_table_leaves_nothing_behind() {
         line.contains("narrow.toml") && line.contains("kPa above transducer.range_kpa = [0, 200]"),
         "{line}"
     );
+    assert!(!out.exists());
+}
+
+/// A shipped design with a line of it replaced, in a file.
+fn changed(folder: &str, name: &str, from: &str, to: &str) -> String {
+    let file = scratch(folder).join("changed.toml");
+    let text = fs::read_to_string(shipped(name)).expect("the design");
+    assert!(text.contains(from));
+    fs::write(&file, text.replace(from, to)).expect("written");
+    file.to_str().expect("utf-8").to_owned()
+}
+
+/// Half of 200 Pa is 0.4 % of the reading where that is least: more than the 0.1 % asked for.
+#[test]
+fn an_accuracy_that_is_not_reached_is_refused_unless_worse_is_allowed() {
+    let design = changed(
+        "worse",
+        "skin-analogue",
+        "resolution_pa = 5.0",
+        "resolution_pa = 200.0",
+    );
+    let out = scratch("worse_out").join("tables");
+    let out = out.to_str().expect("utf-8");
+    let table: [&str; 4] = ["table", &design, "--out", out];
+    let estimate: [&str; 4] = ["estimate", &design, "--pressure-rise-pa", "2000"];
+    for arguments in [&table[..], &estimate[..]] {
+        let line = refusal(arguments);
+        for part in [
+            "[accuracy] asks 0.1 % and 0.1 %, but half of transducer.resolution_pa = 200 is",
+            "choose a finer transducer",
+            "--allow-worse",
+        ] {
+            assert!(line.contains(part), "{line}");
+        }
+    }
+    assert!(!fs::exists(out).expect("readable"));
+    assert_eq!(csv(&[&table[..], &["--allow-worse"][..]].concat()).1.len(), 4);
+    assert_eq!(
+        csv(&[&estimate[..], &["--allow-worse"][..]].concat()).1[0][3],
+        "ok"
+    );
+}
+
+/// No tables of 16-bit coefficients keep to a hundred-thousandth of the reading; a transducer of 1 mPa would tell it.
+#[test]
+fn an_accuracy_that_integers_do_not_reach_is_refused_unless_worse_is_allowed() {
+    let design = changed(
+        "integers",
+        "skin-analogue",
+        "_percent_of_reading = 0.1",
+        "_percent_of_reading = 0.001",
+    );
+    let text = fs::read_to_string(&design).expect("just written");
+    fs::write(
+        &design,
+        text.replace("resolution_pa = 5.0", "resolution_pa = 0.001"),
+    )
+    .expect("written");
+    let out = scratch("integers_out").join("tables");
+    let out = out.to_str().expect("utf-8");
+    let table: [&str; 4] = ["table", &design, "--out", out];
+    let line = refusal(&table);
+    assert!(line.contains("allow"), "{line}");
+    assert!(!fs::exists(out).expect("readable"));
+    csv(&[&table[..], &["--allow-worse"][..]].concat());
+    let certificate = fs::read_to_string(Path::new(out).join("certificate.toml")).expect("written");
+    assert!(
+        certificate.contains("asked_percent_of_reading = 0.001"),
+        "{certificate}"
+    );
+    assert!(certificate.contains("held_to = \"integers\""), "{certificate}");
+}
+
+/// The whole press of 8.1 kPa stays within eight times 2 kPa.
+#[test]
+fn a_press_that_the_transducer_cannot_feel_is_refused() {
+    let design = changed(
+        "unfelt",
+        "skin-analogue",
+        "resolution_pa = 5.0",
+        "resolution_pa = 2000.0",
+    );
+    let out = scratch("unfelt_out").join("tables");
+    let folder = out.to_str().expect("utf-8");
+    let estimate: [&str; 5] = ["estimate", &design, "--pressure-rise-pa", "2000", "--allow-worse"];
+    let table: [&str; 5] = ["table", &design, "--out", folder, "--allow-worse"];
+    for arguments in [&estimate[..], &table[..]] {
+        let line = refusal(arguments);
+        for part in [
+            "the whole press raises the pressure by",
+            "up to 16000.000 Pa is noise",
+            "transducer.resolution_pa = 2000",
+            "choose a finer transducer",
+        ] {
+            assert!(line.contains(part), "{line}");
+        }
+    }
     assert!(!out.exists());
 }
 

@@ -6,8 +6,8 @@ pub const NAME: &str = "index-fingertip";
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x57e21f1b2d57bec1,
-    table_version: 4,
-    certificate: 0x549fcf4022cbe870,
+    table_version: 5,
+    certificate: 0xcd8fc3466c5e2b90,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {

@@ -6,8 +6,8 @@ pub const NAME: &str = "paper-prestretched";
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x0b0805c0f73222b7,
-    table_version: 4,
-    certificate: 0x4b1a543d36b1a024,
+    table_version: 5,
+    certificate: 0xe16aa8d337acac83,
     rest_pressure: 179062,
     maximum_pressure: 278482,
     transducer: model_tables::constants::Transducer {

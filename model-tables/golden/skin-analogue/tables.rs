@@ -5,9 +5,9 @@ pub const NAME: &str = "skin-analogue";
 
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    hash: 0x73a603700cd3b677,
-    table_version: 4,
-    certificate: 0x21a8c7fc0ffa92d6,
+    hash: 0x021e38b343300df4,
+    table_version: 5,
+    certificate: 0x7983f97064e31bac,
     rest_pressure: 8269,
     maximum_pressure: 16195,
     transducer: model_tables::constants::Transducer {

@@ -24,6 +24,9 @@ pub use error::{DesignFileError, Problem};
 /// Elements of a solid where a design does not say: through the wall and along it. Enough for a few tenths of a percent.
 pub const DEFAULT_ELEMENTS: [u32; 2] = [2, 60];
 
+/// Largest error of the model itself where a design does not say, percent of reading.
+pub const DEFAULT_MODEL_PERCENT: f64 = 5.0;
+
 /// A design file's content.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignFile {
@@ -39,6 +42,8 @@ pub struct DesignFile {
     pub rest: RestSection,
     /// `[model]`.
     pub model: ModelSection,
+    /// `[model] axes`: what the semi-axes of `[membrane]` are measured to.
+    pub axes: Axes,
     /// `[fluid] compliance_mm3_per_kpa`: tubing, actuator and bubbles, cubic millimetres per kilopascal.
     pub compliance_mm3_per_kpa: f64,
     /// `[press] max_indentation_mm`: end of the tables, millimetres.
@@ -53,7 +58,7 @@ pub struct DesignFile {
     pub calibration: Calibration,
 }
 
-/// `[membrane]`: undeformed, millimetres. Semi-axes of the outer surface for a solid or `auto`.
+/// `[membrane]`: undeformed, millimetres. [`DesignFile::axes`] tells of which surface the semi-axes are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneSection {
     /// Radial semi-axis.
@@ -78,6 +83,25 @@ pub enum ModelSection {
     },
     /// `kind = "auto"`: the cheapest that meets `[accuracy]`.
     Auto,
+}
+
+impl ModelSection {
+    /// The semi-axes that the model is solved with, and those of a file that names none.
+    pub const fn axes(self) -> Axes {
+        match self {
+            Self::Membrane => Axes::Mid,
+            Self::Solid { .. } | Self::Auto => Axes::Outer,
+        }
+    }
+}
+
+/// A surface of the undeformed wall, which its semi-axes are measured to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// The middle of the wall.
+    Mid,
+    /// The outer surface.
+    Outer,
 }
 
 /// `[rest]`: exactly one of its keys; left out for a solid that is not inflated.
@@ -220,6 +244,8 @@ pub struct Accuracy {
     /// Where that begins, percent of the output at `max_indentation_mm`; below it the same error in absolute
     /// terms.
     pub from_percent_of_full_scale: f64,
+    /// Largest error of the model itself, percent of reading; tables of a worse model are refused.
+    pub model_percent: f64,
 }
 
 impl DesignFile {
@@ -258,14 +284,27 @@ impl DesignFile {
         Sha256::digest(self.canonical()).into()
     }
 
-    /// What the model needs of the design as it is calibrated, in SI units.
+    /// What the model needs of the design as it is calibrated, in SI units: its semi-axes are those of [`ModelSection::axes`].
     pub fn design(&self) -> Design {
+        self.design_to(self.model.axes())
+    }
+
+    /// The same with the semi-axes of a surface of its choice. They are converted with the thickness that the file gives; a calibration
+    /// changes the wall alone.
+    pub fn design_to(&self, axes: Axes) -> Design {
         const MM: f64 = 1e-3;
         const KPA: f64 = 1e3;
+        let thickness = self.membrane.thickness_mm;
+        // Exactly the file's where nothing is converted.
+        let outward = match (self.axes, axes) {
+            (Axes::Mid, Axes::Outer) => 0.5 * thickness,
+            (Axes::Outer, Axes::Mid) => -0.5 * thickness,
+            (Axes::Mid, Axes::Mid) | (Axes::Outer, Axes::Outer) => 0.0,
+        };
         Design {
             membrane: Membrane {
-                radial_semi_axis: self.membrane.radial_semi_axis_mm * MM,
-                axial_semi_axis: self.membrane.axial_semi_axis_mm * MM,
+                radial_semi_axis: (self.membrane.radial_semi_axis_mm + outward) * MM,
+                axial_semi_axis: (self.membrane.axial_semi_axis_mm + outward) * MM,
                 thickness: self.membrane.thickness_mm * self.calibration.thickness_factor * MM,
             },
             law: self.material.stiffened(self.calibration.material_factor),

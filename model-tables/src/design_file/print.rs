@@ -1,8 +1,8 @@
 //! The canonical text of a design: the same design always gives the same bytes.
 
 use super::{
-    DesignFile, ModelSection, RestSection, Supply, TransducerKindSection, TransducerSection, Transfer,
-    relaxation,
+    Axes, DEFAULT_MODEL_PERCENT, DesignFile, ModelSection, RestSection, Supply, TransducerKindSection,
+    TransducerSection, Transfer, relaxation,
 };
 use crate::constants::Quantity;
 use crate::material::Law;
@@ -52,7 +52,8 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
     writeln!(out, "compliance_mm3_per_kpa = {:?}", file.compliance_mm3_per_kpa)?;
     match file.model {
         // What designs are unless they say otherwise.
-        ModelSection::Membrane => {}
+        ModelSection::Membrane if file.axes == Axes::Mid => {}
+        ModelSection::Membrane => writeln!(out, "\n[model]\nkind = \"membrane\"")?,
         ModelSection::Auto => writeln!(out, "\n[model]\nkind = \"auto\"")?,
         ModelSection::Solid { through, along } => {
             writeln!(
@@ -60,6 +61,14 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
                 "\n[model]\nkind = \"solid\"\nthrough = {through}\nalong = {along}"
             )?;
         }
+    }
+    // A default that came later is not printed: the hashes of older designs stay.
+    if file.axes != file.model.axes() {
+        let axes = match file.axes {
+            Axes::Mid => "mid",
+            Axes::Outer => "outer",
+        };
+        writeln!(out, "axes = \"{axes}\"")?;
     }
     if let Some(depth) = file.max_indentation_mm {
         writeln!(out, "\n[press]\nmax_indentation_mm = {depth:?}")?;
@@ -79,6 +88,9 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
         ];
         for (key, value) in rows {
             writeln!(out, "{key} = {value:?}")?;
+        }
+        if accuracy.model_percent != DEFAULT_MODEL_PERCENT {
+            writeln!(out, "model_percent = {:?}", accuracy.model_percent)?;
         }
     }
     if let Some(diameter) = file.actuator_diameter_mm {

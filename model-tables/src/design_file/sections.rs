@@ -5,8 +5,8 @@ use super::error::Problem;
 use super::relaxation;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::{
-    Accuracy, DEFAULT_ELEMENTS, DesignFile, MembraneSection, ModelSection, RestSection, Supply,
-    TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air,
+    Accuracy, Axes, DEFAULT_ELEMENTS, DEFAULT_MODEL_PERCENT, DesignFile, MembraneSection, ModelSection,
+    RestSection, Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air,
 };
 use crate::constants::Quantity;
 use crate::material::Law;
@@ -36,13 +36,13 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         "radial_semi_axis_mm, axial_semi_axis_mm, thickness_mm",
     )?)?;
     let (material, relaxation) = material(root.needed_sub("material", "preset, or law and its constants")?)?;
-    let model = root
+    let (model, axes) = root
         .sub("model")?
         .map(model)
         .transpose()?
-        .unwrap_or(ModelSection::Membrane);
+        .unwrap_or((ModelSection::Membrane, ModelSection::Membrane.axes()));
     let rest = match model {
-        ModelSection::Membrane => rest(root.needed_sub("rest", REST_KEYS)?)?,
+        ModelSection::Membrane => rest(root.needed_sub("rest", REST_OF_MEMBRANE)?)?,
         ModelSection::Solid { .. } | ModelSection::Auto => root
             .sub("rest")?
             .map(|section| rest_of_wall(section, model))
@@ -74,6 +74,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         relaxation,
         rest,
         model,
+        axes,
         compliance_mm3_per_kpa: compliance.unwrap_or(0.0),
         max_indentation_mm: press,
         transducer,
@@ -160,6 +161,9 @@ fn material(mut section: Section<'_>) -> Result<(Law, Option<Relaxation>), Fault
 }
 
 const REST_KEYS: &str = "exactly one of pole_stretch, pressure_kpa, equator_radius_mm, height_mm";
+/// What a membrane without a rest state lacks.
+const REST_OF_MEMBRANE: &str = "exactly one of pole_stretch, pressure_kpa, equator_radius_mm, height_mm; a fingertip that is not \
+                                stretched at rest has none, and is no membrane: give [model] kind = \"auto\" or \"solid\"";
 
 fn rest(mut section: Section<'_>) -> Result<RestSection, Fault> {
     let given: Vec<(&str, RestSection)> = [
@@ -260,7 +264,8 @@ fn fluid(mut section: Section<'_>) -> Result<f64, Fault> {
     Ok(compliance.unwrap_or(0.0))
 }
 
-fn model(mut section: Section<'_>) -> Result<ModelSection, Fault> {
+fn model(mut section: Section<'_>) -> Result<(ModelSection, Axes), Fault> {
+    const AXES: &str = "\"mid\" (middle of the wall) or \"outer\" (outer surface)";
     const KINDS: &str = "\"membrane\", \"solid\" or \"auto\"";
     let model = match section.text("kind", KINDS)? {
         None | Some("membrane") => ModelSection::Membrane,
@@ -271,8 +276,14 @@ fn model(mut section: Section<'_>) -> Result<ModelSection, Fault> {
         Some("auto") => ModelSection::Auto,
         Some(_) => return Err(section.refuse("kind", KINDS)),
     };
+    let axes = match section.text("axes", AXES)? {
+        None => model.axes(),
+        Some("mid") => Axes::Mid,
+        Some("outer") => Axes::Outer,
+        Some(_) => return Err(section.refuse("axes", AXES)),
+    };
     section.finish()?;
-    Ok(model)
+    Ok((model, axes))
 }
 
 /// A number of elements, if the key is there.
@@ -423,6 +434,9 @@ fn accuracy(mut section: Section<'_>) -> Result<Accuracy, Fault> {
         indentation_percent_of_reading: section.needed_number("indentation_percent_of_reading", PERCENT)?,
         from_percent_of_full_scale: section
             .needed_number("from_percent_of_full_scale", Bounds::within(0.01, 100.0, "%"))?,
+        model_percent: section
+            .number("model_percent", Bounds::above(0.0, f64::MAX, "%"))?
+            .unwrap_or(DEFAULT_MODEL_PERCENT),
     };
     section.finish()?;
     Ok(accuracy)

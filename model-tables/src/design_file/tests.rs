@@ -298,7 +298,8 @@ fn names_a_missing_section() {
     assert_eq!(
         error("[rest]\npole_stretch = 2.3\n", ""),
         "bad.toml: `[rest]` is missing: needs a section with exactly one of pole_stretch, pressure_kpa, \
-         equator_radius_mm, height_mm"
+         equator_radius_mm, height_mm; a fingertip that is not stretched at rest has none, and is no membrane: give \
+         [model] kind = \"auto\" or \"solid\""
     );
 }
 
@@ -814,5 +815,67 @@ fn refuses_a_series_that_cannot_be() {
         let text = with_series(from, to).expect_err(to).to_string();
         assert!(text.contains(wanted), "{text}");
         assert_eq!(text.lines().count(), 1, "{text}");
+    }
+}
+
+/// Half a wall of 1 mm, worked by hand: 4.5 and 2.7 mm to the outer surface are 4.0 and 2.2 mm to the middle of it.
+#[test]
+fn semi_axes_are_converted_to_what_the_model_is_solved_with() {
+    let read = |model: &str| {
+        let text = GOOD.replacen("[press]", &format!("[model]\n{model}[press]"), 1);
+        DesignFile::parse(&text, "axes.toml").expect("a design")
+    };
+    for (model, radial, axial) in [
+        ("kind = \"membrane\"\n", 4.5, 2.7),
+        ("kind = \"membrane\"\naxes = \"mid\"\n", 4.5, 2.7),
+        ("kind = \"membrane\"\naxes = \"outer\"\n", 4.0, 2.2),
+        ("axes = \"outer\"\n", 4.0, 2.2),
+        ("kind = \"auto\"\n", 4.5, 2.7),
+        ("kind = \"auto\"\naxes = \"outer\"\n", 4.5, 2.7),
+        ("kind = \"auto\"\naxes = \"mid\"\n", 5.0, 3.2),
+    ] {
+        let file = read(model);
+        let membrane = file.design().membrane;
+        for (got, expected) in [
+            (membrane.radial_semi_axis, radial),
+            (membrane.axial_semi_axis, axial),
+        ] {
+            assert!((1e3 * got - expected).abs() < 1e-12, "{model}: {got} m");
+        }
+        assert!((1e3 * membrane.thickness - 1.0).abs() < 1e-12);
+        let printed = DesignFile::parse(&file.canonical(), "printed.toml").expect("as printed");
+        assert_eq!(printed, file, "{model}");
+    }
+    // What goes without saying changes no hash.
+    assert_eq!(
+        read("kind = \"membrane\"\naxes = \"mid\"\n").hash(),
+        good().hash()
+    );
+    let text = GOOD.replacen("[press]", "[model]\naxes = \"inner\"\n[press]", 1);
+    let error = DesignFile::parse(&text, "bad.toml")
+        .expect_err("must be refused")
+        .to_string();
+    assert!(error.contains("`model.axes` is \"inner\""), "{error}");
+}
+
+#[test]
+fn the_error_of_the_model_is_any_positive_percentage() {
+    let key = "from_percent_of_full_scale = 1.0";
+    let read = |percent: &str| {
+        let text = GOOD.replacen(key, &format!("{key}\nmodel_percent = {percent}"), 1);
+        DesignFile::parse(&text, "percent.toml")
+    };
+    let percent = |file: &DesignFile| file.accuracy.expect("the section").model_percent;
+    assert!((percent(&good()) - DEFAULT_MODEL_PERCENT).abs() < 1e-12);
+    assert_eq!(read("5.0").expect("the default").hash(), good().hash());
+    for given in ["1e-6", "250.0"] {
+        let file = read(given).expect("a positive number");
+        assert!((percent(&file) - given.parse::<f64>().expect("a number")).abs() < 1e-12);
+        let printed = DesignFile::parse(&file.canonical(), "printed.toml").expect("as printed");
+        assert_eq!(printed, file);
+    }
+    for refused in ["0.0", "-1.0", "nan", "inf"] {
+        let error = read(refused).expect_err("must be refused").to_string();
+        assert!(error.contains("`accuracy.model_percent`"), "{error}");
     }
 }

@@ -1,17 +1,29 @@
 //! The certificate: every representable input, compared with the curve.
+//!
+//! Up to [`EVALUATED`] inputs are evaluated one by one. Beyond, [`Tally::bound`] evaluates only the inputs that exact bounds of the
+//! sums do not settle; errors, steps and monotonicity are those of all inputs all the same, to the digit.
 
+use super::bounds::{Range, Sum};
 use super::owned::OwnedTables;
-use super::truth::Truth;
+use super::shape::Segmentation;
+use super::tally::{OutputPart, Tally};
+use super::truth::{Piece, Truth};
 use crate::curve::Curve;
 use crate::design_file::Accuracy;
 use crate::table::Reading;
 use crate::units::PressureRise;
 
-/// What holds of tables, found by evaluating every input.
+/// Inputs that are evaluated one by one at most: 2^22.
+const EVALUATED: i32 = 1 << 22;
+
+/// What holds of tables on every input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
-    /// Inputs evaluated: all from zero to the maximum.
+    /// Inputs that it holds of: all from zero to the maximum.
     pub inputs: u64,
+    /// Whether each was evaluated. If not, largest errors, steps and monotonicity come from exact bounds, and evaluation where
+    /// they do not settle it; root-mean-square and mean errors from evenly spaced inputs.
+    pub every_input_evaluated: bool,
     /// Errors of the force; absolute ones in micronewtons.
     pub force: Errors,
     /// Errors of the indentation; absolute ones in nanometres.
@@ -76,33 +88,140 @@ impl Certificate {
     }
 }
 
-/// Evaluates every input. `None` when an end is not held and flagged as it must be.
+/// Certifies tables over every input. `None` when an end is not held and flagged as it must be.
 pub(super) fn certify(
     tables: &OwnedTables,
     curve: &Curve,
     truth: &Truth,
     accuracy: &Accuracy,
 ) -> Option<Certificate> {
+    certify_by(tables, curve, truth, accuracy, truth.maximum < EVALUATED)
+}
+
+/// The same, every input evaluated or as few as the bounds need.
+pub(super) fn certify_by(
+    tables: &OwnedTables,
+    curve: &Curve,
+    truth: &Truth,
+    accuracy: &Accuracy,
+    every: bool,
+) -> Option<Certificate> {
     if !ends_are_held(tables) {
         return None;
     }
-    let full_scale = truth.full_scale;
-    let from = full_scale.map(|full| full * accuracy.from_percent_of_full_scale / 100.0);
-    let mut force = Tally::new(full_scale[0], from[0]);
-    let mut indentation = Tally::new(full_scale[1], from[1]);
+    let segments = Segmentation::of(tables.layout)?;
+    let from = truth
+        .full_scale
+        .map(|full| full * accuracy.from_percent_of_full_scale / 100.0);
+    let mut tallies = [0, 1].map(|output| Tally::new(truth.full_scale[output], from[output]));
+    let parts: Vec<Part> = parts(tables, &segments, truth).collect();
+    if !every {
+        for part in &parts {
+            for (output, tally) in tallies.iter_mut().enumerate() {
+                tally.sound(&part.of(output));
+            }
+        }
+    }
+    // Most of the tables that miss the accuracy show it here.
+    let percents = [
+        accuracy.force_percent_of_reading,
+        accuracy.indentation_percent_of_reading,
+    ];
+    if tallies
+        .iter()
+        .zip(percents)
+        .any(|(tally, percent)| tally.misses(percent))
+    {
+        return None;
+    }
     let mut flagged = false;
-    truth.for_each(|count, [true_force, true_indentation]| {
-        let reading = tables.lookup(PressureRise(count));
-        flagged |= reading.saturated | reading.negative;
-        force.add(reading.force.0, true_force);
-        indentation.add(reading.indentation.0, true_indentation);
-    });
+    for part in &parts {
+        flagged |= part.is_flagged();
+        match part.piece {
+            Piece::Polynomial(_) if !(every || part.range.is_short()) => {
+                for (output, tally) in tallies.iter_mut().enumerate() {
+                    tally.bound(&part.of(output));
+                }
+            }
+            _ => {
+                for count in part.range.first..=part.range.last {
+                    let reading = part.reading(count);
+                    let truth = part.piece.at(count);
+                    tallies[0].add(reading.force.0, truth[0]);
+                    tallies[1].add(reading.indentation.0, truth[1]);
+                }
+            }
+        }
+    }
+    let [force, indentation] = tallies;
     (!flagged).then(|| Certificate {
         inputs: truth.maximum as u64 + 1,
+        every_input_evaluated: every,
         force: force.finish(accuracy.force_percent_of_reading),
         indentation: indentation.finish(accuracy.indentation_percent_of_reading),
         comparison_error: truth.deviation(curve),
     })
+}
+
+/// Inputs of one segment over which the curve is one piece.
+struct Part<'a> {
+    range: Range,
+    piece: Piece<'a>,
+    tables: &'a OwnedTables,
+    words: &'a [i32],
+    index: usize,
+    number: u32,
+}
+
+/// The parts of the inputs, upwards.
+fn parts<'a>(
+    tables: &'a OwnedTables,
+    segments: &'a Segmentation,
+    truth: &'a Truth,
+) -> impl Iterator<Item = Part<'a>> {
+    let first_index = segments.layout.first_index;
+    truth.pieces().flat_map(move |(range, piece)| {
+        segments.spans.iter().filter_map(move |span| {
+            let range = Range {
+                first: range.first.max(span.start),
+                last: range.last.min(span.end - 1),
+            };
+            let index = (span.number - first_index) as usize;
+            (range.first <= range.last).then(|| Part {
+                range,
+                piece,
+                tables,
+                words: tables.segment(index),
+                index,
+                number: span.number,
+            })
+        })
+    })
+}
+
+impl<'a> Part<'a> {
+    /// What the chip says at a count.
+    fn reading(&self, count: i32) -> Reading {
+        let (layout, rise) = (&self.tables.layout, PressureRise(count));
+        layout.reading(rise, layout.place(rise), self.words)
+    }
+
+    /// Whether an input within the tables says that it is not; both ends of a range do, if any does.
+    fn is_flagged(&self) -> bool {
+        [self.range.first, self.range.last]
+            .map(|count| self.tables.lookup(PressureRise(count)))
+            .iter()
+            .any(|reading| reading.saturated || reading.negative)
+    }
+
+    fn of(&self, output: usize) -> OutputPart<'a> {
+        OutputPart {
+            range: self.range,
+            sum: Sum::of(self.tables, self.index, self.number, output),
+            piece: self.piece,
+            output,
+        }
+    }
 }
 
 /// Inputs beyond the ends read as the ends do, with their flag.
@@ -127,97 +246,4 @@ fn ends_are_held(tables: &OwnedTables) -> bool {
                 ..zero
             }
     })
-}
-
-/// Sums over the inputs of one output.
-struct Tally {
-    full_scale: f64,
-    from: f64,
-    all: Sums,
-    reading: Sums,
-    below: f64,
-    previous: i32,
-    equal: u64,
-    falling: u64,
-    largest_step: i32,
-    range: [i32; 2],
-}
-
-#[derive(Default)]
-struct Sums {
-    count: u64,
-    max: f64,
-    squares: f64,
-    sum: f64,
-}
-
-impl Sums {
-    #[inline]
-    fn add(&mut self, error: f64) {
-        self.count += 1;
-        self.max = self.max.max(error.abs());
-        self.squares += error * error;
-        self.sum += error;
-    }
-
-    /// In percent of `unit`.
-    fn spread(&self, unit: f64) -> Spread {
-        let count = self.count.max(1) as f64;
-        let scale = 100.0 / unit;
-        Spread {
-            max: scale * self.max,
-            rms: scale * libm::sqrt(self.squares / count),
-            mean: scale * self.sum / count,
-        }
-    }
-}
-
-impl Tally {
-    fn new(full_scale: f64, from: f64) -> Self {
-        Self {
-            full_scale,
-            from,
-            all: Sums::default(),
-            reading: Sums::default(),
-            below: 0.0,
-            // Zero input reads zero, or the certificate does not hold.
-            previous: 0,
-            equal: 0,
-            falling: 0,
-            largest_step: 0,
-            range: [i32::MAX, i32::MIN],
-        }
-    }
-
-    #[inline]
-    fn add(&mut self, got: i32, truth: f64) {
-        let error = f64::from(got) - truth;
-        self.all.add(error);
-        if truth >= self.from {
-            self.reading.add(error / truth);
-        } else {
-            self.below = self.below.max(error.abs());
-        }
-        let step = got.saturating_sub(self.previous);
-        self.equal += u64::from(step == 0 && self.all.count > 1);
-        self.falling += u64::from(step < 0);
-        self.largest_step = self.largest_step.max(step);
-        self.previous = got;
-        self.range = [self.range[0].min(got), self.range[1].max(got)];
-    }
-
-    fn finish(self, allowed_percent: f64) -> Errors {
-        Errors {
-            full_scale: self.full_scale,
-            from: self.from,
-            of_reading: self.reading.spread(1.0),
-            of_full_scale: self.all.spread(self.full_scale),
-            below_percent_of_from: 100.0 * self.below / self.from,
-            allowed_percent,
-            equal_steps: self.equal,
-            falling_steps: self.falling,
-            largest_step: self.largest_step,
-            range: self.range,
-        }
-    }
 }

@@ -10,6 +10,7 @@ use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::block::write::TipData;
 use crate::constants::DesignConstants;
+use crate::model::own_error::OwnError;
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
 
@@ -189,10 +190,17 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     for byte in generated.design.hash() {
         write!(hash, "{byte:02x}")?;
     }
+    let how = if certificate.every_input_evaluated {
+        "# What holds of the tables of this design. Every representable input was evaluated with the lookup\n\
+         # that runs on the chip, and compared with the curve of the full model."
+    } else {
+        "# What holds of the tables of this design on every representable input, as the lookup that runs on the chip\n\
+         # answers it, compared with the curve of the full model. Largest errors, steps and monotonicity are exact: bounds\n\
+         # of the sums settle all inputs but those evaluated. Mean and root-mean-square errors are of evenly spaced inputs."
+    };
     writeln!(
         out,
-        "# What holds of the tables of this design. Every representable input was evaluated with the lookup\n\
-         # that runs on the chip, and compared with the curve of the full model.\n\
+        "{how}\n\
          design = \"{}\"\n\
          design_sha256 = \"{hash}\"\n\
          table_version = {}\n\
@@ -222,7 +230,37 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
              states = {}\n\
              force_percent = {:.1e}\n\
              indentation_percent = {:.1e}\n",
-            model.mesh, model.states, model.force_percent, model.indentation_percent
+            model.better, model.states, model.force_percent, model.indentation_percent
+        )?;
+    }
+    if let Some(error) = &generated.membrane_error {
+        writeln!(
+            out,
+            "[model.membrane] # the error of the membrane itself, at the pressure rises of a solid"
+        )?;
+        match error {
+            OwnError::Compared(found) => writeln!(
+                out,
+                "against = \"{}\"\n\
+                 states = {}\n\
+                 force_percent = {:.1e}\n\
+                 indentation_percent = {:.1e}",
+                found.better, found.states, found.force_percent, found.indentation_percent
+            )?,
+            OwnError::Estimated { percent, .. } => writeln!(
+                out,
+                "# No solid has this rest state: thickness over radius.\n\
+                 estimated_percent = {percent:.1e}"
+            )?,
+            OwnError::Unknown { .. } => {}
+        }
+    }
+    if let (Some(accuracy), Some(_)) = (&generated.design.accuracy, generated.own_error()) {
+        writeln!(
+            out,
+            "# The largest error of the model itself that the design allows.\n\
+             model_percent_allowed = {:?}\n",
+            accuracy.model_percent
         )?;
     }
     writeln!(
@@ -245,6 +283,11 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
     let bits = tables.layout.pressure_fraction_bits;
     let resolvable = generated.certified.resolvable_percent;
     let held_to = generated.limits().map(Limit::word);
+    let integers = if held_to.contains(&Limit::Integers.word()) {
+        ", or \"integers\" where no tables reach it"
+    } else {
+        ""
+    };
     let touch = tables.lookup(PressureRise::from_pascals(transducer.resolution_pa, bits));
     writeln!(
         out,
@@ -256,7 +299,7 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
          resolution_moves_indentation_nm = {}\n\
          half_step_is_force_percent = {:.6}\n\
          half_step_is_indentation_percent = {:.6}\n\
-         # What the tables are held to: \"accuracy\", or \"transducer\" where more was asked than it can tell.\n\
+         # What the tables are held to: \"accuracy\", or \"transducer\" where more was asked than it can tell{}.\n\
          force_held_to = \"{}\"\n\
          indentation_held_to = \"{}\"",
         transducer.resolution_pa,
@@ -265,6 +308,7 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
         touch.indentation.0,
         resolvable[0],
         resolvable[1],
+        integers,
         held_to[0],
         held_to[1],
     )

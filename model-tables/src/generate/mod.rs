@@ -3,6 +3,8 @@
 //! [`from_design_file`] goes the whole way: design file -> full model -> tables, every input checked. Tables
 //! that do not meet the design's accuracy are never returned.
 
+mod bounds;
+mod candidate;
 mod certify;
 mod design;
 mod emit;
@@ -11,18 +13,23 @@ mod owned;
 mod quantise;
 mod search;
 mod shape;
+mod tally;
 mod truth;
 
 use crate::curve::{Contact, Curve};
 use crate::design_file::Accuracy;
+use candidate::Work;
 use truth::Truth;
 
 pub use certify::{Certificate, Errors, Spread};
-pub use design::{GenerateError, Generated, Limit, Solved, State, from_design, from_design_file, solve};
+pub use design::{
+    GenerateError, Generated, Limit, Solved, State, from_design, from_design_file, from_design_or_worse,
+    solve,
+};
 pub use owned::OwnedTables;
 
 /// Version of the tables' layout and of the generator; counts up when either changes the integers.
-pub const TABLE_VERSION: u32 = 4;
+pub const TABLE_VERSION: u32 = 5;
 
 /// Bytes above which a finer unit is tried too.
 const MANY: usize = 192;
@@ -160,6 +167,7 @@ fn search<T>(
     let [coarsest, finest] = fraction_bits(curve, end, accuracy, resolution);
     let mut failure = None;
     let mut smallest: Option<search::Found<T>> = None;
+    let work = Work::default();
     // Two units at a time: segments of two octaves can lie two ways. Where the first that serve leave the segments of first
     // contact so few inputs that many are needed, the next may do with fewer.
     for first in (coarsest..=finest).step_by(2) {
@@ -174,7 +182,7 @@ fn search<T>(
                 failure = failure.or(Some(NoTables::TooWide { counts }));
             }
         }
-        match search::smallest(&truths, accuracy, &mut accept) {
+        match search::smallest(&truths, accuracy, &work, &mut accept) {
             Ok(found) => match smallest {
                 Some(before) if before.tables.bytes() <= found.tables.bytes() => return Ok(before),
                 None if found.tables.bytes() > MANY => smallest = Some(found),

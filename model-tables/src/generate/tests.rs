@@ -1,5 +1,7 @@
 use super::*;
 use crate::curve::Contact;
+use crate::design_file::{DEFAULT_MODEL_PERCENT, DesignFile};
+use crate::random::Random;
 use crate::units::PressureRise;
 
 /// A press in closed form with the right asymptotes: force linear at first and steeper by `(1 + rise/s)^p`,
@@ -70,6 +72,7 @@ fn accuracy(percent: f64) -> Accuracy {
         force_percent_of_reading: percent,
         indentation_percent_of_reading: percent,
         from_percent_of_full_scale: 1.0,
+        model_percent: DEFAULT_MODEL_PERCENT,
     }
 }
 
@@ -257,4 +260,145 @@ fn what_the_transducer_can_tell_is_made_in_its_unit() {
     }
     let bits = |certified: &Certified| certified.tables.layout.pressure_fraction_bits;
     assert!(bits(&fine) > bits(&coarse));
+}
+
+/// A dome of 9 x 7 x 1 mm Agilus30 pressed to 2.8 mm, from a rest state hardly stretched.
+fn hardly_stretched(pole_stretch: f64, resolution: f64) -> Solved {
+    let text = format!(
+        "name = \"hardly\"\n[membrane]\nradial_semi_axis_mm = 9.0\naxial_semi_axis_mm = 7.0\nthickness_mm = 1.0\n[material]\n\
+         law = \"mooney-rivlin\"\nc1_pa = 160355.0\nc2_pa = 46559.0\n[rest]\npole_stretch = {pole_stretch}\n[press]\n\
+         max_indentation_mm = 2.8\n[transducer]\nkind = \"ratiometric\"\nrange_kpa = [0.0, 200.0]\n\
+         resolution_pa = {resolution:?}\noutput_fraction_at_range = [0.1, 0.9]\n"
+    );
+    solve(&DesignFile::parse(&text, "hardly.toml").expect("a design")).expect("a curve")
+}
+
+/// At first contact the tolerance is more than the force itself: sums that merely keep to it fall there, in every shape.
+#[test]
+fn hardly_stretched_rests_have_small_tables() {
+    for (pole_stretch, resolution) in [(1.02, 10.0), (1.005, 10.0), (1.005, 0.01)] {
+        let Solved { curve, end, .. } = hardly_stretched(pole_stretch, resolution);
+        let certified = tables(&curve, end, &accuracy(0.1), resolution).expect("tables");
+        assert!(certified.certificate.holds());
+        let (bytes, tried) = (certified.tables.bytes(), certified.tried);
+        assert!(
+            bytes <= 192 && tried < 1000,
+            "{pole_stretch}: {bytes} bytes, {tried} tried"
+        );
+    }
+}
+
+/// The certificates of the first tables that are offered, every input evaluated and by bounds.
+fn both_certificates(
+    curve: &Curve,
+    end: Contact,
+    accuracy: &Accuracy,
+    resolution: f64,
+    spoil: impl Fn(&mut OwnedTables),
+) -> [Certificate; 2] {
+    let mut both = None;
+    // Spoilt tables miss every accuracy, and would be let go before they are certified.
+    let any = Accuracy {
+        force_percent_of_reading: f64::INFINITY,
+        indentation_percent_of_reading: f64::INFINITY,
+        ..*accuracy
+    };
+    search(curve, end, accuracy, resolution, |tables, truth| {
+        let mut tables = tables.clone();
+        spoil(&mut tables);
+        let certify = |every| certify::certify_by(&tables, curve, truth, &any, every);
+        both = Some([true, false].map(|every| certify(every).expect("its ends are held")));
+        both.as_ref().map(|_| ())
+    })
+    .unwrap_or_else(|error| panic!("{error}"));
+    both.expect("offered")
+}
+
+/// What must be the same to the digit, and sums over samples that must be near.
+fn assert_same([every, bounded]: [Certificate; 2]) {
+    assert!(every.every_input_evaluated && !bounded.every_input_evaluated);
+    assert_eq!(every.inputs, bounded.inputs);
+    for (every, bounded) in [
+        (&every.force, &bounded.force),
+        (&every.indentation, &bounded.indentation),
+    ] {
+        let exact = |errors: &Errors| {
+            [
+                errors.of_reading.max.to_bits(),
+                errors.of_full_scale.max.to_bits(),
+                errors.below_percent_of_from.to_bits(),
+                errors.equal_steps,
+                errors.falling_steps,
+                errors.largest_step as u64,
+            ]
+        };
+        assert_eq!(exact(every), exact(bounded));
+        if every.falling_steps == 0 {
+            assert_eq!(every.range, bounded.range);
+        }
+        for (every, bounded) in [
+            (every.of_reading, bounded.of_reading),
+            (every.of_full_scale, bounded.of_full_scale),
+        ] {
+            assert!(
+                (every.rms / bounded.rms - 1.0).abs() < 1e-3,
+                "{every:?} {bounded:?}"
+            );
+            assert!(
+                (every.mean - bounded.mean).abs() < 1e-3 * every.rms,
+                "{every:?} {bounded:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn bounds_certify_shipped_designs_as_evaluation_does() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("designs");
+    for entry in std::fs::read_dir(folder).expect("the designs") {
+        let file = DesignFile::read(&entry.expect("a file").path()).expect("a shipped design");
+        let Solved {
+            transducer,
+            curve,
+            end,
+            ..
+        } = solve(&file).expect("a curve");
+        let accuracy = file.accuracy.expect("shipped with it");
+        assert_same(both_certificates(
+            &curve,
+            end,
+            &accuracy,
+            transducer.resolution_pa,
+            |_| (),
+        ));
+    }
+}
+
+/// Presses and accuracies drawn, and tables spoilt, so that errors are large and outputs fall.
+#[test]
+fn bounds_certify_drawn_tables_as_evaluation_does() {
+    let mut random = Random(1_406);
+    let mut fell = 0;
+    for spoilt in [0, 0, 0, 1, 12, 200] {
+        let end = random.logarithmic(2e3, 1.5e5);
+        let press = Press {
+            end,
+            newtons_per_pascal: random.logarithmic(5e-5, 3e-4),
+            stiffening: end * random.logarithmic(1.0, 20.0),
+            metres_per_pascal: 2e-3 / end * random.logarithmic(0.3, 10.0),
+            bend: end * random.logarithmic(0.02, 1.0),
+        };
+        let (percent, resolution) = (random.logarithmic(0.05, 1.0), random.logarithmic(0.1, 10.0));
+        let curve = press.curve();
+        let spoil = |tables: &mut OwnedTables| {
+            let last = tables.layout.words() - 1;
+            for words in tables.words.chunks_mut(last + 1) {
+                words[last] = words[last].wrapping_add(spoilt << 16 | spoilt);
+            }
+        };
+        let both = both_certificates(&curve, curve.end(), &accuracy(percent), resolution, spoil);
+        fell += both[0].force.falling_steps + both[0].indentation.falling_steps;
+        assert_same(both);
+    }
+    assert!(fell > 0, "nothing spoilt");
 }

@@ -1,5 +1,6 @@
 //! The curve at every count, fast: local polynomials through exact evaluations, with the error they add.
 
+use super::bounds::{Polynomial, Range, compose};
 use crate::curve::{Contact, Curve};
 
 /// Inputs below this many counts are evaluated exactly, one by one.
@@ -22,7 +23,7 @@ const CHEBYSHEV: [f64; NODES] = [
 ];
 
 /// Consecutive counts with one polynomial.
-struct Block {
+pub(super) struct Block {
     /// First count.
     start: i32,
     /// Counts to map: the place of a count is `2 (count - start) / width - 1`.
@@ -90,16 +91,40 @@ impl Truth {
         self.blocks[block].at(count)
     }
 
-    /// Calls `visit` with every count and its outputs, in order.
-    pub(super) fn for_each(&self, mut visit: impl FnMut(i32, [f64; 2])) {
-        for (count, &value) in self.exact.iter().enumerate() {
-            visit(count as i32, value);
-        }
-        for (i, block) in self.blocks.iter().enumerate() {
+    /// The counts in order: those evaluated exactly, then a range for each polynomial.
+    pub(super) fn pieces(&self) -> impl Iterator<Item = (Range, Piece<'_>)> {
+        let exact = Range {
+            first: 0,
+            last: self.exact.len() as i32 - 1,
+        };
+        let blocks = self.blocks.iter().enumerate().map(|(i, block)| {
             let end = self.blocks.get(i + 1).map_or(self.maximum + 1, |next| next.start);
-            for count in block.start..end {
-                visit(count, block.at(count));
-            }
+            let range = Range {
+                first: block.start,
+                last: end - 1,
+            };
+            (range, Piece::Polynomial(block))
+        });
+        std::iter::once((exact, Piece::Exact(&self.exact))).chain(blocks)
+    }
+}
+
+/// The curve over consecutive counts.
+#[derive(Clone, Copy)]
+pub(super) enum Piece<'a> {
+    /// From zero on, count by count.
+    Exact(&'a [[f64; 2]]),
+    /// A polynomial.
+    Polynomial(&'a Block),
+}
+
+impl Piece<'_> {
+    /// Force in micronewtons and indentation in nanometres at one of its counts.
+    #[inline]
+    pub(super) fn at(&self, count: i32) -> [f64; 2] {
+        match self {
+            Self::Exact(values) => values[count as usize],
+            Self::Polynomial(block) => block.at(count),
         }
     }
 }
@@ -133,6 +158,13 @@ impl Block {
             }
         }
         deviation
+    }
+
+    /// An output over a range of its counts, in the place within that range.
+    pub(super) fn over(&self, output: usize, range: Range) -> Polynomial {
+        let place = |count: i32| 2.0 * f64::from(count - self.start) / self.width - 1.0;
+        let first = place(range.first);
+        compose(&self.powers[output], first, place(range.last) - first)
     }
 
     #[inline]

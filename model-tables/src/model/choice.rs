@@ -70,7 +70,7 @@ impl Wanted {
         let from = file
             .accuracy
             .map_or(DEFAULT_FROM, |a| a.from_percent_of_full_scale);
-        let height = file.membrane.axial_semi_axis_mm;
+        let height = 1e3 * file.design().membrane.axial_semi_axis;
         Self {
             error: percent / 100.0,
             from: from / 100.0,

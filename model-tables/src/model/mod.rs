@@ -4,7 +4,7 @@
 
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};
-use crate::design_file::{DesignFile, ModelSection};
+use crate::design_file::{Axes, DesignFile, ModelSection};
 use crate::limit::Limit;
 use crate::membrane::TensionField;
 use crate::membrane::adapt::Resolution;
@@ -17,6 +17,7 @@ use std::fmt;
 pub mod choice;
 mod error;
 mod inflation;
+pub mod own_error;
 pub mod state;
 
 pub use error::ModelError;
@@ -112,12 +113,9 @@ impl Fingertip {
     /// # Errors
     /// [`ModelError`] where it has no rest state.
     pub fn finer(&self, file: &DesignFile) -> Result<(Self, String), ModelError> {
-        let mut design = file.design();
         match self {
             Self::Membrane(_) => {
-                if file.model == ModelSection::Auto {
-                    design.membrane = mid_surface(&design.membrane);
-                }
+                let design = file.design_to(Axes::Mid);
                 let press = press::Press::with_resolution(&design, TensionField::Relaxed, press::FINER)?;
                 Ok((Self::Membrane(Box::new(press)), "a mesh twice as fine".to_owned()))
             }
@@ -127,7 +125,7 @@ impl Fingertip {
                     through: through + 1,
                     along: (8 * along).div_ceil(5),
                 });
-                Ok((Self::of(kind, &design)?, kind.to_string()))
+                Ok((Self::of(kind, &file.design_to(Axes::Outer))?, kind.to_string()))
             }
         }
     }

@@ -150,6 +150,7 @@ impl fmt::Display for HistoryError {
 impl core::error::Error for HistoryError {}
 
 /// Why a step was not taken.
+#[derive(Clone, Copy)]
 enum Rejected {
     Failed(Failure),
     Touches(EndsBy),

@@ -115,6 +115,9 @@ pub(super) fn add_stress(
     nominal[4] += by_s * f22 + by_d * f11 + f21 * h12 + f22 * h22;
 }
 
+/// Where the in-plane components are among all of a deformation.
+const IN_PLANE: [usize; 4] = [0, 1, 3, 4];
+
 /// Adds the memory's stiffness at a point.
 #[inline(always)]
 pub(super) fn add_stiffness(
@@ -167,8 +170,6 @@ pub(super) fn add_stiffness(
     let zero = Lanes::ZERO;
     let deformed = [f11, f12, f21, f22];
     let cofactor = [f22, zero - f21, zero - f12, f11];
-    // Of the in-plane components, and where they are among all.
-    const PLACES: [usize; 4] = [0, 1, 3, 4];
     let [h11, h12, h22, h33] = held.stress[point];
     let in_plane = [[h11, h12], [h12, h22]];
     for i in 0..4 {
@@ -188,14 +189,14 @@ pub(super) fn add_stiffness(
             if (i, j) == (1, 2) {
                 sum = sum - by_d;
             }
-            k[PLACES[i]][PLACES[j]] += sum;
+            k[IN_PLANE[i]][IN_PLANE[j]] += sum;
             if i != j {
-                k[PLACES[j]][PLACES[i]] += sum;
+                k[IN_PLANE[j]][IN_PLANE[i]] += sum;
             }
         }
         let sum = sf * deformed[i] * 2.0 + df * cofactor[i];
-        k[PLACES[i]][2] += sum;
-        k[2][PLACES[i]] += sum;
+        k[IN_PLANE[i]][2] += sum;
+        k[2][IN_PLANE[i]] += sum;
     }
     k[2][2] += ff + h33;
 }

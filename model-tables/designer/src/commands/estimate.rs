@@ -4,7 +4,8 @@ use super::{estimate_in_time, finite};
 use fingertip::signal::contact::contact;
 use fingertip::signal::design::{Design, LoadedDesign};
 use fingertip::status::{Status, Warnings};
-use model_tables::generate::{GenerateError, from_design_file};
+use model_tables::design_file::DesignFile;
+use model_tables::generate::{GenerateError, Generated, from_design, from_design_or_worse};
 use model_tables::units::PressureRise;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -24,6 +25,27 @@ pub(super) struct Arguments {
     /// the untouched, recovered fingertip
     #[arg(long, value_name = "FILE", conflicts_with = "pressure_rise_pa")]
     history: Option<PathBuf>,
+    /// Answer also where the tables do not reach the accuracy that the design asks
+    #[arg(long)]
+    allow_worse: bool,
+}
+
+/// The tables of a design; those that do not reach the accuracy asked for only where worse is allowed.
+pub(super) fn generated(file: &Path, allow_worse: bool) -> Result<Generated, Refusal> {
+    let design = DesignFile::read(file).map_err(Refusal::of)?;
+    let made = if allow_worse {
+        from_design_or_worse(design)
+    } else {
+        from_design(design)
+    };
+    let generated = made.map_err(|error| refusal(file, error))?;
+    match generated.shortfall() {
+        Some(shortfall) if !allow_worse => Err(Refusal::about(
+            file,
+            &format!("{shortfall}; or take these with --allow-worse"),
+        )),
+        _ => Ok(generated),
+    }
 }
 
 /// A refusal of the generator; errors of the file name it themselves.
@@ -37,9 +59,9 @@ pub(super) fn refusal(file: &Path, error: GenerateError) -> Refusal {
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     if let Some(history) = &arguments.history {
-        return estimate_in_time::run(file, history);
+        return estimate_in_time::run(file, history, arguments.allow_worse);
     }
-    let generated = from_design_file(file).map_err(|error| refusal(file, error))?;
+    let generated = generated(file, arguments.allow_worse)?;
     let block = generated.binary();
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;
@@ -57,6 +79,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     Ok(CommandAnswer {
         rows,
-        notes: Vec::new(),
+        notes: generated.own_error().iter().map(ToString::to_string).collect(),
     })
 }

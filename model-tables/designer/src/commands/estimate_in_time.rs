@@ -1,6 +1,6 @@
 //! `designer estimate --history`: what the chip's stages say of a pressure over time, bit for bit.
 
-use super::estimate::refusal;
+use super::estimate::generated;
 use super::read;
 use super::time_rows::{self, TimeRow};
 use fingertip::signal::contact::contact;
@@ -8,7 +8,6 @@ use fingertip::signal::design::{Design, LoadedDesign};
 use fingertip::signal::relaxation::{Factor, RelaxedReading, Relaxing, SeriesStep, TermStep};
 use fingertip::status::{Status, Warnings};
 use model_tables::design_file::{DesignFile, ModelSection, RestSection};
-use model_tables::generate::from_design;
 use model_tables::material::relaxation::{MAX_TERMS, Relaxation};
 use model_tables::units::PressureRise;
 use output::rows::{Cell, Rows};
@@ -78,7 +77,7 @@ fn check(file: &Path, design: &DesignFile) -> Result<(), Refusal> {
     Err(Refusal::about(file, &reason))
 }
 
-pub(super) fn run(file: &Path, history: &Path) -> Result<CommandAnswer, Refusal> {
+pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<CommandAnswer, Refusal> {
     let design_file = read(file)?;
     let relaxation = design_file.relaxation;
     if relaxation.is_some() {
@@ -86,7 +85,7 @@ pub(super) fn run(file: &Path, history: &Path) -> Result<CommandAnswer, Refusal>
     }
     let read = time_rows::read(history, &[KILOPASCALS, PASCALS])?;
     let unit = if read.column == KILOPASCALS { 1e3 } else { 1.0 };
-    let generated = from_design(design_file).map_err(|error| refusal(file, error))?;
+    let generated = generated(file, allow_worse)?;
     let block = generated.binary();
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;

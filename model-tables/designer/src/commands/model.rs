@@ -2,8 +2,9 @@
 
 use model_tables::design::{Design, Membrane};
 use model_tables::design_file::{DesignFile, ModelSection};
-use model_tables::model::Kind;
 use model_tables::model::choice::{self, Wanted};
+use model_tables::model::own_error::OwnError;
+use model_tables::model::{Fingertip, Kind};
 use model_tables::solid::inflation::mid_surface;
 use model_tables::solid::mesh::Elements;
 use output::Refusal;
@@ -17,6 +18,13 @@ pub(super) struct Model {
     pub(super) design: Design,
     /// How `auto` came to it.
     pub(super) note: Option<String>,
+}
+
+/// One line about the error of the model itself down to an indentation in metres; 0 is the press that the design describes.
+pub(super) fn note_of_error(design_file: &DesignFile, model: &mut Fingertip, deepest: f64) -> String {
+    let wanted = Wanted::of(design_file);
+    let deepest = if deepest > 0.0 { deepest } else { wanted.deepest };
+    OwnError::of(model, design_file, deepest, wanted.from).to_string()
 }
 
 /// The model of a design; `auto` climbs its ladder.

@@ -5,8 +5,8 @@ use super::{Field, bench, finite, read, refuse_plain};
 use model_tables::design_file::DesignFile;
 use model_tables::membrane::Zone;
 use model_tables::membrane::press::Press;
-use model_tables::model::Kind;
 use model_tables::model::ModelError;
+use model_tables::model::{Fingertip, Kind};
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
 use output::rows::{Cell, Rows};
@@ -76,8 +76,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     let mut press = Press::new(&model.design, arguments.tension_field.into())
         .map_err(|error| Refusal::about(file, &error))?;
+    let depth = bench::depth(calibration, arguments.indentation_mm);
     let meridian = press
-        .profile(bench::depth(calibration, arguments.indentation_mm), points)
+        .profile(depth, points)
         .map_err(|error| Refusal::about(file, &bench::as_read(calibration, error)))?;
     let mut rows = Rows::new(COLUMNS);
     let mut found = 0;
@@ -104,9 +105,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         );
         return Err(Refusal::about(file, &reason));
     }
+    let error = model::note_of_error(&design_file, &mut Fingertip::Membrane(Box::new(press)), depth);
     Ok(CommandAnswer {
         rows,
-        notes: model.note.into_iter().collect(),
+        notes: model.note.into_iter().chain([error]).collect(),
     })
 }
 
@@ -120,11 +122,9 @@ fn solid(
     let calibration = &design_file.calibration;
     let refuse = |error: ModelError| Refusal::about(&arguments.design, &bench::as_read(calibration, error));
     let mut press = solid::press::Press::new(&model.design, elements).map_err(refuse)?;
+    let depth = bench::depth(calibration, arguments.indentation_mm);
     let stations = press
-        .profile(
-            bench::depth(calibration, arguments.indentation_mm),
-            arguments.points as usize,
-        )
+        .profile(depth, arguments.points as usize)
         .map_err(|error| refuse(error.into()))?;
     let mut rows = Rows::new(COLUMNS);
     for station in stations {
@@ -146,8 +146,9 @@ fn solid(
             Cell::Empty,
         ]);
     }
+    let error = model::note_of_error(design_file, &mut Fingertip::Solid(Box::new(press)), depth);
     Ok(CommandAnswer {
         rows,
-        notes: model.note.iter().cloned().collect(),
+        notes: model.note.iter().cloned().chain([error]).collect(),
     })
 }

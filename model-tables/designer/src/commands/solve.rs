@@ -80,6 +80,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     let mut rung = Fingertip::Membrane(Box::new(press));
     bench::warn_of_strain(file, &design_file, &mut rung, deepest);
+    let error = model::note_of_error(&design_file, &mut rung, deepest);
     let mut rows = Rows::new(COLUMNS);
     for (state, &asked) in states.iter().flatten().zip(&arguments.indentation_mm) {
         rows.push(vec![
@@ -97,7 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     Ok(CommandAnswer {
         rows,
-        notes: model.note.into_iter().collect(),
+        notes: model.note.into_iter().chain([error]).collect(),
     })
 }
 

@@ -1,7 +1,6 @@
 //! `designer table`: writes the tables of a design.
 
-use super::estimate::refusal;
-use model_tables::generate::from_design_file;
+use super::estimate;
 use output::files::write_all;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -17,12 +16,15 @@ pub(super) struct Arguments {
     /// The folder to write to; made if it is not there
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Write the tables also where they do not reach the accuracy that the design asks
+    #[arg(long)]
+    allow_worse: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let begun = Instant::now();
-    let generated = from_design_file(file).map_err(|error| refusal(file, error))?;
+    let generated = estimate::generated(file, arguments.allow_worse)?;
     let seconds = begun.elapsed().as_secs_f64();
     let contents: [(&str, Vec<u8>); 4] = [
         ("tables.rs", generated.rust_source().into_bytes()),
@@ -40,7 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     let certificate = &generated.certified.certificate;
     let name = &generated.design.name;
-    let notes = vec![
+    let mut notes = vec![
         format!(
             "{name}: {} bytes of tables; over all {} inputs the errors stay within {:.4} % (force) and {:.4} % \
              (indentation) of reading",
@@ -52,5 +54,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         format!("{name}: {}", generated.choice()),
         format!("{name}: solved, fitted and certified in {seconds:.1} s"),
     ];
+    notes.extend(generated.own_error().map(|error| format!("{name}: {error}")));
     Ok(CommandAnswer { rows, notes })
 }

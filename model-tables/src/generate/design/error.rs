@@ -1,5 +1,6 @@
 //! Why a design gets no tables.
 
+use crate::constants::BELOW_ZERO_DEVIATIONS;
 use crate::curve::CurveFailure;
 use crate::design_file::DesignFileError;
 use crate::generate::NoTables;
@@ -30,6 +31,29 @@ pub enum GenerateError {
         range: [f64; 2],
         /// The absolute range that those are left of, where `transducer.range_kpa` is one; kilopascals.
         absolute: Option<[f64; 2]>,
+    },
+    /// The whole press raises the pressure by no more than what passes for noise around zero.
+    Unfelt {
+        /// By how much, pascals.
+        rise: f64,
+        /// What passes for noise, pascals.
+        least: f64,
+        /// The transducer's key that says so, and its value in pascals.
+        key: (&'static str, f64),
+    },
+    /// The membrane is further off the solid than `accuracy.model_percent` allows.
+    CoarseMembrane {
+        /// By how much, in words.
+        error: String,
+        /// What is allowed, percent.
+        allowed: f64,
+    },
+    /// The mesh is further off a finer one than `accuracy.model_percent` allows.
+    CoarseMesh {
+        /// By how much, in words.
+        error: String,
+        /// What is allowed, percent.
+        allowed: f64,
     },
     /// The data that the tables are to come from end before `max_indentation_mm`.
     BeyondData {
@@ -95,6 +119,26 @@ impl fmt::Display for GenerateError {
                     }
                 }
             }
+            Self::Unfelt {
+                rise,
+                least,
+                key: (key, value),
+            } => write!(
+                f,
+                "the whole press raises the pressure by {rise:.3} Pa, and up to {least:.3} Pa is noise \
+                 ({BELOW_ZERO_DEVIATIONS} times transducer.{key} = {value}): choose a finer transducer, or a design \
+                 whose pressure rises more"
+            ),
+            Self::CoarseMembrane { error, allowed } => write!(
+                f,
+                "{error}, over accuracy.model_percent = {allowed}: choose model.kind = \"auto\" (model.axes = \"mid\" keeps the \
+                 semi-axes of a membrane), or allow more"
+            ),
+            Self::CoarseMesh { error, allowed } => write!(
+                f,
+                "{error}, over accuracy.model_percent = {allowed}: give more elements with model.through and model.along, or \
+                 allow more"
+            ),
             Self::BeyondData { asked, deepest } => write!(
                 f,
                 "press.max_indentation_mm = {asked} is beyond the data in [calibration], which end at {deepest} mm: \

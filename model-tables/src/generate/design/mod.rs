@@ -1,14 +1,17 @@
 //! From a design to its tables: the full model, and every refusal on the way.
 
 mod error;
+mod limit;
 
 pub use error::{GenerateError, State};
+pub use limit::Limit;
 
-use super::{Certified, tables};
-use crate::constants::{Transducer, TransducerKind};
+use super::{Certified, NoTables, tables};
+use crate::constants::{BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{DataCurve, DesignFile, Supply, TransducerKindSection, TransducerSection, Transfer};
 use crate::model::Fingertip;
+use crate::model::own_error::{Comparison, OwnError};
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
@@ -18,6 +21,9 @@ const CHECKED_SOLID: usize = 6;
 /// How much deeper than the press the curve goes where it can, so that the last input can be a number that the chip handles in
 /// fewer instructions: the pressure, which grows faster than the indentation, then goes on by as much at least.
 const BEYOND: f64 = 1.0 + 1.0 / 64.0;
+
+/// How often the accuracy is doubled at most where worse is allowed: a thousand times what was asked.
+const MOST_DOUBLINGS: u32 = 10;
 
 /// What tables of a design are made from.
 #[derive(Clone, Debug)]
@@ -47,21 +53,11 @@ pub struct Generated {
     pub end: Contact,
     /// Tables and certificate.
     pub certified: Certified,
-    /// How far the curve is from the model's own limit; nothing where it is of data.
-    pub model_error: Option<Convergence>,
-}
-
-/// A curve against states of the same model on a finer mesh, half way between those that it was made from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Convergence {
-    /// The finer mesh, in words.
-    pub mesh: String,
-    /// States compared.
-    pub states: usize,
-    /// Largest error of the force at a pressure rise, percent of reading, as the tables' errors are.
-    pub force_percent: f64,
-    /// The same of the indentation.
-    pub indentation_percent: f64,
+    /// The curve against states of the same model on a finer mesh, half way between those that it was made from; nothing where it
+    /// is of data.
+    pub model_error: Option<Comparison>,
+    /// The membrane against the solid of the same wall; nothing where the model is a solid, or there is none.
+    pub membrane_error: Option<OwnError>,
 }
 
 /// Reads a design file and makes its tables. Build scripts call this.
@@ -77,6 +73,19 @@ pub fn from_design_file(path: &Path) -> Result<Generated, GenerateError> {
 /// # Errors
 /// [`GenerateError`].
 pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
+    make(design, 0)
+}
+
+/// The same, where no tables meet the accuracy with those of the nearest accuracy that some meet: that asked for, doubled as often
+/// as it takes. [`Generated::shortfall`] says what was not reached.
+///
+/// # Errors
+/// [`GenerateError`].
+pub fn from_design_or_worse(design: DesignFile) -> Result<Generated, GenerateError> {
+    make(design, MOST_DOUBLINGS)
+}
+
+fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
     let Solved {
@@ -86,10 +95,31 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
         end,
         rung,
     } = solve(&design)?;
-    let certified =
-        tables(&curve, end, &accuracy, transducer.resolution_pa).map_err(GenerateError::NoTables)?;
     let from = accuracy.from_percent_of_full_scale / 100.0;
-    let model_error = rung.and_then(|rung| convergence(&design, &rung, &curve, end, from));
+    let (mut model_error, mut membrane_error) = (None, None);
+    if let Some(mut rung) = rung {
+        model_error = convergence(&design, &rung, &curve, end, from);
+        if matches!(rung, Fingertip::Membrane(_)) {
+            membrane_error = Some(OwnError::of(&mut rung, &design, end.indentation, from));
+        }
+    }
+    is_near_enough(
+        model_error.as_ref(),
+        membrane_error.as_ref(),
+        accuracy.model_percent,
+    )?;
+    let mut allowed = accuracy;
+    let mut doubled = 0;
+    let certified = loop {
+        match tables(&curve, end, &allowed, transducer.resolution_pa) {
+            Err(NoTables::Inaccurate { .. }) if doubled < doublings => {
+                allowed.force_percent_of_reading *= 2.0;
+                allowed.indentation_percent_of_reading *= 2.0;
+                doubled += 1;
+            }
+            found => break found.map_err(GenerateError::NoTables)?,
+        }
+    };
     Ok(Generated {
         design,
         transducer,
@@ -97,6 +127,7 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
         end,
         certified,
         model_error,
+        membrane_error,
     })
 }
 
@@ -123,6 +154,7 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         State::Pressed { indentation },
         rest_pressure + end.pressure_rise,
     )?;
+    is_felt(&transducer, end.pressure_rise)?;
     Ok(Solved {
         transducer,
         rest_pressure,
@@ -132,6 +164,42 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
     })
 }
 
+/// Refuses a model that is further off than `accuracy.model_percent` allows.
+fn is_near_enough(
+    mesh: Option<&Comparison>,
+    membrane: Option<&OwnError>,
+    allowed: f64,
+) -> Result<(), GenerateError> {
+    if let Some(found) = membrane
+        && found.percent().is_some_and(|percent| percent > allowed)
+    {
+        let error = found.to_string();
+        return Err(GenerateError::CoarseMembrane { error, allowed });
+    }
+    match mesh {
+        Some(found) if found.percent() > allowed => {
+            let error = OwnError::Compared(found.clone()).to_string();
+            Err(GenerateError::CoarseMesh { error, allowed })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a press that never leaves what the firmware takes for noise around zero.
+fn is_felt(transducer: &TransducerSection, rise: f64) -> Result<(), GenerateError> {
+    let (resolution, noise) = (transducer.resolution_pa, transducer.noise_pa);
+    let key = if noise > resolution {
+        ("noise_pa", noise)
+    } else {
+        ("resolution_pa", resolution)
+    };
+    let least = BELOW_ZERO_DEVIATIONS as f64 * key.1;
+    if rise > least {
+        return Ok(());
+    }
+    Err(GenerateError::Unfelt { rise, least, key })
+}
+
 /// Solves the design again on a finer mesh at some indentations.
 fn convergence(
     design: &DesignFile,
@@ -139,15 +207,15 @@ fn convergence(
     curve: &Curve,
     end: Contact,
     from: f64,
-) -> Option<Convergence> {
-    let (mut press, mesh) = rung.finer(design).ok()?;
+) -> Option<Comparison> {
+    let (mut press, better) = rung.finer(design).ok()?;
     let checked = match rung {
         Fingertip::Membrane(_) => CHECKED,
         Fingertip::Solid(_) => CHECKED_SOLID,
     };
     let gain = design.calibration.pressure_gain;
-    let mut found = Convergence {
-        mesh,
+    let mut found = Comparison {
+        better,
         states: 0,
         force_percent: 0.0,
         indentation_percent: 0.0,
@@ -233,68 +301,12 @@ fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Resul
     })
 }
 
-/// What tables are held to.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Limit {
-    /// What `[accuracy]` asks.
-    Accuracy,
-    /// Half of what the transducer tells apart, which is coarser.
-    Transducer,
-}
-
-impl Limit {
-    /// In a word, as the certificate has it.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Accuracy => "accuracy",
-            Self::Transducer => "transducer",
-        }
-    }
-}
-
 impl Generated {
-    /// What force and indentation are held to.
-    pub fn limits(&self) -> [Limit; 2] {
-        self.asked_percent().map(|asked| {
-            if self.floor() > asked {
-                Limit::Transducer
-            } else {
-                Limit::Accuracy
-            }
-        })
-    }
-
-    /// Percent of reading below which tables are waste for the transducer.
-    fn floor(&self) -> f64 {
-        let [force, indentation] = self.certified.resolvable_percent;
-        force.min(indentation)
-    }
-
-    /// What `[accuracy]` asks of force and indentation, percent of reading.
-    pub fn asked_percent(&self) -> [f64; 2] {
-        self.design.accuracy.as_ref().map_or([0.0; 2], |accuracy| {
-            [
-                accuracy.force_percent_of_reading,
-                accuracy.indentation_percent_of_reading,
-            ]
-        })
-    }
-
-    /// One line that justifies how fine the tables are: what was asked, and what the transducer can tell.
-    pub fn choice(&self) -> String {
-        let [force, indentation] = self.asked_percent();
-        let tells = format!(
-            "half of transducer.resolution_pa = {} is {:.4} % of reading where it is least",
-            self.transducer.resolution_pa,
-            self.floor()
-        );
-        if self.limits() == [Limit::Accuracy; 2] {
-            format!("held to the {force} % and {indentation} % that [accuracy] asks; {tells}")
-        } else {
-            format!(
-                "[accuracy] asks {force} % and {indentation} %, but {tells}: the tables stop there, as finer ones would be waste"
-            )
-        }
+    /// The error of the model itself: of a membrane against the solid, of a solid against a finer mesh; nothing where the curve is of
+    /// data.
+    pub fn own_error(&self) -> Option<OwnError> {
+        let mesh = || self.model_error.clone().map(OwnError::Compared);
+        self.membrane_error.clone().or_else(mesh)
     }
 
     /// First eight bytes of the design's hash, big-endian: [`crate::constants::DesignConstants::hash`].

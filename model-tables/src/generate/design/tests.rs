@@ -1,6 +1,7 @@
 use super::*;
 use crate::block::read::TipBlock;
 use crate::constants::Quantity;
+use crate::design_file::RestSection;
 use crate::generate::{OwnedTables, tables as make_tables};
 use crate::membrane::TensionField;
 use crate::membrane::press::Press;
@@ -56,6 +57,56 @@ fn tables_of_the_shipped_designs_agree_with_fresh_states_of_the_model() {
             }
         }
     }
+}
+
+/// A hardly stretched wall of a quarter of its radius: as a membrane its tables met 0.1 %, and the solid gives several times the force.
+#[test]
+fn a_thick_wall_is_no_membrane() {
+    let thick = |percent: f64| {
+        let mut design = shipped("skin-analogue");
+        design.membrane.thickness_mm = 2.5;
+        design.rest = RestSection::PoleStretch(1.02);
+        let accuracy = design.accuracy.as_mut().expect("the section");
+        accuracy.model_percent = percent;
+        from_design(design)
+    };
+    let error = thick(5.0).expect_err("far from the solid").to_string();
+    assert_eq!(error.lines().count(), 1, "{error}");
+    for part in [
+        "solid 2 x 24 of the same wall",
+        "accuracy.model_percent = 5",
+        "model.kind = \"auto\"",
+    ] {
+        assert!(error.contains(part), "{error}");
+    }
+    let allowed = thick(1000.0).expect("as asked");
+    let percent = allowed
+        .own_error()
+        .and_then(|error| error.percent())
+        .expect("compared");
+    assert!(percent > 50.0, "{percent} %");
+    let certificate = allowed.certificate();
+    for part in [
+        "[model.membrane]",
+        "against = \"solid 2 x 24 of the same wall\"",
+        "model_percent_allowed = 1000.0",
+    ] {
+        assert!(certificate.contains(part), "{certificate}");
+    }
+}
+
+/// The same solid on a mesh of one element for the whole height, and on one that is fine enough.
+#[test]
+fn a_mesh_that_is_too_coarse_is_refused() {
+    let of = |through: u32, along: u32| {
+        let mut design = shipped("index-fingertip");
+        design.model = crate::design_file::ModelSection::Solid { through, along };
+        design.accuracy.as_mut().expect("the section").model_percent = 2.0;
+        from_design(design)
+    };
+    let error = of(1, 6).expect_err("a coarse mesh").to_string();
+    assert!(error.contains("model.through and model.along"), "{error}");
+    assert!(of(2, 60).is_ok());
 }
 
 /// The tables as the chip holds them, if they have this shape.

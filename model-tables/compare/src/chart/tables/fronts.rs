@@ -1,7 +1,7 @@
 //! Bytes and instructions of the tables over designs of many kinds and accuracies, and why some need more.
 
 use model_tables::curve::Contact;
-use model_tables::design_file::{Accuracy, DesignFile};
+use model_tables::design_file::{Accuracy, DEFAULT_MODEL_PERCENT, DesignFile};
 use model_tables::generate::{self, NoTables, Solved};
 use output::Refusal;
 use rayon::prelude::*;
@@ -115,6 +115,7 @@ fn cost(solved: &Solved, percent: f64) -> Result<Option<Cost>, NoTables> {
         force_percent_of_reading: percent,
         indentation_percent_of_reading: percent,
         from_percent_of_full_scale: 1.0,
+        model_percent: DEFAULT_MODEL_PERCENT,
     };
     match generate::tables(&solved.curve, solved.end, &accuracy, RESOLUTION) {
         Ok(certified) => Ok(Some(Cost {

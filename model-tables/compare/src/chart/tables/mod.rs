@@ -6,7 +6,7 @@ mod page;
 mod placing;
 mod ways;
 
-use model_tables::design_file::{Accuracy, DesignFile};
+use model_tables::design_file::{Accuracy, DEFAULT_MODEL_PERCENT, DesignFile};
 use model_tables::generate::{self, NoTables};
 use output::Refusal;
 use rayon::prelude::*;
@@ -120,6 +120,7 @@ fn measure(name: &'static str, way: &str, text: &str) -> Result<Design, Refusal>
             force_percent_of_reading: percent,
             indentation_percent_of_reading: percent,
             from_percent_of_full_scale: 1.0,
+            model_percent: DEFAULT_MODEL_PERCENT,
         };
         match generate::tables(&solved.curve, solved.end, &accuracy, resolution) {
             Ok(certified) => Ok(Some(certified)),

@@ -9,6 +9,7 @@ use super::{bench, finite, read};
 use crate::fit::data::{Data, DataChoice, Direction};
 use crate::fit::parameter::Parameter;
 use crate::fit::{self, Fit, Held};
+use model_tables::model::Fingertip;
 use output::files;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -110,6 +111,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let seconds = start.elapsed().as_secs_f64();
     let mut notes = report::findings(&file, &data, &fit);
     notes.extend(bench::caution(&file));
+    let mut rung = Fingertip::new(&file).map_err(|error| Refusal::about(&arguments.design, &error))?;
+    notes.push(super::model::note_of_error(&file, &mut rung, 0.0));
     if let Some(out) = &arguments.out {
         let design_text = std::fs::read_to_string(&arguments.design)
             .map_err(|error| Refusal::about(&arguments.design, &error))?;

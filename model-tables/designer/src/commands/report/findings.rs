@@ -6,7 +6,7 @@ use super::super::{bench, read};
 use super::cost::{self, Cost};
 use model_tables::actuator::{Actuator, Blocked};
 use model_tables::design::{Design, RestBy};
-use model_tables::design_file::{Calibration, DesignFile};
+use model_tables::design_file::{Axes, Calibration, DesignFile};
 use model_tables::generate::{Generated, from_design};
 use model_tables::limit::Limit;
 use model_tables::membrane::TensionField;
@@ -122,7 +122,7 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     let costs = cost::costs(&file, kind, &design, deepest);
     progress.set(0.9);
     let bending = if kind == Kind::Membrane {
-        bending(&design, &mut rung, deepest)
+        bending(&file.design_to(Axes::Outer), &mut rung, deepest)
     } else {
         Vec::new()
     };
@@ -208,14 +208,11 @@ fn said(generated: &Generated, file: &DesignFile, states: &[Pressed]) -> Vec<Sai
 }
 
 /// Forces of the membrane and of a solid of the same wall; nothing where the solid has no such rest state.
-fn bending(design: &Design, membrane: &mut Fingertip, deepest: f64) -> Vec<Bending> {
-    if !matches!(design.rest, RestBy::PoleStretch(_)) {
+fn bending(outer: &Design, membrane: &mut Fingertip, deepest: f64) -> Vec<Bending> {
+    if !matches!(outer.rest, RestBy::PoleStretch(_)) {
         return Vec::new();
     }
-    let mut outer = *design;
-    outer.membrane.radial_semi_axis += 0.5 * design.membrane.thickness;
-    outer.membrane.axial_semi_axis += 0.5 * design.membrane.thickness;
-    let Ok(mut solid) = Fingertip::of(Kind::Solid(FINE), &outer) else {
+    let Ok(mut solid) = Fingertip::of(Kind::Solid(FINE), outer) else {
         return Vec::new();
     };
     let mut both = |part: f64| -> Result<Bending, ModelError> {

@@ -4,7 +4,7 @@ use super::findings::Findings;
 use super::words::{KPA, MM, MM3, NEWTON, PA, STRETCH, Unit, count};
 use maud::{Markup, html};
 use model_tables::constants::Quantity;
-use model_tables::design_file::{Calibration, ModelSection, RestSection, TransducerKindSection};
+use model_tables::design_file::{Axes, Calibration, RestSection, TransducerKindSection};
 use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::material::preset::Preset;
@@ -79,9 +79,9 @@ fn stated(found: &Findings) -> Vec<Row> {
     let file = &found.file;
     let membrane = &file.membrane;
     let given = |unit: Unit, number: f64| unit.given(&plain(number, 6));
-    let surface = match file.model {
-        ModelSection::Membrane => "of the middle of the wall",
-        ModelSection::Solid { .. } | ModelSection::Auto => "of the outer surface",
+    let surface = match file.axes {
+        Axes::Mid => "of the middle of the wall",
+        Axes::Outer => "of the outer surface",
     };
     let mut all: Vec<Row> = vec![
         (

@@ -9,6 +9,7 @@ use maud::{Markup, PreEscaped, html};
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{Errors, Generated, TABLE_VERSION};
 use model_tables::model::Kind;
+use model_tables::model::own_error::OwnError;
 use output::rows::plain;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -248,6 +249,23 @@ fn certified(found: &Findings, generated: &Generated) -> Markup {
             "model against a finer mesh, indentation",
             PERCENT.given(&plain(model.indentation_percent, 2)),
         ));
+    }
+    match &generated.membrane_error {
+        Some(OwnError::Compared(found)) => {
+            facts.push((
+                "membrane against the solid, force",
+                PERCENT.given(&plain(found.force_percent, 2)),
+            ));
+            facts.push((
+                "membrane against the solid, indentation",
+                PERCENT.given(&plain(found.indentation_percent, 2)),
+            ));
+        }
+        Some(OwnError::Estimated { percent, .. }) => facts.push((
+            "membrane, thickness over radius: no solid to compare",
+            PERCENT.given(&plain(*percent, 2)),
+        )),
+        Some(OwnError::Unknown { .. }) | None => {}
     }
     let [force, indentation] = generated.certified.resolvable_percent;
     facts.push((

@@ -1,0 +1,97 @@
+//! What tables are held to: the accuracy asked for, or what keeps them from it.
+
+use super::Generated;
+
+/// What tables are held to.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Limit {
+    /// What `[accuracy]` asks.
+    Accuracy,
+    /// Half of what the transducer tells apart, which is coarser.
+    Transducer,
+    /// What integers reach, which is coarser: [`from_design_or_worse`].
+    Integers,
+}
+
+impl Limit {
+    /// In a word, as the certificate has it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Accuracy => "accuracy",
+            Self::Transducer => "transducer",
+            Self::Integers => "integers",
+        }
+    }
+}
+
+impl Generated {
+    /// What force and indentation are held to.
+    pub fn limits(&self) -> [Limit; 2] {
+        let certificate = &self.certified.certificate;
+        let allowed = [&certificate.force, &certificate.indentation].map(|errors| errors.allowed_percent);
+        let asked = self.asked_percent();
+        [0, 1].map(|output| {
+            if allowed[output] <= asked[output] {
+                Limit::Accuracy
+            } else if allowed[output] <= self.floor() {
+                Limit::Transducer
+            } else {
+                Limit::Integers
+            }
+        })
+    }
+
+    /// One line about the accuracy that `[accuracy]` asks and the tables do not reach; nothing where they do.
+    pub fn shortfall(&self) -> Option<String> {
+        let limits = self.limits();
+        if limits == [Limit::Accuracy; 2] {
+            return None;
+        }
+        let remedy = if limits.contains(&Limit::Integers) {
+            "allow more in [accuracy], or cover less with press.max_indentation_mm"
+        } else {
+            "allow more in [accuracy], or choose a finer transducer"
+        };
+        Some(format!("{}: {remedy}", self.choice()))
+    }
+
+    /// Percent of reading below which tables are waste for the transducer.
+    fn floor(&self) -> f64 {
+        let [force, indentation] = self.certified.resolvable_percent;
+        force.min(indentation)
+    }
+
+    /// What `[accuracy]` asks of force and indentation, percent of reading.
+    pub fn asked_percent(&self) -> [f64; 2] {
+        self.design.accuracy.as_ref().map_or([0.0; 2], |accuracy| {
+            [
+                accuracy.force_percent_of_reading,
+                accuracy.indentation_percent_of_reading,
+            ]
+        })
+    }
+
+    /// One line that justifies how fine the tables are: what was asked, and what the transducer can tell.
+    pub fn choice(&self) -> String {
+        let [force, indentation] = self.asked_percent();
+        let tells = format!(
+            "half of transducer.resolution_pa = {} is {:.4} % of reading where it is least",
+            self.transducer.resolution_pa,
+            self.floor()
+        );
+        let limits = self.limits();
+        if limits == [Limit::Accuracy; 2] {
+            format!("held to the {force} % and {indentation} % that [accuracy] asks; {tells}")
+        } else if limits.contains(&Limit::Integers) {
+            let certificate = &self.certified.certificate;
+            format!(
+                "[accuracy] asks {force} % and {indentation} %, but no tables keep within that: these keep within {} % and {} %",
+                certificate.force.allowed_percent, certificate.indentation.allowed_percent
+            )
+        } else {
+            format!(
+                "[accuracy] asks {force} % and {indentation} %, but {tells}: the tables stop there, as finer ones would be waste"
+            )
+        }
+    }
+}
