@@ -133,13 +133,16 @@ impl Warnings {
     pub const TEMPERATURE: Self = Self(128);
     /// The crystal failed: time comes from the chip's own oscillator and is a percent off.
     pub const CLOCK: Self = Self(256);
+    /// The wall recovers from a press that it has left: the pressure is below the zero, the force 0 and the indentation an upper bound.
+    pub const RECOVERING: Self = Self(512);
 
     /// Every reason with its word, the gravest first.
-    const REASONS: [(Self, &'static str); 9] = [
+    const REASONS: [(Self, &'static str); 10] = [
         (Self::SATURATED, "saturated"),
         (Self::LEAK_SUSPECTED, "leak suspected"),
         (Self::BUBBLE_SUSPECTED, "bubble suspected"),
         (Self::BELOW_ZERO, "below zero"),
+        (Self::RECOVERING, "recovering"),
         (Self::ZERO_UNVERIFIED, "zero unverified"),
         (Self::CALIBRATION_REFUSED, "calibration refused"),
         (Self::ZERO_AGED, "zero aged"),
@@ -148,7 +151,7 @@ impl Warnings {
     ];
 
     /// Every warning at once.
-    pub const ALL: Self = Self(511);
+    pub const ALL: Self = Self(1023);
 
     /// The bits, as telemetry carries them.
     pub const fn bits(self) -> u16 {
@@ -385,7 +388,7 @@ mod tests {
     #[test]
     fn unknown_warning_bits_are_not_believed() {
         assert_eq!(Warnings::from_bits(7).map(Warnings::bits), Some(7));
-        assert_eq!(Warnings::from_bits(512), None);
+        assert_eq!(Warnings::from_bits(1024), None);
         let named = Warnings::REASONS.iter().fold(0, |all, (one, _)| all | one.0);
         assert_eq!(Warnings::ALL.bits(), named);
     }

@@ -8,6 +8,7 @@ pub mod design;
 pub mod filter;
 pub mod fluid;
 pub mod pipeline;
+pub mod relaxation;
 pub mod report;
 pub mod scale;
 pub mod stuck;

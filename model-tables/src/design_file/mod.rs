@@ -8,12 +8,14 @@ mod calibration;
 mod error;
 mod object;
 mod print;
+mod relaxation;
 pub mod section;
 mod sections;
 
 use crate::constants::{AIR, Quantity};
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
+use crate::material::relaxation::Relaxation;
 use crate::object::Object;
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -37,6 +39,8 @@ pub struct DesignFile {
     pub membrane: MembraneSection,
     /// `[material]`: constants in pascals, those of the preset if it names one.
     pub material: Law,
+    /// `[material.relaxation]`; without it the wall is elastic.
+    pub relaxation: Option<Relaxation>,
     /// `[rest]`.
     pub rest: RestSection,
     /// `[model]`.

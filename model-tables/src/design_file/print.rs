@@ -2,7 +2,7 @@
 
 use super::{
     Axes, DEFAULT_MODEL_PERCENT, DesignFile, ModelSection, RestSection, Supply, TransducerKindSection,
-    TransducerSection, Transfer,
+    TransducerSection, Transfer, relaxation,
 };
 use crate::constants::Quantity;
 use crate::material::Law;
@@ -34,6 +34,9 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
                 "law = \"yeoh\"\nc1_pa = {c1:?}\nc2_pa = {c2:?}\nc3_pa = {c3:?}"
             )?;
         }
+    }
+    if let Some(relaxation) = &file.relaxation {
+        relaxation::print(relaxation, out)?;
     }
     if file.rest != RestSection::Unstretched {
         writeln!(out, "\n[rest]")?;

@@ -60,7 +60,7 @@ impl Bounds {
 /// One table, and the keys that were asked for.
 pub struct Section<'a> {
     text: &'a str,
-    path: &'static str,
+    path: String,
     header: usize,
     table: &'a DeTable<'a>,
     known: Vec<&'static str>,
@@ -71,7 +71,7 @@ impl<'a> Section<'a> {
     pub fn root(text: &'a str, table: &'a DeTable<'a>) -> Self {
         Self {
             text,
-            path: "",
+            path: String::new(),
             header: 0,
             table,
             known: Vec::new(),
@@ -89,7 +89,7 @@ impl<'a> Section<'a> {
         match value.get_ref() {
             DeValue::Table(table) => Ok(Some(Section {
                 text: self.text,
-                path: name,
+                path: self.full(name),
                 header: value.span().start,
                 table,
                 known: Vec::new(),
@@ -108,7 +108,7 @@ impl<'a> Section<'a> {
             None => Err((
                 None,
                 Problem::Missing {
-                    key: format!("[{name}]"),
+                    key: format!("[{}]", self.full(name)),
                     allowed: format!("a section with {holds}"),
                 },
             )),
@@ -252,26 +252,47 @@ impl<'a> Section<'a> {
         bounds: Bounds,
         count: [usize; 2],
     ) -> Result<Vec<f64>, Fault> {
+        let [low, high] = count;
         let wanted = format!(
-            "{} to {} strictly increasing numbers in brackets, each {}",
-            count[0],
-            count[1],
+            "{low} to {high} strictly increasing numbers in brackets, each {}",
             bounds.describe()
         );
+        let increase = |numbers: &[f64]| {
+            (low..=high).contains(&numbers.len()) && numbers.windows(2).all(|pair| pair[0] < pair[1])
+        };
+        self.numbers(key, bounds, &wanted, increase)
+    }
+
+    /// So many numbers that must be there, in any order.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn as_many(&mut self, key: &'static str, bounds: Bounds, count: usize) -> Result<Vec<f64>, Fault> {
+        let wanted = format!(
+            "{count} numbers in brackets, as many as the key before it has, each {}",
+            bounds.describe()
+        );
+        self.numbers(key, bounds, &wanted, |numbers| numbers.len() == count)
+    }
+
+    /// Numbers that must be there and be as `wanted` says.
+    fn numbers(
+        &mut self,
+        key: &'static str,
+        bounds: Bounds,
+        wanted: &str,
+        admits: impl Fn(&[f64]) -> bool,
+    ) -> Result<Vec<f64>, Fault> {
         let Some(value) = self.get(key) else {
-            return Err(self.missing(key, &wanted));
+            return Err(self.missing(key, wanted));
         };
         let numbers: Option<Vec<f64>> = value
             .get_ref()
             .as_array()
             .and_then(|array| array.iter().map(|item| to_number(item.get_ref())).collect());
         numbers
-            .filter(|numbers| {
-                (count[0]..=count[1]).contains(&numbers.len())
-                    && numbers.iter().all(|&number| bounds.admits(number))
-                    && numbers.windows(2).all(|pair| pair[0] < pair[1])
-            })
-            .ok_or_else(|| self.refuse(key, &wanted))
+            .filter(|numbers| admits(numbers) && numbers.iter().all(|&number| bounds.admits(number)))
+            .ok_or_else(|| self.refuse(key, wanted))
     }
 
     /// A text, if the key is there.

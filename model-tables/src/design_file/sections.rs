@@ -2,6 +2,7 @@
 
 use super::calibration::Calibration;
 use super::error::Problem;
+use super::relaxation;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::{
     Accuracy, Axes, DEFAULT_ELEMENTS, DEFAULT_MODEL_PERCENT, DesignFile, MembraneSection, ModelSection,
@@ -11,6 +12,7 @@ use super::{
 use crate::constants::Quantity;
 use crate::material::Law;
 use crate::material::preset::{PRESETS, Preset};
+use crate::material::relaxation::Relaxation;
 use toml::de::DeTable;
 
 /// Lengths of a fingertip, from a hair to a hand.
@@ -34,7 +36,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         "membrane",
         "radial_semi_axis_mm, axial_semi_axis_mm, thickness_mm",
     )?)?;
-    let material = material(root.needed_sub("material", "preset, or law and its constants")?)?;
+    let (material, relaxation) = material(root.needed_sub("material", "preset, or law and its constants")?)?;
     let (model, axes) = root
         .sub("model")?
         .map(model)
@@ -71,6 +73,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         name,
         membrane,
         material,
+        relaxation,
         rest,
         model,
         axes,
@@ -112,7 +115,7 @@ fn membrane(mut section: Section<'_>) -> Result<MembraneSection, Fault> {
     Ok(membrane)
 }
 
-fn material(mut section: Section<'_>) -> Result<Law, Fault> {
+fn material(mut section: Section<'_>) -> Result<(Law, Option<Relaxation>), Fault> {
     const LAWS: &str = "\"neo-hookean\", \"mooney-rivlin\" or \"yeoh\"";
     // The higher constants may have either sign; whether the law is then stable is the solver's to say.
     const HIGHER: Bounds = Bounds::within(-1e12, 1e12, "Pa");
@@ -128,8 +131,9 @@ fn material(mut section: Section<'_>) -> Result<Law, Fault> {
         if section.has("law") {
             return Err(section.refuse("law", "left out, as preset is given"));
         }
+        let relaxation = section.sub("relaxation")?.map(relaxation::parse).transpose()?;
         section.finish()?;
-        return Ok(preset.law);
+        return Ok((preset.law, relaxation));
     }
     let law = match section.needed_text("law", LAWS)? {
         "neo-hookean" => Law::NeoHookean {
@@ -154,8 +158,9 @@ fn material(mut section: Section<'_>) -> Result<Law, Fault> {
         },
         _ => return Err(section.refuse("law", LAWS)),
     };
+    let relaxation = section.sub("relaxation")?.map(relaxation::parse).transpose()?;
     section.finish()?;
-    Ok(law)
+    Ok((law, relaxation))
 }
 
 const REST_KEYS: &str = "exactly one of pole_stretch, pressure_kpa, equator_radius_mm, height_mm";

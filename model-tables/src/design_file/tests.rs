@@ -844,6 +844,105 @@ fn the_shipped_designs_are_complete() {
     }
 }
 
+const RELAXATION: &str = "[material.relaxation]\ntau_s = [0.1, 1.0, 10]\ng = [18.78, 4.459, 0]\n\
+                          temperature_c = 21.5\nshift_per_kelvin = 0.31\n[rest]";
+
+/// GOOD with a series, in which `from` is replaced by `to`.
+fn with_series(from: &str, to: &str) -> Result<DesignFile, DesignFileError> {
+    assert!(RELAXATION.contains(from), "{from}");
+    let text = GOOD.replace("[rest]", &RELAXATION.replacen(from, to, 1));
+    DesignFile::parse(&text, "r.toml")
+}
+
+#[test]
+fn a_series_is_kept_with_and_without_a_calibration() {
+    let file = with_series("", "").expect("a series");
+    let series = file.relaxation.expect("given");
+    let terms: Vec<[f64; 2]> = series
+        .terms()
+        .iter()
+        .map(|term| [term.time, term.weight])
+        .collect();
+    assert_eq!(terms, [[0.1, 18.78], [1.0, 4.459], [10.0, 0.0]]);
+    assert!((series.temperature - 21.5).abs() < 1e-12 && (series.shift - 0.31).abs() < 1e-12);
+    assert_ne!(file.hash(), good().hash());
+    assert_eq!(good().relaxation, None);
+    for calibration in ["", "[calibration]\nmaterial_factor = 2\n"] {
+        let text = GOOD.replace("[rest]", RELAXATION) + calibration;
+        let file = DesignFile::parse(&text, "r.toml").expect("a series");
+        assert_eq!(file.relaxation, Some(series));
+        let again = DesignFile::parse(&file.canonical(), "again.toml").expect("its canonical text");
+        assert_eq!(file, again);
+    }
+}
+
+#[test]
+fn a_series_by_name_is_the_materials_own() {
+    let all = &RELAXATION[RELAXATION.find("tau_s").expect("tau")..RELAXATION.find("[rest]").expect("rest")];
+    let named = with_series(all, "preset = \"agilus30\"\n").expect("a series");
+    assert_eq!(
+        named.relaxation,
+        Some(crate::material::relaxation::AGILUS30_RELAXATION)
+    );
+    let error = with_series(all, "preset = \"skin\"\n")
+        .expect_err("no series")
+        .to_string();
+    assert!(error.contains("`material.relaxation.preset` is \"skin\"") && error.contains("\"agilus30\""));
+}
+
+#[test]
+fn refuses_a_series_that_cannot_be() {
+    for (from, to, wanted) in [
+        (
+            "[0.1, 1.0, 10]",
+            "[0.1, 1.0, 1.0]",
+            "`material.relaxation.tau_s` is [0.1, 1.0, 1.0]",
+        ),
+        (
+            "[0.1, 1.0, 10]",
+            "[5e-5, 1.0, 10]",
+            "at least 0.0001 and at most 10000 s",
+        ),
+        (
+            "[0.1, 1.0, 10]",
+            "[1, 2, 3, 4, 5, 6, 7, 8, 9]",
+            "1 to 8 strictly increasing numbers",
+        ),
+        (
+            "4.459, 0]",
+            "4.459]",
+            "`material.relaxation.g` is [18.78, 4.459]: must be 3 numbers",
+        ),
+        ("4.459", "-1", "`material.relaxation.g` is [18.78, -1, 0]"),
+        (
+            "g = [18.78, 4.459, 0]\n",
+            "",
+            "`material.relaxation.g` is missing",
+        ),
+        (
+            "temperature_c = 21.5\n",
+            "",
+            "`material.relaxation.temperature_c` is missing",
+        ),
+        ("21.5", "300", "degrees Celsius"),
+        ("0.31", "-0.31", "`material.relaxation.shift_per_kelvin` is -0.31"),
+        (
+            "temperature_c",
+            "temperature",
+            "`material.relaxation.temperature_c` is missing",
+        ),
+        (
+            "[rest]",
+            "ln_g = 1\n[rest]",
+            "`material.relaxation.ln_g` is not a known key",
+        ),
+    ] {
+        let text = with_series(from, to).expect_err(to).to_string();
+        assert!(text.contains(wanted), "{text}");
+        assert_eq!(text.lines().count(), 1, "{text}");
+    }
+}
+
 /// Half a wall of 1 mm, worked by hand: 4.5 and 2.7 mm to the outer surface are 4.0 and 2.2 mm to the middle of it.
 #[test]
 fn semi_axes_are_converted_to_what_the_model_is_solved_with() {

@@ -6,6 +6,7 @@
 //! constants.
 
 pub mod preset;
+pub mod relaxation;
 pub mod stability;
 
 /// First and second derivatives of the strain energy with respect to the principal stretches, in pascals.

@@ -6,6 +6,7 @@
 //! membrane. A Yeoh law with `C3 < 0` holds only inside the strain it was fitted to: [`Preset::largest_invariant`].
 
 use super::Law;
+use super::relaxation::{AGILUS30_RELAXATION, Relaxation};
 
 /// A material by name.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Preset {
     pub title: &'static str,
     /// The constants, pascals.
     pub law: Law,
+    /// How it relaxes, where a published series exists. A design takes it by `[material.relaxation] preset`.
+    pub relaxation: Option<Relaxation>,
     /// Where they come from.
     pub source: &'static str,
     /// How fast the test was.
@@ -37,6 +40,7 @@ const fn silicone(name: &'static str, title: &'static str, c1: f64, c2: f64, c3:
         name,
         title,
         law: Law::Yeoh { c1, c2, c3 },
+        relaxation: None,
         source: DATABASE,
         rate: DATABASE_RATE,
         strain: Some(1.0),
@@ -83,6 +87,7 @@ pub const PRESETS: [Preset; 13] = [
         name: "agilus30",
         title: "Agilus30",
         law: AGILUS30,
+        relaxation: Some(AGILUS30_RELAXATION),
         source: "Shi et al., Soft Matter 18 (2022) 9076; small-strain modulus 1.24 MPa",
         rate: "relaxed",
         strain: None,
@@ -94,6 +99,7 @@ pub const PRESETS: [Preset; 13] = [
         name: "skin",
         title: "human fingertip skin",
         law: SKIN,
+        relaxation: None,
         source: "Serina et al. 1998, as Shi et al., Soft Matter 18 (2022) 9076, use it",
         rate: "not stated",
         strain: None,

@@ -4,6 +4,7 @@ use super::batch::{Batch, Forces, Stiffness};
 use super::element::Material;
 use super::front::Fronts;
 use super::lanes::Lanes;
+use super::memory::Memory;
 use super::mesh::{CUBIC_PRESSURES, FUNCTIONS, Mesh, NODES, PRESSURES};
 use super::state::State;
 use crate::material::Hyperelastic as _;
@@ -20,6 +21,8 @@ struct Elements<const N: usize, const T: usize> {
     volume: Vec<[[[Lanes; N]; 2]; T]>,
     through: usize,
     work: Box<Stiffness<N, T>>,
+    /// How many times as stiff as relaxed the wall is, in the latest stiffness.
+    stiffening: f64,
 }
 
 impl<const N: usize, const T: usize> Elements<N, T> {
@@ -39,14 +42,23 @@ impl<const N: usize, const T: usize> Elements<N, T> {
             places,
             through: mesh.elements.through,
             work: Box::default(),
+            stiffening: 1.0,
         }
     }
 
-    fn forces(&mut self, material: &Material, state: &State, forces: &mut [[f64; 2]]) -> f64 {
+    fn forces(
+        &mut self,
+        material: &Material,
+        memory: Option<&Memory>,
+        state: &State,
+        forces: &mut [[f64; 2]],
+    ) -> f64 {
         let mut largest = Lanes::ZERO.largest();
         let pressures = state.pressures.chunks(super::lanes::LANES);
-        for ((batch, pressures), kept) in self.batches.iter().zip(pressures).zip(&mut self.excess) {
-            let Forces { nodes, excess } = batch.forces(material, &state.nodes, pressures);
+        let batches = self.batches.iter().enumerate().zip(pressures);
+        for (((i, batch), pressures), kept) in batches.zip(&mut self.excess) {
+            let held = memory.map(|memory| memory.held(i));
+            let Forces { nodes, excess } = batch.forces(material, &state.nodes, pressures, held);
             for (lane, places) in batch.nodes.iter().enumerate().take(batch.count) {
                 for (i, &node) in places.iter().enumerate() {
                     forces[node][0] += nodes[0][i].0[lane];
@@ -66,15 +78,24 @@ impl<const N: usize, const T: usize> Elements<N, T> {
         largest
     }
 
-    fn stiffness(&mut self, material: &Material, state: &State, fronts: &mut Fronts) {
+    fn stiffness(
+        &mut self,
+        material: &Material,
+        memory: Option<&Memory>,
+        state: &State,
+        fronts: &mut Fronts,
+    ) {
+        self.stiffening = memory.map_or(1.0, Memory::stiffening);
         let width = Fronts::width(2 * (N / 3 + 2 * (self.through - 1)));
         let mut element = 0;
         let pressures = state.pressures.chunks(super::lanes::LANES);
-        for ((batch, pressures), volume) in self.batches.iter().zip(pressures).zip(&mut self.volume) {
+        let batches = self.batches.iter().enumerate().zip(pressures);
+        for (((i, batch), pressures), volume) in batches.zip(&mut self.volume) {
             let work = &mut *self.work;
-            batch.stiffness(material, &state.nodes, pressures, work);
+            let held = memory.map(|memory| memory.held(i));
+            batch.stiffness(material, &state.nodes, pressures, held, work);
             *volume = work.volume;
-            batch.condense(work);
+            batch.condense(self.stiffening, work);
             for lane in 0..batch.count {
                 let places = &self.places[element % self.through];
                 let front = fronts.column(element / self.through);
@@ -97,7 +118,7 @@ impl<const N: usize, const T: usize> Elements<N, T> {
 
     fn answer(&self, right_side: &mut [[f64; 2]]) {
         for ((batch, excess), volume) in self.batches.iter().zip(&self.excess).zip(&self.volume) {
-            let pressures = batch.answer(excess);
+            let pressures = batch.answer(self.stiffening, excess);
             for c in 0..2 {
                 for i in 0..N {
                     let mut sum = Lanes::ZERO;
@@ -127,7 +148,7 @@ impl<const N: usize, const T: usize> Elements<N, T> {
                     *sum += *excess;
                 }
             }
-            let answer = batch.answer(&change);
+            let answer = batch.answer(self.stiffening, &change);
             for (lane, pressures) in pressures.iter_mut().enumerate() {
                 for (i, pressure) in answer.iter().enumerate() {
                     pressures[i] = pressure.0[lane];
@@ -174,13 +195,25 @@ impl Assembly {
     }
 
     /// Adds the forces on the nodes in a state; the largest excess of volume.
-    pub(super) fn forces(&mut self, material: &Material, state: &State, forces: &mut [[f64; 2]]) -> f64 {
-        of_either!(&mut self.0, elements => elements.forces(material, state, forces))
+    pub(super) fn forces(
+        &mut self,
+        material: &Material,
+        memory: Option<&Memory>,
+        state: &State,
+        forces: &mut [[f64; 2]],
+    ) -> f64 {
+        of_either!(&mut self.0, elements => elements.forces(material, memory, state, forces))
     }
 
     /// Adds the stiffness in a state, pressures eliminated.
-    pub(super) fn stiffness(&mut self, material: &Material, state: &State, fronts: &mut Fronts) {
-        of_either!(&mut self.0, elements => elements.stiffness(material, state, fronts));
+    pub(super) fn stiffness(
+        &mut self,
+        material: &Material,
+        memory: Option<&Memory>,
+        state: &State,
+        fronts: &mut Fronts,
+    ) {
+        of_either!(&mut self.0, elements => elements.stiffness(material, memory, state, fronts));
     }
 
     /// Takes what the pressures answer to the latest excess of volume out of a right-hand side.

@@ -8,6 +8,7 @@
 
 use super::element::{self, Deformation, Material};
 use super::lanes::{LANES, Lanes};
+use super::memory::{self, Held};
 use super::mesh::{CUBIC_PRESSURES, Mesh, NODES, PLACES, POINTS};
 
 /// Bulk modulus of the steps, in shear moduli.
@@ -164,6 +165,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
         material: &Material,
         nodes: &[[f64; 2]],
         pressures: &[[f64; CUBIC_PRESSURES]],
+        held: Option<&Held>,
     ) -> Forces<N, T> {
         let positions = self.gather(nodes);
         let pressures = self.pressures(pressures);
@@ -173,11 +175,11 @@ impl<const N: usize, const T: usize> Batch<N, T> {
         };
         for (p, gradient) in self.gradient.iter().enumerate() {
             let terms = terms(p);
-            let stress = element::stress(
-                material,
-                element::deformation(gradient, &positions),
-                pressure_at(&terms, &pressures),
-            );
+            let deformation = element::deformation(gradient, &positions);
+            let mut stress = element::stress(material, deformation, pressure_at(&terms, &pressures));
+            if let Some(held) = held {
+                memory::add_stress(material, held, p, deformation, &mut stress.nominal);
+            }
             let weight = self.weight[p];
             let n = stress.nominal.map(|x| x * weight);
             let [g1, g2, g3] = gradient;
@@ -199,6 +201,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
         material: &Material,
         nodes: &[[f64; 2]],
         pressures: &[[f64; CUBIC_PRESSURES]],
+        held: Option<&Held>,
         stiffness: &mut Stiffness<N, T>,
     ) {
         let positions = self.gather(nodes);
@@ -206,18 +209,18 @@ impl<const N: usize, const T: usize> Batch<N, T> {
         *stiffness = Stiffness::default();
         for (p, gradient) in self.gradient.iter().enumerate() {
             let terms = terms(p);
-            let (k, v) = element::stiffness(
-                material,
-                element::deformation(gradient, &positions),
-                pressure_at(&terms, &pressures),
-            );
+            let deformation = element::deformation(gradient, &positions);
+            let (mut k, v) = element::stiffness(material, deformation, pressure_at(&terms, &pressures));
+            if let Some(held) = held {
+                memory::add_stiffness(material, held, p, deformation, &mut k);
+            }
             let weight = self.weight[p];
             stiffness.add(gradient, &k, &v, weight, &terms);
         }
     }
 
-    /// Eliminates the pressures: what the radii and heights feel of them, in the stiffness.
-    pub fn condense(&self, stiffness: &mut Stiffness<N, T>) {
+    /// Eliminates the pressures: what the radii and heights feel of them, in the stiffness. The wall is `stiffening` times as stiff as relaxed.
+    pub fn condense(&self, stiffening: f64, stiffness: &mut Stiffness<N, T>) {
         let Stiffness {
             radial,
             mixed,
@@ -226,6 +229,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
         } = stiffness;
         for (term, bulk) in volume.iter().zip(self.bulk) {
             let [by_radius, by_height] = term;
+            let bulk = bulk * stiffening;
             for a in 0..N {
                 let (r, z) = (bulk * by_radius[a], bulk * by_height[a]);
                 for b in a..N {
@@ -241,8 +245,8 @@ impl<const N: usize, const T: usize> Batch<N, T> {
 
     /// What the pressures answer to an excess of volume.
     #[inline(always)]
-    pub fn answer(&self, excess: &[Lanes; T]) -> [Lanes; T] {
-        core::array::from_fn(|i| self.bulk[i] * excess[i])
+    pub fn answer(&self, stiffening: f64, excess: &[Lanes; T]) -> [Lanes; T] {
+        core::array::from_fn(|i| self.bulk[i] * excess[i] * stiffening)
     }
 
     /// Change of volume with a step of the nodes.
@@ -353,7 +357,7 @@ mod tests {
             let material = Material::new(law, true);
             let pressures = vec![[element::pressure_at_rest(&law), 0.0, 0.0, 0.0, 0.0]; mesh.points.len()];
             for batch in Batch::<FUNCTIONS, CUBIC_PRESSURES>::all(&mesh, 1.0) {
-                let forces = batch.forces(&material, &mesh.nodes, &pressures);
+                let forces = batch.forces(&material, &mesh.nodes, &pressures, None);
                 let largest = forces.nodes.as_flattened().iter().chain(&forces.excess);
                 assert!(
                     largest.map(|x| x.largest()).fold(0.0, f64::max) < 1e-14,
@@ -380,8 +384,8 @@ mod tests {
             // The last is not full.
             for (batch, pressures) in batches.iter().zip(pressures.chunks(LANES)) {
                 let mut stiffness = Stiffness::default();
-                batch.stiffness(&material, &nodes, pressures, &mut stiffness);
-                let forces = batch.forces(&material, &nodes, pressures);
+                batch.stiffness(&material, &nodes, pressures, None, &mut stiffness);
+                let forces = batch.forces(&material, &nodes, pressures, None);
                 let lane = batch.count - 1;
                 for (j, &node) in batch.nodes[lane].iter().enumerate() {
                     for c in 0..2 {
@@ -389,7 +393,7 @@ mod tests {
                         let [(below, less), (above, more)] = [-step, step].map(|by| {
                             let mut nodes = nodes.clone();
                             nodes[node][c] += by;
-                            let forces = batch.forces(&material, &nodes, pressures);
+                            let forces = batch.forces(&material, &nodes, pressures, None);
                             let mut potential = batch.energy(&material, &nodes);
                             for lane in 0..batch.count {
                                 let terms = forces.excess.iter().zip(&pressures[lane]);

@@ -11,11 +11,11 @@ use crate::material::{Hyperelastic as _, Law};
 
 /// A law as a sum of powers of the invariants.
 #[derive(Clone, Copy, Debug)]
-struct Constants {
+pub(super) struct Constants {
     /// Of `I1 - 3`, its square and its cube.
     first: [f64; 3],
     /// Of `I2 - 3`.
-    second: f64,
+    pub(super) second: f64,
 }
 
 impl Constants {
@@ -38,7 +38,7 @@ impl Constants {
 
     /// Its first derivative by `I1`.
     #[inline(always)]
-    fn slope<T: Real>(&self, i1: T) -> T {
+    pub(super) fn slope<T: Real>(&self, i1: T) -> T {
         let [c1, c2, c3] = self.first;
         let e = i1 - T::from(3.0);
         T::from(c1) + e * (T::from(2.0 * c2) + e * (3.0 * c3))
@@ -46,7 +46,7 @@ impl Constants {
 
     /// Its second derivative by `I1`.
     #[inline(always)]
-    fn curvature<T: Real>(&self, i1: T) -> T {
+    pub(super) fn curvature<T: Real>(&self, i1: T) -> T {
         let [_, c2, c3] = self.first;
         T::from(2.0 * c2) + (i1 - T::from(3.0)) * (6.0 * c3)
     }
@@ -63,7 +63,7 @@ const CURVATURE: f64 = 8.0;
 pub struct Material {
     /// The law.
     pub law: Law,
-    constants: Constants,
+    pub(super) constants: Constants,
     /// The stiffness `k`. `W - 2 W' (J - 1)` falls with a change of volume, as `-mu (J - 1)^2 / 6`, and as `I1` grows by `2 (J - 1)`, by
     /// `2 W'' (J - 1)^2` besides: coarse elements are soft by it, and with a law that softens (`C2 < 0` or `C3 < 0`) they find states
     /// that are none. `mu/3 - 8 C2` just makes up for it; where the volume is kept it does nothing. Elements that are cubic through the
@@ -130,7 +130,7 @@ pub fn deformation<T: Real, const N: usize>(
 
 /// In-plane determinant and squares.
 #[inline(always)]
-fn in_plane<T: Real>([f11, f12, _, f21, f22]: Deformation<T>) -> (T, T) {
+pub(super) fn in_plane<T: Real>([f11, f12, _, f21, f22]: Deformation<T>) -> (T, T) {
     (
         f11 * f22 - f12 * f21,
         f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22,

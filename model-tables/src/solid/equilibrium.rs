@@ -2,17 +2,19 @@
 //!
 //! Dimensionless: lengths in outer radial semi-axes, stresses in shear moduli.
 
+mod touch;
+
 use super::Failure;
 use super::assembly::Assembly;
 use super::element::{self, Material};
 use super::fluid;
 use super::friction::Sliding;
 use super::front::Fronts;
+use super::memory::Memory;
 use super::mesh::{CUBIC_PRESSURES, Elements, Mesh, NODES};
-use super::object::{Action, Surface};
+use super::object::Surface;
 use super::state::{Balance, Fluid, State};
 use crate::material::Law;
-use crate::object::Friction;
 
 /// Contact stiffness times wall thickness, over the shear modulus: a contact pressure of a tenth of the modulus penetrates
 /// 5e-4 of the wall. Seven times as stiff changes the force by less than 0.1 % and takes a third more iterations.
@@ -60,6 +62,8 @@ pub struct Wall {
     pub mesh: Mesh,
     /// Its material, in shear moduli.
     pub material: Material,
+    /// What it remembers, where it relaxes.
+    pub(super) memory: Option<Memory>,
     assembly: Assembly,
     /// Contact pressure over penetration.
     contact_stiffness: f64,
@@ -113,6 +117,7 @@ impl Wall {
             negative: Vec::with_capacity(elements.along),
             by_pressure: step.clone(),
             step,
+            memory: None,
             factorisations: 0,
             iterations: 0,
             material,
@@ -140,6 +145,11 @@ impl Wall {
                 fluid::share(&r, &z).volume
             })
             .sum()
+    }
+
+    /// How many times as stiff as relaxed the wall is in the step of time at hand.
+    fn stiffening(&self) -> f64 {
+        self.memory.as_ref().map_or(1.0, Memory::stiffening)
     }
 
     /// Strain energy of the wall.
@@ -212,7 +222,7 @@ impl Wall {
                 return Err(Failure::Singular);
             }
             let force = balance.force / self.mesh.thickness;
-            if balance.residual < TOLERANCE + RELATIVE_TOLERANCE * force {
+            if balance.residual < TOLERANCE * self.stiffening() + RELATIVE_TOLERANCE * force {
                 // Admissible only right side out: the equations go on beyond.
                 let least = self.deformations(state, false).map(element::least);
                 return if least.fold(f64::INFINITY, f64::min) > 0.0 {
@@ -260,7 +270,9 @@ impl Wall {
     fn balance(&mut self, state: &State, plate: f64, fluid: &Fluid) -> Balance {
         let mut balance = Balance::default();
         self.forces.fill([0.0; 2]);
-        let excess = self.assembly.forces(&self.material, state, &mut self.forces);
+        let excess = self
+            .assembly
+            .forces(&self.material, self.memory.as_ref(), state, &mut self.forces);
         for column in 0..self.mesh.elements.along {
             let [inner, outer] =
                 [0, self.mesh.layers() - 1].map(|layer| edge_nodes(&self.mesh, column, layer));
@@ -297,72 +309,6 @@ impl Wall {
         balance
     }
 
-    /// The object's action on a column's outer edge, if it is near.
-    fn action(&self, state: &State, column: usize, apex: f64) -> Option<Action> {
-        let place = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
-        let (stiffness, near) = (self.contact_stiffness, self.mesh.thickness);
-        let undeformed = &self.outer[column];
-        let mut action = self.surface.action(stiffness, undeformed, &place, apex, near)?;
-        if let Some(sliding) = &self.sliding {
-            let place = self.over_apex(state, column, apex);
-            sliding.add(column, &self.surface, undeformed, &place, &mut action);
-        }
-        Some(action)
-    }
-
-    /// Radii, and heights over an apex, of a column's outer edge.
-    fn over_apex(&self, state: &State, column: usize, apex: f64) -> [[f64; 3]; 2] {
-        let [r, z] = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
-        [r, z.map(|z| z - apex)]
-    }
-
-    /// Puts an object in the plate's place.
-    pub fn touch(&mut self, surface: Surface, friction: Friction) {
-        self.surface = surface;
-        self.sliding = Sliding::new(friction, self.contact_stiffness, self.mesh.elements.along);
-    }
-
-    /// What touches the outer surface.
-    pub fn surface(&self) -> &Surface {
-        &self.surface
-    }
-
-    /// Whether it has friction: a state then depends on those before it.
-    pub fn has_friction(&self) -> bool {
-        self.sliding.is_some()
-    }
-
-    /// Starts a step from a state, in which the points of the outer edges have these anchors. Nothing without friction.
-    pub fn start_sliding(&mut self, state: &State, apex: f64, anchors: &[f64]) {
-        let Some(mut sliding) = self.sliding.take() else {
-            return;
-        };
-        for column in 0..self.mesh.elements.along {
-            sliding.start(
-                column,
-                &self.surface,
-                &self.over_apex(state, column, apex),
-                anchors,
-            );
-        }
-        self.sliding = Some(sliding);
-    }
-
-    /// The anchors at the end of a step in a settled state, and the energy that sliding took in it. Nothing without friction.
-    pub fn finish_sliding(&self, state: &State, apex: f64) -> (Vec<f64>, f64) {
-        let Some(sliding) = &self.sliding else {
-            return (Vec::new(), 0.0);
-        };
-        let (mut anchors, mut dissipated) = (Vec::new(), 0.0);
-        for column in 0..self.mesh.elements.along {
-            let place = self.over_apex(state, column, apex);
-            let (of_edge, by_edge) = sliding.finish(column, &self.surface, &self.outer[column], &place);
-            anchors.extend(of_edge);
-            dissipated += by_edge;
-        }
-        (anchors, dissipated)
-    }
-
     /// Takes the forces out that act on what is held: the rim, and the pole sideways.
     fn hold(&mut self) {
         let stride = self.mesh.stride();
@@ -379,7 +325,8 @@ impl Wall {
     fn set_up(&mut self, state: &State) {
         let station = 2 * self.mesh.stride();
         self.fronts.clear();
-        self.assembly.stiffness(&self.material, state, &mut self.fronts);
+        self.assembly
+            .stiffness(&self.material, self.memory.as_ref(), state, &mut self.fronts);
         self.by_node.fill([0.0; 2]);
         for column in 0..self.mesh.elements.along {
             let [nodes, local] = [column, 0].map(|column| edge_nodes(&self.mesh, column, 0));

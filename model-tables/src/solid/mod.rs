@@ -37,9 +37,13 @@ mod friction;
 #[cfg(feature = "std")]
 pub mod front;
 #[cfg(feature = "std")]
+pub mod history;
+#[cfg(feature = "std")]
 pub mod inflation;
 #[cfg(feature = "std")]
 pub mod lanes;
+#[cfg(feature = "std")]
+mod memory;
 #[cfg(feature = "std")]
 pub mod mesh;
 #[cfg(feature = "std")]

@@ -362,7 +362,12 @@ impl Press {
 }
 
 /// The surface of an object in units of `length`, metres, that touches a wall at rest at its pole.
-fn surface(object: &Object, wall: &Wall, rest: &State, length: f64) -> Result<Surface, SolidError> {
+pub(super) fn surface(
+    object: &Object,
+    wall: &Wall,
+    rest: &State,
+    length: f64,
+) -> Result<Surface, SolidError> {
     if let Shape::Cup { radius } = object.shape {
         let least = section::least_cup(wall, rest) * length;
         if radius < least {

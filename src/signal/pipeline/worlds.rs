@@ -1,6 +1,7 @@
 //! Random worlds in which the assumptions of the [`zero`](crate::signal::zero) hold: whatever drifts, a reading with status ok is
 //! within the zero's bound and three 1-sigma.
 
+use std::collections::BTreeMap;
 use super::*;
 use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::Status;
@@ -25,7 +26,7 @@ struct World {
     truth: [f64; 4],
     readings: u64,
     ok: u64,
-    tally: std::collections::BTreeMap<String, u64>,
+    tally: BTreeMap<String, u64>,
 }
 
 impl World {
@@ -45,7 +46,7 @@ impl World {
             truth: [0.0; 4],
             readings: 0,
             ok: 0,
-            tally: Default::default(),
+            tally: BTreeMap::default(),
         };
         world.run(1.0, |_| 0.0);
         assert_eq!(world.tare(0.0), Some(Ok(())));

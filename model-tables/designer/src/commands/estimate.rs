@@ -1,6 +1,6 @@
 //! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
 
-use super::finite;
+use super::{estimate_in_time, finite};
 use fingertip::signal::contact::contact;
 use fingertip::signal::design::{Design, LoadedDesign};
 use fingertip::status::{Status, Warnings};
@@ -18,9 +18,13 @@ pub(super) struct Arguments {
     /// The design file
     design: PathBuf,
     /// Pressure rises over the rest pressure in pascals, separated by commas
-    #[arg(long, value_name = "LIST", required = true, value_delimiter = ',',
+    #[arg(long, value_name = "LIST", required_unless_present = "history", value_delimiter = ',',
           value_parser = finite, allow_hyphen_values = true)]
     pressure_rise_pa: Vec<f64>,
+    /// CSV with columns `time_s` and `pressure_rise_kpa` or `pressure_rise_pa`, and `temperature_c` where the wall's is known; the first row is
+    /// the untouched, recovered fingertip
+    #[arg(long, value_name = "FILE", conflicts_with = "pressure_rise_pa")]
+    history: Option<PathBuf>,
     /// Answer also where the tables do not reach the accuracy that the design asks
     #[arg(long)]
     allow_worse: bool,
@@ -54,6 +58,9 @@ pub(super) fn refusal(file: &Path, error: GenerateError) -> Refusal {
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
+    if let Some(history) = &arguments.history {
+        return estimate_in_time::run(file, history, arguments.allow_worse);
+    }
     let generated = generated(file, arguments.allow_worse)?;
     let block = generated.binary();
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;

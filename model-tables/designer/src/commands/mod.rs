@@ -7,7 +7,9 @@ mod actuator;
 mod bench;
 mod calibration;
 mod estimate;
+mod estimate_in_time;
 mod fit;
+mod history;
 mod materials;
 mod mesh_error;
 mod model;
@@ -19,6 +21,7 @@ mod rest;
 mod size;
 mod solve;
 mod table;
+mod time_rows;
 
 use clap::builder::PossibleValue;
 use clap::error::ErrorKind;
@@ -57,6 +60,9 @@ enum Command {
         after_help = "Example:\n  cargo designer solve model-tables/designs/index-fingertip.toml --indentation-mm 0.2,0.5,1.0 --format csv"
     )]
     Solve(solve::Arguments),
+    /// A press in time, of a wall that relaxes: pressure, force and shape at given times
+    #[command(after_help = "Example:\n  cargo designer history my.toml --history grasp.csv --format csv")]
+    History(history::Arguments),
     /// Shape, stretches and tensions along the meridian of one state, sorted from the pole to the equator
     #[command(after_long_help = profile::COLUMN_HELP)]
     Profile(profile::Arguments),
@@ -170,6 +176,7 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
     let CommandAnswer { rows, notes } = match command {
         Command::Rest { design } => rest::run(design),
         Command::Solve(arguments) => solve::run(arguments),
+        Command::History(arguments) => history::run(arguments),
         Command::Profile(arguments) => profile::run(arguments),
         Command::Table(arguments) => table::run(arguments),
         Command::Report(arguments) => report::run(arguments),

@@ -1,0 +1,109 @@
+//! Rows of a quantity over time, from a CSV file.
+
+use output::Refusal;
+use std::path::Path;
+
+const TIME: &str = "time_s";
+const TEMPERATURE: &str = "temperature_c";
+/// Temperatures that a row may state, degrees Celsius.
+const TEMPERATURES: [f64; 2] = [-60.0, 150.0];
+
+/// A row of the file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TimeRow {
+    /// Seconds.
+    pub(super) time: f64,
+    /// In the unit of its column.
+    pub(super) value: f64,
+    /// Degrees Celsius, where the file has the column.
+    pub(super) temperature: Option<f64>,
+}
+
+/// Rows whose times increase.
+#[derive(Clone, Debug)]
+pub(super) struct TimeRows {
+    /// The column that the values come from.
+    pub(super) column: &'static str,
+    /// At least one.
+    pub(super) rows: Vec<TimeRow>,
+}
+
+/// Reads `time_s` and exactly one of the columns that may be given, and `temperature_c` where it is there; other columns are left out.
+pub(super) fn read(file: &Path, given: &[&'static str]) -> Result<TimeRows, Refusal> {
+    let about = |reason: &str| Refusal::about(file, &reason.split_whitespace().collect::<Vec<_>>().join(" "));
+    let text = std::fs::read_to_string(file).map_err(|error| about(&format!("cannot be read: {error}")))?;
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_reader(text.as_bytes());
+    let unreadable = |error: csv::Error| about(&format!("not a CSV file: {error}"));
+    let header: Vec<String> = reader
+        .headers()
+        .map_err(unreadable)?
+        .iter()
+        .map(|name| name.trim_start_matches('\u{feff}').to_owned())
+        .collect();
+    let place = |name: &str| header.iter().position(|column| column == name);
+    let time = place(TIME).ok_or_else(|| {
+        about(&format!(
+            "there is no column `{TIME}`: there are {}",
+            header.join(", ")
+        ))
+    })?;
+    let present: Vec<(&'static str, usize)> = given
+        .iter()
+        .filter_map(|&name| Some((name, place(name)?)))
+        .collect();
+    let (column, at) = match present[..] {
+        [only] => only,
+        [] => {
+            return Err(about(&format!(
+                "needs one of the columns {}: there are {}",
+                given.join(", "),
+                header.join(", ")
+            )));
+        }
+        [(first, _), (second, _), ..] => {
+            return Err(about(&format!(
+                "has both `{first}` and `{second}`: leave one of them out, as one follows from the other"
+            )));
+        }
+    };
+    let temperature = place(TEMPERATURE);
+    let mut rows: Vec<TimeRow> = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(unreadable)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let number = |at: usize, column: &str| match record.get(at).unwrap_or_default().parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(about(&format!(
+                "line {line}: `{column}` is {:?}: must be a finite number",
+                record.get(at).unwrap_or_default()
+            ))),
+        };
+        let row = TimeRow {
+            time: number(time, TIME)?,
+            value: number(at, column)?,
+            temperature: temperature.map(|at| number(at, TEMPERATURE)).transpose()?,
+        };
+        if let Some(before) = rows.last()
+            && row.time <= before.time
+        {
+            return Err(about(&format!(
+                "line {line}: `{TIME}` is {}, not after the {} of the row before: rows follow in time",
+                row.time, before.time
+            )));
+        }
+        let [lowest, highest] = TEMPERATURES;
+        if row.temperature.is_some_and(|t| !(lowest..=highest).contains(&t)) {
+            return Err(about(&format!(
+                "line {line}: `{TEMPERATURE}` must be from {lowest} to {highest}"
+            )));
+        }
+        rows.push(row);
+    }
+    if rows.is_empty() {
+        return Err(about("has no rows: needs at least one"));
+    }
+    Ok(TimeRows { column, rows })
+}

@@ -1,0 +1,75 @@
+//! What touches the wall: the object's action on the outer edges, and its friction from step to step.
+
+use super::{Wall, edge};
+use crate::object::Friction;
+use crate::solid::friction::Sliding;
+use crate::solid::object::{Action, Surface};
+use crate::solid::state::State;
+
+impl Wall {
+    /// The object's action on a column's outer edge, if it is near.
+    pub(super) fn action(&self, state: &State, column: usize, apex: f64) -> Option<Action> {
+        let place = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
+        let (stiffness, near) = (self.contact_stiffness * self.stiffening(), self.mesh.thickness);
+        let undeformed = &self.outer[column];
+        let mut action = self.surface.action(stiffness, undeformed, &place, apex, near)?;
+        if let Some(sliding) = &self.sliding {
+            let place = self.over_apex(state, column, apex);
+            sliding.add(column, &self.surface, undeformed, &place, &mut action);
+        }
+        Some(action)
+    }
+
+    /// Radii, and heights over an apex, of a column's outer edge.
+    fn over_apex(&self, state: &State, column: usize, apex: f64) -> [[f64; 3]; 2] {
+        let [r, z] = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
+        [r, z.map(|z| z - apex)]
+    }
+
+    /// Puts an object in the plate's place.
+    pub fn touch(&mut self, surface: Surface, friction: Friction) {
+        self.surface = surface;
+        self.sliding = Sliding::new(friction, self.contact_stiffness, self.mesh.elements.along);
+    }
+
+    /// What touches the outer surface.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// Whether it has friction: a state then depends on those before it.
+    pub fn has_friction(&self) -> bool {
+        self.sliding.is_some()
+    }
+
+    /// Starts a step from a state, in which the points of the outer edges have these anchors. Nothing without friction.
+    pub fn start_sliding(&mut self, state: &State, apex: f64, anchors: &[f64]) {
+        let Some(mut sliding) = self.sliding.take() else {
+            return;
+        };
+        for column in 0..self.mesh.elements.along {
+            sliding.start(
+                column,
+                &self.surface,
+                &self.over_apex(state, column, apex),
+                anchors,
+            );
+        }
+        self.sliding = Some(sliding);
+    }
+
+    /// The anchors at the end of a step in a settled state, and the energy that sliding took in it. Nothing without friction.
+    pub fn finish_sliding(&self, state: &State, apex: f64) -> (Vec<f64>, f64) {
+        let Some(sliding) = &self.sliding else {
+            return (Vec::new(), 0.0);
+        };
+        let (mut anchors, mut dissipated) = (Vec::new(), 0.0);
+        for column in 0..self.mesh.elements.along {
+            let place = self.over_apex(state, column, apex);
+            let (of_edge, by_edge) = sliding.finish(column, &self.surface, &self.outer[column], &place);
+            anchors.extend(of_edge);
+            dissipated += by_edge;
+        }
+        (anchors, dissipated)
+    }
+}

@@ -1,0 +1,511 @@
+//! A press in time: a wall that relaxes, under a plate that comes, stays and leaves.
+//!
+//! The plate's travel, or its force, is given at instants and changes evenly between them. Each interval is cut into steps short enough that
+//! every point of the wall moves nearly evenly in each, as [`memory`](super::memory) takes it to; nothing else is approximated in time.
+//! A plate does not pull: where the wall recovers more slowly than the plate leaves, contact is lost, and the wall goes on alone around its fluid
+//! until the plate is back.
+
+mod error;
+
+pub use error::HistoryError;
+
+use super::Failure;
+use super::equilibrium::Wall;
+use super::memory::Memory;
+use super::mesh::Elements;
+use super::press;
+use super::section;
+use super::state::{Balance, Fluid, State};
+use crate::design::{Design, RestBy};
+use crate::limit::EndsBy;
+use crate::material::Hyperelastic as _;
+use crate::material::relaxation::Relaxation;
+use crate::object::Friction;
+
+/// Largest travel of a plate near the wall in a step, over the height.
+const LARGEST_TRAVEL: f64 = 2.5e-3;
+/// Largest distance of a node from where a step is expected to lead it, over the height. Its way within the step bends by less than a quarter of
+/// this.
+const LARGEST_BEND: f64 = 6e-4;
+/// Travel of the first step after the plate's speed has changed, over the largest.
+const FIRST_TRAVEL: f64 = 1.0 / 16.0;
+/// Most growth of a step from one to the next.
+const LARGEST_GROWTH: f64 = 2.0;
+/// Change of speed, over the greater of both, from which on the motion begins anew.
+const TURN: f64 = 0.3;
+/// Travel, over the height, in which no next state is found where there is none.
+const SMALLEST_TRAVEL: f64 = 1e-6;
+/// Halvings of a step that fails.
+const MOST_HALVINGS: u32 = 24;
+/// Energy that may be missing after a step, over the work done in it and over the most done so far.
+const ENERGY_TOLERANCE: [f64; 2] = [0.05, 5e-3];
+/// The same of the first step, in which the contact is smaller than an element.
+const FIRST_ENERGY_TOLERANCE: f64 = 0.4;
+/// Accuracy of a given force, relative.
+const FORCE_TOLERANCE: f64 = 1e-6;
+/// Newton iterations for a given force.
+const FORCE_ITERATIONS: usize = 30;
+
+/// What is given at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// The plate's travel from first touch of the untouched wall, metres; negative: above it.
+    Indentation(f64),
+    /// The force on the plate, newtons, >= 0; without one the plate just does not touch.
+    Force(f64),
+}
+
+/// An instant of a press.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// The plate's travel, metres.
+    pub indentation: f64,
+    /// Pressure over that of the untouched wall, pascals. Below zero where the wall recovers.
+    pub pressure_rise: f64,
+    /// Force on the plate, newtons.
+    pub force: f64,
+    /// How far the pole of the outer surface is down, metres.
+    pub apex_depression: f64,
+}
+
+impl Instant {
+    /// Whether the plate touches.
+    pub fn in_contact(&self) -> bool {
+        self.force > 0.0
+    }
+}
+
+/// Why a step was not taken.
+#[derive(Clone, Copy)]
+enum Rejected {
+    Failed(Failure),
+    Touches(EndsBy),
+    /// Too long: by so much.
+    TooLong(f64),
+}
+
+/// A step as it was solved.
+struct Solved {
+    indentation: f64,
+    balance: Balance,
+    /// How much of what is allowed it takes.
+    share: f64,
+    /// Strain energy of the wall at its end.
+    energy: f64,
+    /// Work of the wall's stresses in it.
+    work: f64,
+}
+
+/// A press in time, at its latest instant. Lengths in outer radial semi-axes, stresses in relaxed shear moduli.
+#[derive(Clone, Debug)]
+pub struct History {
+    wall: Wall,
+    fluid: Fluid,
+    /// Outer radial semi-axis, metres.
+    length: f64,
+    /// Relaxed shear modulus, pascals.
+    modulus: f64,
+    /// Height of the outer pole at rest.
+    height: f64,
+    time: f64,
+    state: State,
+    indentation: f64,
+    force: f64,
+    /// How the wall goes on: with the plate where that holds it, by the tangent of the latest state; with time where it is free, by the
+    /// displacements in the latest step.
+    onward: State,
+    /// Length of the latest step, seconds.
+    seconds: f64,
+    /// What the next step may be.
+    next: Next,
+    /// Speed of the plate, or rate of its force, in the latest interval.
+    speed: f64,
+    /// Relaxed strain energy of the wall.
+    energy: f64,
+    /// Work of the wall's stresses so far, and the most that it was.
+    work: f64,
+    most_work: f64,
+    /// Work of the plate so far.
+    supplied: f64,
+    steps: u64,
+    trial: State,
+    guess: State,
+}
+
+/// What the next step may be at most.
+#[derive(Clone, Copy, Debug)]
+struct Next {
+    seconds: f64,
+    travel: f64,
+}
+
+impl History {
+    /// The untouched wall, which has always been so, at a time in seconds, with the plate at an indentation of at most 0, metres. The
+    /// semi-axes of `design.membrane` are those of the outer surface.
+    ///
+    /// # Errors
+    /// [`HistoryError::Inflated`], [`HistoryError::Compliant`], [`HistoryError::NoStiffness`], [`HistoryError::Friction`],
+    /// [`HistoryError::Object`].
+    pub fn new(
+        design: &Design,
+        relaxation: &Relaxation,
+        elements: Elements,
+        time: f64,
+        indentation: f64,
+    ) -> Result<Self, HistoryError> {
+        if design.rest != RestBy::Unstretched {
+            return Err(HistoryError::Inflated);
+        }
+        if design.compliance > 0.0 {
+            return Err(HistoryError::Compliant);
+        }
+        if design.object.friction != Friction::NONE {
+            return Err(HistoryError::Friction);
+        }
+        let modulus = design.law.shear_modulus();
+        if modulus.is_nan() || modulus <= 0.0 {
+            return Err(HistoryError::NoStiffness(modulus));
+        }
+        let length = design.membrane.radial_semi_axis;
+        let mut wall = Wall::new(
+            design.membrane.axial_semi_axis / length,
+            design.membrane.thickness / length,
+            design.law.stiffened(1.0 / modulus),
+            elements,
+        );
+        wall.memory = Some(Memory::new(&wall.mesh, relaxation));
+        let state = wall.undeformed();
+        let surface = press::surface(&design.object, &wall, &state, length).map_err(HistoryError::Object)?;
+        wall.touch(surface, design.object.friction);
+        let mut onward = state.clone();
+        onward.clear();
+        let height = state.nodes[wall.mesh.layers() - 1][1];
+        Ok(Self {
+            fluid: Fluid {
+                by_volume: 1.0,
+                volume: wall.volume(&state),
+                by_pressure: 0.0,
+                pressure: 0.0,
+            },
+            energy: wall.energy(&state),
+            wall,
+            length,
+            modulus,
+            height,
+            time,
+            trial: state.clone(),
+            guess: state.clone(),
+            state,
+            indentation: indentation.min(0.0) / length,
+            force: 0.0,
+            onward,
+            seconds: 0.0,
+            next: Next {
+                seconds: f64::INFINITY,
+                travel: FIRST_TRAVEL * LARGEST_TRAVEL * height,
+            },
+            speed: 0.0,
+            work: 0.0,
+            most_work: 0.0,
+            supplied: 0.0,
+            steps: 0,
+        })
+    }
+
+    /// Steps of time so far.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Work so far, joules: of the plate, and of the stresses in the wall, elastic and lost. Their difference is the error in time.
+    pub fn works(&self) -> [f64; 2] {
+        let unit = self.modulus * self.length * self.length * self.length;
+        [self.supplied, self.work].map(|work| work * unit)
+    }
+
+    /// Newton iterations so far.
+    pub fn iterations(&self) -> u64 {
+        self.wall.iterations
+    }
+
+    /// Factorisations so far.
+    pub fn factorisations(&self) -> u64 {
+        self.wall.factorisations
+    }
+
+    /// The latest instant.
+    pub fn now(&self) -> Instant {
+        Instant {
+            indentation: self.indentation * self.length,
+            pressure_rise: self.state.fluid * self.modulus,
+            force: self.force * self.modulus * self.length * self.length,
+            apex_depression: (self.height - self.apex(&self.state)) * self.length,
+        }
+    }
+
+    /// Goes on to a time in seconds, at which the plate is where `drive` has it, evenly.
+    ///
+    /// # Errors
+    /// [`HistoryError`]; the history is then of no further use.
+    pub fn advance(&mut self, time: f64, drive: Drive) -> Result<Instant, HistoryError> {
+        let (begin, whole) = (self.time, time - self.time);
+        if whole.is_nan() || whole <= 0.0 {
+            return Err(HistoryError::NotAfter {
+                asked: time,
+                before: begin,
+            });
+        }
+        let (from, to) = match drive {
+            Drive::Indentation(metres) => (self.indentation, metres / self.length),
+            Drive::Force(newtons) => (self.force, newtons / (self.modulus * self.length * self.length)),
+        };
+        let speed = (to - from) / whole;
+        if (speed - self.speed).abs() > TURN * speed.abs().max(self.speed.abs()) {
+            self.next.travel = FIRST_TRAVEL * LARGEST_TRAVEL * self.height;
+        }
+        self.speed = speed;
+        let mut done = 0.0;
+        while done < 1.0 {
+            let mut halvings = 0;
+            let mut seconds = self.proposal(drive, (1.0 - done) * whole);
+            loop {
+                // The last step ends on the instant.
+                let end = if seconds >= (1.0 - done) * whole * (1.0 - 1e-9) {
+                    1.0
+                } else {
+                    done + seconds / whole
+                };
+                let target = if end < 1.0 { from + end * (to - from) } else { to };
+                match self.step((end - done) * whole, drive, target) {
+                    Ok(solved) => {
+                        self.take(&solved, (end - done) * whole);
+                        done = end;
+                        self.time = begin + done * whole;
+                        break;
+                    }
+                    Err(rejected) => {
+                        halvings += 1;
+                        let travel = (end - done) * (to - from).abs();
+                        let moves = matches!(drive, Drive::Indentation(_)) && travel > 0.0;
+                        let stuck = moves && travel < SMALLEST_TRAVEL * self.height;
+                        if halvings > MOST_HALVINGS || stuck && !matches!(rejected, Rejected::TooLong(_)) {
+                            return Err(self.ends(rejected));
+                        }
+                        seconds *= match rejected {
+                            Rejected::TooLong(by) => (0.8 / libm::sqrt(by)).clamp(0.1, 0.7),
+                            _ => 0.5,
+                        };
+                    }
+                }
+            }
+        }
+        self.time = time;
+        Ok(self.now())
+    }
+
+    fn ends(&self, rejected: Rejected) -> HistoryError {
+        let (time, indentation) = (self.time, self.indentation * self.length);
+        match rejected {
+            Rejected::Touches(by) => HistoryError::Ends {
+                time,
+                indentation,
+                by,
+            },
+            Rejected::Failed(failure) => HistoryError::Unsolved {
+                time,
+                indentation,
+                failure,
+            },
+            Rejected::TooLong(_) => HistoryError::Unsolved {
+                time,
+                indentation,
+                failure: Failure::Elsewhere,
+            },
+        }
+    }
+
+    /// The length of the next step, seconds, with so much left of the interval: a whole part of it.
+    fn proposal(&self, drive: Drive, left: f64) -> f64 {
+        let mut seconds = self.next.seconds;
+        if matches!(drive, Drive::Indentation(_)) && self.speed.abs() > 0.0 {
+            // Well above the wall the plate does nothing.
+            let gap = (self.height - self.indentation - self.top(&self.state)).max(0.0);
+            seconds = seconds.min((self.next.travel + 0.5 * gap) / self.speed.abs());
+        }
+        let parts = libm::ceil(left / seconds * (1.0 - 1e-9)).max(1.0);
+        left / parts
+    }
+
+    /// Solves a step of so many seconds.
+    fn step(&mut self, seconds: f64, drive: Drive, target: f64) -> Result<Solved, Rejected> {
+        if let Some(memory) = &mut self.wall.memory {
+            memory.begin(seconds);
+        }
+        let (indentation, balance) = match drive {
+            Drive::Indentation(_) => {
+                self.predict(seconds, target - self.indentation);
+                (target, self.settle(target)?)
+            }
+            Drive::Force(_) => {
+                self.predict(seconds, 0.0);
+                let (indentation, balance) = self.settle_force(target)?;
+                let travel = (indentation - self.indentation).abs() / (LARGEST_TRAVEL * self.height);
+                if travel > 1.0 {
+                    return Err(Rejected::TooLong(travel * travel));
+                }
+                // As it would have been predicted for this.
+                let trial = self.trial.clone();
+                self.predict(seconds, indentation - self.indentation);
+                self.trial = trial;
+                (indentation, balance)
+            }
+        };
+        if let Some(by) = section::touches_base(&self.wall, &self.trial) {
+            return Err(Rejected::Touches(by));
+        }
+        let share = self.bend() / (LARGEST_BEND * self.height);
+        if share > 1.0 {
+            return Err(Rejected::TooLong(share));
+        }
+        let (energy, work) = self.work_of_step(indentation, &balance)?;
+        Ok(Solved {
+            indentation,
+            balance,
+            share,
+            energy,
+            work,
+        })
+    }
+
+    /// Relaxed strain energy after the trial, and work of the wall's stresses in it: as much as the plate does. What is in balance but on
+    /// another branch fails this.
+    fn work_of_step(&mut self, indentation: f64, balance: &Balance) -> Result<(f64, f64), Rejected> {
+        let energy = self.wall.energy(&self.trial);
+        let mut work = energy - self.energy;
+        if let Some(memory) = &mut self.wall.memory {
+            work += memory.end(&self.wall.mesh, &self.wall.material, &self.trial);
+        }
+        let supplied = 0.5 * (self.force + balance.force) * (indentation - self.indentation);
+        let [of_step, of_all] = if self.most_work > 0.0 {
+            ENERGY_TOLERANCE
+        } else {
+            [FIRST_ENERGY_TOLERANCE, 0.0]
+        };
+        let allowed = of_step * supplied.abs().max(work.abs()) + of_all * self.most_work;
+        // Nothing at all was done before the plate touches.
+        if (work - supplied).abs() <= allowed + f64::EPSILON {
+            Ok((energy, work))
+        } else {
+            Err(Rejected::Failed(Failure::Elsewhere))
+        }
+    }
+
+    /// Starts the trial where the wall is likely to be after a step of so many seconds in which the plate goes so far, and keeps that.
+    fn predict(&mut self, seconds: f64, travel: f64) {
+        let ratio = if self.force > 0.0 {
+            travel
+        } else if self.seconds > 0.0 {
+            (seconds / self.seconds).min(LARGEST_GROWTH)
+        } else {
+            0.0
+        };
+        self.guess.copy_from(&self.state);
+        self.guess.add(ratio, &self.onward);
+        self.trial.copy_from(&self.guess);
+    }
+
+    /// The largest distance of a node from the guess.
+    fn bend(&self) -> f64 {
+        let (trial, guess) = (self.trial.nodes.as_flattened(), self.guess.nodes.as_flattened());
+        trial
+            .iter()
+            .zip(guess)
+            .fold(0.0, |largest, (x, y)| f64::max(largest, (x - y).abs()))
+    }
+
+    /// Solves with the plate at an indentation.
+    fn settle(&mut self, indentation: f64) -> Result<Balance, Rejected> {
+        let plate = self.height - indentation;
+        self.wall
+            .settle(&mut self.trial, plate, &self.fluid)
+            .map_err(Rejected::Failed)
+    }
+
+    /// Solves with a force on the plate: where it is, and the balance.
+    fn settle_force(&mut self, force: f64) -> Result<(f64, Balance), Rejected> {
+        if force <= 0.0 {
+            let balance = self.settle(-self.height)?;
+            return Ok((self.height - self.top(&self.trial), balance));
+        }
+        let largest = LARGEST_TRAVEL * self.height;
+        let mut indentation = if self.force > 0.0 {
+            self.indentation
+        } else {
+            self.height - self.top(&self.trial)
+        };
+        for _ in 0..FORCE_ITERATIONS {
+            let balance = self.settle(indentation)?;
+            let missing = force - balance.force;
+            if missing.abs() <= FORCE_TOLERANCE * force {
+                return Ok((indentation, balance));
+            }
+            let stiffness = if balance.force > 0.0 {
+                let tangent = self.wall.tangent(&self.fluid);
+                tangent.ok_or(Rejected::Failed(Failure::Singular))?.force
+            } else {
+                0.0
+            };
+            let step = missing / stiffness;
+            // Before first touch there is no stiffness, and after it little.
+            let touch = self.height - self.top(&self.trial) - indentation;
+            indentation += if stiffness > 0.0 {
+                step.clamp(-largest, largest)
+            } else {
+                touch.max(0.0) + 0.01 * largest
+            };
+        }
+        Err(Rejected::Failed(Failure::Stalled { residual: 1.0 }))
+    }
+
+    /// Takes a step as it was solved.
+    fn take(&mut self, solved: &Solved, seconds: f64) {
+        if let Some(memory) = &mut self.wall.memory {
+            memory.take();
+        }
+        self.energy = solved.energy;
+        self.work += solved.work;
+        self.most_work = self.most_work.max(self.work);
+        self.supplied += 0.5 * (self.force + solved.balance.force) * (solved.indentation - self.indentation);
+        self.onward.copy_from(&self.trial);
+        self.onward.add(-1.0, &self.state);
+        if solved.balance.force > 0.0
+            && let Some(tangent) = self.wall.tangent(&self.fluid)
+        {
+            self.onward = tangent.state;
+        }
+        self.state.copy_from(&self.trial);
+        let travel = (solved.indentation - self.indentation).abs();
+        self.indentation = solved.indentation;
+        self.force = solved.balance.force;
+        self.seconds = seconds;
+        let growth = libm::sqrt(0.6 / solved.share.max(1e-3)).clamp(0.5, LARGEST_GROWTH);
+        self.next = Next {
+            seconds: growth * seconds,
+            travel: (growth * travel.max(self.next.travel)).min(LARGEST_TRAVEL * self.height),
+        };
+        self.steps += 1;
+    }
+
+    /// Height of the highest node of the outer surface: beside the pole where that is pressed in.
+    fn top(&self, state: &State) -> f64 {
+        let mesh = &self.wall.mesh;
+        let heights =
+            (0..mesh.stations()).map(|station| state.nodes[mesh.node(station, mesh.layers() - 1)][1]);
+        heights.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Height of the outer pole.
+    fn apex(&self, state: &State) -> f64 {
+        state.nodes[self.wall.mesh.layers() - 1][1]
+    }
+}

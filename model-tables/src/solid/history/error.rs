@@ -1,0 +1,93 @@
+//! Why there is no press in time.
+
+use crate::limit::EndsBy;
+use crate::solid::{Failure, SolidError};
+use core::fmt;
+
+/// Why there is no press in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HistoryError {
+    /// The wall is inflated at rest.
+    Inflated,
+    /// The fluid's circuit gives way.
+    Compliant,
+    /// What touches has friction: a state then depends on all before it.
+    Friction,
+    /// What touches does not fit.
+    Object(SolidError),
+    /// The law has no stiffness; shear modulus in pascals.
+    NoStiffness(f64),
+    /// Time does not go on.
+    NotAfter {
+        /// What was asked for, seconds.
+        asked: f64,
+        /// The instant before, seconds.
+        before: f64,
+    },
+    /// The wall comes down on its base.
+    Ends {
+        /// When, seconds.
+        time: f64,
+        /// Indentation, metres.
+        indentation: f64,
+        /// What ends the press.
+        by: EndsBy,
+    },
+    /// A state was not found.
+    Unsolved {
+        /// When, seconds.
+        time: f64,
+        /// Indentation of the state before, metres.
+        indentation: f64,
+        /// What failed.
+        failure: Failure,
+    },
+}
+
+impl fmt::Display for HistoryError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Inflated => write!(
+                f,
+                "a press in time is for a wall that rests unstretched: leave [rest] and calibration.pole_stretch out"
+            ),
+            Self::Compliant => write!(
+                f,
+                "a press in time is for a rigid circuit: set fluid.compliance_mm3_per_kpa (or that of [calibration]) to 0"
+            ),
+            Self::Friction => write!(
+                f,
+                "a press in time is without friction: leave object.friction out, or set it to 0"
+            ),
+            Self::Object(error) => error.fmt(f),
+            Self::NoStiffness(modulus) => {
+                write!(f, "the law's shear modulus is {modulus} Pa: it has to be above 0")
+            }
+            Self::NotAfter { asked, before } => write!(
+                f,
+                "time_s = {asked} is not after the row before, {before}: rows have to follow in time"
+            ),
+            Self::Ends {
+                time,
+                indentation,
+                by,
+            } => write!(
+                f,
+                "the press ends at {:.6} mm ({}) at time_s = {time:.6}: press less deep",
+                1e3 * indentation,
+                by.word()
+            ),
+            Self::Unsolved {
+                time,
+                indentation,
+                failure,
+            } => write!(
+                f,
+                "no state was found after time_s = {time:.6}, at {:.6} mm ({failure}): press less deep or more slowly",
+                1e3 * indentation
+            ),
+        }
+    }
+}
+
+impl core::error::Error for HistoryError {}

@@ -1,0 +1,464 @@
+//! What the wall remembers: quasi-linear viscoelasticity at the Gauss points.
+//!
+//! Beside the relaxed law's stress the wall has one for each term of its [`Relaxation`], `h_i = g_i integral exp(-(t - s) / tau_i) dS_d(s)`,
+//! with `S_d` the relaxed second Piola-Kirchhoff stress without its part along `C^-1`: convected with the wall, and no pressure. Over a step
+//! of time in which `S_d` changes evenly
+//!
+//! `h_i <- left_i h_i + taken_i (S_d - S_d')`, [`Decay`] from the term and the step, exactly. Of a step's end therefore only
+//! `taken S_d` depends on the deformation, `taken = sum taken_i`; the rest is held. Both have a potential: `taken W_d + H : C / 2`.
+//!
+//! `W_d` is the law's density at `I1 J^(-2/3)` and `I2 J^(-4/3)`, the powers as parabolas that touch them at `J = 1`, where the wall is.
+
+use super::element::{self, Deformation, Material, in_plane};
+use super::equilibrium::positions;
+use super::lanes::{LANES, Lanes, Real};
+use super::mesh::{Mesh, POINTS};
+use super::state::State;
+use crate::material::relaxation::{Decay, MAX_TERMS, Relaxation};
+
+/// Components of a symmetric tensor in the undeformed wall: radial, shear, axial, hoop.
+type Tensor<T = f64> = [T; 4];
+
+/// `J^(-2/3)` and its first two derivatives, near `J = 1 + e`: `1 - 2/3 e + 5/9 e^2`.
+#[inline(always)]
+fn first_power<T: Real>(e: T) -> [T; 3] {
+    let (one, two) = (2.0 / 3.0, 5.0 / 9.0);
+    let slope = T::from(-one) + e * (2.0 * two);
+    [
+        T::from(1.0) + e * (T::from(-one) + e * two),
+        slope,
+        T::from(2.0 * two),
+    ]
+}
+
+/// `J^(-4/3)` likewise: `1 - 4/3 e + 14/9 e^2`.
+#[inline(always)]
+fn second_power<T: Real>(e: T) -> [T; 3] {
+    let (one, two) = (4.0 / 3.0, 14.0 / 9.0);
+    let slope = T::from(-one) + e * (2.0 * two);
+    [
+        T::from(1.0) + e * (T::from(-one) + e * two),
+        slope,
+        T::from(2.0 * two),
+    ]
+}
+
+/// First derivatives of `W_d` by `S`, `D` and `f`, and what its second ones are made of.
+struct Deviatoric<T> {
+    by: [T; 3],
+    /// First derivatives of the first invariant.
+    first: [T; 3],
+    slope: T,
+    curvature: T,
+    powers: [[T; 3]; 2],
+    invariants: [T; 2],
+}
+
+#[inline(always)]
+fn deviatoric<T: Real>(material: &Material, deformation: Deformation<T>) -> Deviatoric<T> {
+    let (d, s) = in_plane(deformation);
+    let f = deformation[2];
+    let (i1, i2) = (s + f * f, d * d + f * f * s);
+    let e = d * f - T::from(1.0);
+    let (one, two) = (first_power(e), second_power(e));
+    let (slope, curvature) = (
+        material.constants.slope(i1 * one[0]),
+        material.constants.curvature(i1 * one[0]),
+    );
+    let second = material.constants.second;
+    let (by_one, by_two) = (i1 * one[1], i2 * two[1]);
+    let first = [one[0], by_one * f, f * one[0] * 2.0 + by_one * d];
+    let other = [
+        f * f * two[0],
+        d * two[0] * 2.0 + by_two * f,
+        f * s * two[0] * 2.0 + by_two * d,
+    ];
+    Deviatoric {
+        by: [0, 1, 2].map(|i: usize| slope * first[i] + other[i] * second),
+        first,
+        slope,
+        curvature,
+        powers: [one, two],
+        invariants: [i1, i2],
+    }
+}
+
+/// What does not change within a step of time, of elements side by side.
+#[derive(Clone, Debug)]
+pub struct Held {
+    /// Weight of `S_d`.
+    taken: f64,
+    /// The part of the memory's stress that is known.
+    stress: [Tensor<Lanes>; POINTS],
+}
+
+/// Adds the memory's stress at a point.
+#[inline(always)]
+pub(super) fn add_stress(
+    material: &Material,
+    held: &Held,
+    point: usize,
+    deformation: Deformation<Lanes>,
+    nominal: &mut Deformation<Lanes>,
+) {
+    let [f11, f12, f, f21, f22] = deformation;
+    let [by_s, by_d, by_f] = deviatoric(material, deformation).by.map(
+        #[inline(always)]
+        |x| x * held.taken,
+    );
+    let by_s = by_s * 2.0;
+    let [h11, h12, h22, h33] = held.stress[point];
+    nominal[0] += by_s * f11 + by_d * f22 + f11 * h11 + f12 * h12;
+    nominal[1] += by_s * f12 - by_d * f21 + f11 * h12 + f12 * h22;
+    nominal[2] += by_f + f * h33;
+    nominal[3] += by_s * f21 - by_d * f12 + f21 * h11 + f22 * h12;
+    nominal[4] += by_s * f22 + by_d * f11 + f21 * h12 + f22 * h22;
+}
+
+/// Where the in-plane components are among all of a deformation.
+const IN_PLANE: [usize; 4] = [0, 1, 3, 4];
+
+/// Adds the memory's stiffness at a point.
+#[inline(always)]
+pub(super) fn add_stiffness(
+    material: &Material,
+    held: &Held,
+    point: usize,
+    deformation: Deformation<Lanes>,
+    k: &mut [Deformation<Lanes>; 5],
+) {
+    let [f11, f12, f, f21, f22] = deformation;
+    let (d, s) = in_plane(deformation);
+    let Deviatoric {
+        by: [by_s, by_d, _],
+        first: [a_s, a_d, a_f],
+        slope,
+        curvature,
+        powers: [one, two],
+        invariants: [i1, i2],
+    } = deviatoric(material, deformation);
+    let second = material.constants.second;
+    let taken = held.taken;
+    let j = d * f;
+    // Second derivatives of both invariants, then of the density.
+    let (one_2, two_2) = (i1 * one[2], i2 * two[2]);
+    let join = |x: Lanes, y: Lanes, first: Lanes, other: Lanes| {
+        (curvature * x * y + slope * first + other * second) * taken
+    };
+    let ss = curvature * a_s * a_s * taken;
+    let sd = join(a_s, a_d, one[1] * f, f * f * f * two[1]);
+    let sf = join(a_s, a_f, one[1] * d, f * two[0] * 2.0 + f * f * d * two[1]);
+    let dd = join(
+        a_d,
+        a_d,
+        one_2 * f * f,
+        two[0] * 2.0 + j * two[1] * 4.0 + two_2 * f * f,
+    );
+    let df = join(
+        a_d,
+        a_f,
+        (f * f * 2.0 + i1) * one[1] + one_2 * j,
+        (d * d * 2.0 + f * f * s * 2.0 + i2) * two[1] + two_2 * j,
+    );
+    let ff = join(
+        a_f,
+        a_f,
+        one[0] * 2.0 + j * one[1] * 4.0 + one_2 * d * d,
+        s * two[0] * 2.0 + j * s * two[1] * 4.0 + two_2 * d * d,
+    );
+    let (by_s, by_d) = (by_s * (2.0 * taken), by_d * taken);
+    let zero = Lanes::ZERO;
+    let deformed = [f11, f12, f21, f22];
+    let cofactor = [f22, zero - f21, zero - f12, f11];
+    let [h11, h12, h22, h33] = held.stress[point];
+    let in_plane = [[h11, h12], [h12, h22]];
+    for i in 0..4 {
+        for j in i..4 {
+            let mut sum = (ss * deformed[i] * deformed[j]) * 4.0
+                + sd * (deformed[i] * cofactor[j] + cofactor[i] * deformed[j]) * 2.0
+                + dd * cofactor[i] * cofactor[j];
+            if i == j {
+                sum += by_s;
+            }
+            if i / 2 == j / 2 {
+                sum += in_plane[i % 2][j % 2];
+            }
+            if (i, j) == (0, 3) {
+                sum += by_d;
+            }
+            if (i, j) == (1, 2) {
+                sum = sum - by_d;
+            }
+            k[IN_PLANE[i]][IN_PLANE[j]] += sum;
+            if i != j {
+                k[IN_PLANE[j]][IN_PLANE[i]] += sum;
+            }
+        }
+        let sum = sf * deformed[i] * 2.0 + df * cofactor[i];
+        k[IN_PLANE[i]][2] += sum;
+        k[2][IN_PLANE[i]] += sum;
+    }
+    k[2][2] += ff + h33;
+}
+
+/// `S_d` of a deformation.
+fn deviatoric_stress(material: &Material, deformation: Deformation) -> Tensor {
+    let f = deformation[2];
+    let [by_s, by_d, by_f] = deviatoric(material, deformation).by;
+    let (d, _) = in_plane(deformation);
+    let [c11, c12, c22, _] = strain(deformation);
+    // By C: of S the unit tensor, of D half of D C^-1 in the plane, of f half of 1 / f.
+    let by_d = by_d / d;
+    [
+        2.0 * by_s + by_d * c22,
+        -by_d * c12,
+        2.0 * by_s + by_d * c11,
+        by_f / f,
+    ]
+}
+
+/// `C` of a deformation.
+fn strain([f11, f12, f, f21, f22]: Deformation) -> Tensor {
+    [
+        f11 * f11 + f21 * f21,
+        f11 * f12 + f21 * f22,
+        f12 * f12 + f22 * f22,
+        f * f,
+    ]
+}
+
+/// The memory's stress at a point.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    /// `S_d` at the end of the latest step.
+    stress: Tensor,
+    /// `C` there.
+    strain: Tensor,
+    /// The terms' stresses.
+    terms: [Tensor; MAX_TERMS],
+}
+
+/// The memory of a wall.
+#[derive(Clone, Debug)]
+pub(super) struct Memory {
+    relaxation: Relaxation,
+    /// Of the step at hand.
+    decays: [Decay; MAX_TERMS],
+    taken: f64,
+    held: Vec<Held>,
+    points: Vec<[Point; POINTS]>,
+    /// At the end of the step at hand.
+    next: Vec<[Point; POINTS]>,
+}
+
+impl Memory {
+    /// Of an undeformed wall that has always been so.
+    pub(super) fn new(mesh: &Mesh, relaxation: &Relaxation) -> Self {
+        let elements = mesh.points.len();
+        let none = Point {
+            stress: [0.0; 4],
+            strain: [1.0, 0.0, 1.0, 1.0],
+            terms: [[0.0; 4]; MAX_TERMS],
+        };
+        Self {
+            relaxation: *relaxation,
+            decays: [Decay::default(); MAX_TERMS],
+            taken: 0.0,
+            held: vec![
+                Held {
+                    taken: 0.0,
+                    stress: [[Lanes::ZERO; 4]; POINTS],
+                };
+                elements.div_ceil(LANES)
+            ],
+            points: vec![[none; POINTS]; elements],
+            next: vec![[none; POINTS]; elements],
+        }
+    }
+
+    /// How many times as stiff as relaxed the wall is in the step at hand.
+    pub(super) fn stiffening(&self) -> f64 {
+        1.0 + self.taken
+    }
+
+    /// What does not change in the step at hand, of a batch of elements.
+    pub(super) fn held(&self, batch: usize) -> &Held {
+        &self.held[batch]
+    }
+
+    /// Begins a step of `seconds` after the latest that was taken; the one at hand is forgotten.
+    pub(super) fn begin(&mut self, seconds: f64) {
+        let count = self.relaxation.terms().len();
+        for (decay, term) in self.decays.iter_mut().zip(self.relaxation.terms()) {
+            *decay = term.over(seconds);
+        }
+        self.taken = self.decays[..count].iter().map(|decay| decay.taken).sum();
+        for (e, points) in self.points.iter().enumerate() {
+            let held = &mut self.held[e / LANES];
+            held.taken = self.taken;
+            for (point, stress) in points.iter().zip(&mut held.stress) {
+                for (i, component) in stress.iter_mut().enumerate() {
+                    let terms = self.decays[..count].iter().zip(&point.terms);
+                    let left: f64 = terms.map(|(decay, term)| decay.left * term[i]).sum();
+                    component.0[e % LANES] = left - self.taken * point.stress[i];
+                }
+            }
+        }
+    }
+
+    /// Ends the step at hand in a state. The memory's work in it, of the mean of its stresses before and after.
+    pub(super) fn end(&mut self, mesh: &Mesh, material: &Material, state: &State) -> f64 {
+        let count = self.relaxation.terms().len();
+        let through = mesh.elements.through;
+        let mut work = 0.0;
+        for (e, (points, next)) in self.points.iter().zip(&mut self.next).enumerate() {
+            let positions = positions(mesh, &state.nodes, e / through, e % through);
+            for ((point, next), place) in points.iter().zip(next).zip(&mesh.points[e]) {
+                let deformation = element::deformation(&place.gradient, &positions);
+                next.stress = deviatoric_stress(material, deformation);
+                next.strain = strain(deformation);
+                for i in 0..4 {
+                    let change = next.stress[i] - point.stress[i];
+                    let mut mean = 0.0;
+                    for (k, decay) in self.decays[..count].iter().enumerate() {
+                        next.terms[k][i] = decay.left * point.terms[k][i] + decay.taken * change;
+                        mean += 0.5 * (point.terms[k][i] + next.terms[k][i]);
+                    }
+                    // The shear stands for two components.
+                    let weight = if i == 1 { 1.0 } else { 0.5 };
+                    work += place.weight * weight * mean * (next.strain[i] - point.strain[i]);
+                }
+            }
+        }
+        work
+    }
+
+    /// Takes the step as it was ended.
+    pub(super) fn take(&mut self) {
+        core::mem::swap(&mut self.points, &mut self.next);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::Law;
+    use crate::material::relaxation::Term;
+    use crate::solid::batch::{Batch, Stiffness};
+    use crate::solid::element::first_invariant;
+    use crate::solid::mesh::{CUBIC_PRESSURES, Elements, NODES, PRESSURES};
+
+    const LAWS: [Law; 2] = [
+        Law::MooneyRivlin { c1: 0.3, c2: 0.2 },
+        Law::Yeoh {
+            c1: 0.5,
+            c2: 0.2,
+            c3: -0.05,
+        },
+    ];
+
+    fn series() -> Relaxation {
+        let term = |time, weight| Term { time, weight };
+        Relaxation::new(&[term(0.1, 3.0), term(2.0, 0.7)], 20.0, 0.0)
+    }
+
+    /// Stretched, bent and sheared, by so much.
+    fn bent(mesh: &Mesh, by: f64) -> State {
+        let bend = |[r, z]: [f64; 2]| [r + by * (0.1 * r + 0.1 * r * z), z + by * (0.2 * r * r - 0.1 * z)];
+        State {
+            nodes: mesh.nodes.iter().map(|x| bend(*x)).collect(),
+            pressures: vec![[0.0; CUBIC_PRESSURES]; mesh.points.len()],
+            fluid: 0.0,
+        }
+    }
+
+    #[test]
+    fn what_is_remembered_is_no_pressure_and_is_nothing_at_rest() {
+        for law in LAWS {
+            let material = Material::new(law, false);
+            let undeformed = deviatoric_stress(&material, [1.0, 0.0, 1.0, 0.0, 1.0]);
+            assert!(undeformed.iter().all(|x| x.abs() < 1e-15), "{undeformed:?}");
+            // Of determinant 1: in the plane 1.2 * 0.9 + 0.1 * 0.2.
+            let hoop = 1.0 / 1.1;
+            let deformation = [1.2, 0.1, hoop, -0.2, 0.9];
+            let (s, c) = (deviatoric_stress(&material, deformation), strain(deformation));
+            let along = s[0] * c[0] + 2.0 * s[1] * c[1] + s[2] * c[2] + s[3] * c[3];
+            assert!(
+                first_invariant(deformation) > 3.1 && along.abs() < 1e-13,
+                "{along}"
+            );
+        }
+    }
+
+    /// In the second step after another: central differences of the forces.
+    #[test]
+    fn stiffness_is_the_derivative_of_the_forces() {
+        for law in LAWS {
+            let mesh = Mesh::new(0.8, 0.2, Elements { through: 2, along: 3 });
+            let material = Material::new(law, false);
+            let mut memory = Memory::new(&mesh, &series());
+            memory.begin(0.05);
+            memory.end(&mesh, &material, &bent(&mesh, 0.5));
+            memory.take();
+            memory.begin(0.2);
+            let state = bent(&mesh, 1.0);
+            for (b, batch) in Batch::<NODES, PRESSURES>::all(&mesh, 1.0).iter().enumerate() {
+                let none = [[0.0; CUBIC_PRESSURES]; LANES];
+                let held = Some(memory.held(b));
+                let mut stiffness = Stiffness::default();
+                batch.stiffness(&material, &state.nodes, &none, held, &mut stiffness);
+                let lane = batch.count - 1;
+                for j in 0..NODES {
+                    for c in 0..2 {
+                        let [below, above] = [-1e-5, 1e-5].map(|by| {
+                            let mut nodes = state.nodes.clone();
+                            nodes[batch.nodes[lane][j]][c] += by;
+                            batch.forces(&material, &nodes, &none, held)
+                        });
+                        for i in 0..NODES {
+                            let found = match c {
+                                0 => [stiffness.radial[i.min(j)][i.max(j)], stiffness.mixed[j][i]],
+                                _ => [stiffness.mixed[i][j], stiffness.axial[i.min(j)][i.max(j)]],
+                            };
+                            for (row, found) in found.iter().enumerate() {
+                                let slope =
+                                    (above.nodes[row][i].0[lane] - below.nodes[row][i].0[lane]) / 2e-5;
+                                let found = found.0[lane];
+                                assert!(
+                                    (slope - found).abs() < 1e-6 * (1.0 + found.abs()),
+                                    "{slope} {found}"
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Stretched in no time the memory bears `g(0) - 1` times the relaxed stress, and after a long time at rest nothing.
+    #[test]
+    fn a_stretch_is_borne_and_forgotten() {
+        let mesh = Mesh::new(0.8, 0.2, Elements { through: 2, along: 3 });
+        let material = Material::new(LAWS[0], false);
+        let mut memory = Memory::new(&mesh, &series());
+        let state = bent(&mesh, 1.0);
+        let borne = |memory: &Memory| -> Vec<[f64; 2]> {
+            let points = memory.points.iter().flatten();
+            let sum = |point: &Point| point.terms.iter().map(|term| term[0]).sum();
+            points.map(|point| [sum(point), point.stress[0]]).collect()
+        };
+        memory.begin(0.0);
+        memory.end(&mesh, &material, &state);
+        memory.take();
+        for [sum, relaxed] in borne(&memory) {
+            assert!((sum - 3.7 * relaxed).abs() < 1e-12, "{sum} {relaxed}");
+        }
+        memory.begin(200.0);
+        memory.end(&mesh, &material, &state);
+        memory.take();
+        for [sum, _] in borne(&memory) {
+            assert!(sum.abs() < 1e-12, "{sum}");
+        }
+    }
+}
