@@ -126,7 +126,7 @@ mod tests {
         })
     }
 
-    /// The published storage moduli: 2.39, 5.18 and 15.4 MPa at 0.01, 0.1 and 1 Hz. Their ratios: the curve's own relaxed modulus is 7 % below
+    /// The published storage moduli: 2.39, 5.18 and 15.4 megapascals at 0.01, 0.1 and 1 Hz. Their ratios: the curve's own relaxed modulus is 7 % below
     /// that of the constants.
     #[test]
     fn agilus30_stiffens_with_frequency_as_published() {
