@@ -181,8 +181,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
 /// `sqrt(force * pressure)`, with [`ROOT_BITS`] below one; both >= 0.
 fn root(force: i32, pressure: i32) -> i64 {
     // Below 2^62.
-    let [force, pressure] = [force, pressure].map(|number| u64::from(number.max(0).unsigned_abs()));
-    let product = force * pressure;
+    let product = u64::from(force.max(0).unsigned_abs()) * u64::from(pressure.max(0).unsigned_abs());
     if product == 0 {
         return 0;
     }

@@ -95,16 +95,15 @@ pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<Comm
     for row in &read.rows {
         let pascals = unit * row.value;
         let rise = PressureRise::from_pascals(pascals, bits);
-        let reading = match &mut wall {
-            Some(wall) => wall.to(&design, before.as_ref(), row, unit),
-            None => {
-                let still = contact(&design, rise, Warnings::NONE);
-                RelaxedReading {
-                    elastic: rise,
-                    force: still.force,
-                    indentation: still.indentation,
-                    warnings: still.warnings,
-                }
+        let reading = if let Some(wall) = &mut wall {
+            wall.to(&design, before.as_ref(), row, unit)
+        } else {
+            let still = contact(&design, rise, Warnings::NONE);
+            RelaxedReading {
+                elastic: rise,
+                force: still.force,
+                indentation: still.indentation,
+                warnings: still.warnings,
             }
         };
         before = Some(*row);

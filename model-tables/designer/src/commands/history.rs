@@ -76,12 +76,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let mut answer = Rows::new(COLUMNS);
     let progress = Progress::new("history");
     for (i, row) in rows.iter().enumerate() {
-        let instant = match i {
-            0 => history.now(),
-            _ => {
-                let advanced = history.advance(row.time, drive(row));
-                advanced.map_err(|error| Refusal::about(&arguments.history, &error))?
-            }
+        let instant = if i == 0 {
+            history.now()
+        } else {
+            history
+                .advance(row.time, drive(row))
+                .map_err(|error| Refusal::about(&arguments.history, &error))?
         };
         progress.set((i + 1) as f64 / rows.len() as f64);
         answer.push(vec![
