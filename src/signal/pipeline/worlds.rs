@@ -6,6 +6,7 @@ use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::Status;
 use model_tables::constants::Quantity;
 use proptest::prelude::*;
+use std::collections::BTreeMap;
 
 /// One fingertip and its days.
 struct World {
@@ -25,7 +26,8 @@ struct World {
     truth: [f64; 4],
     readings: u64,
     ok: u64,
-    tally: std::collections::BTreeMap<String, u64>,
+    /// Readings and faults, by their status.
+    tally: BTreeMap<String, u64>,
 }
 
 impl World {
@@ -45,7 +47,7 @@ impl World {
             truth: [0.0; 4],
             readings: 0,
             ok: 0,
-            tally: Default::default(),
+            tally: BTreeMap::new(),
         };
         world.run(1.0, |_| 0.0);
         assert_eq!(world.tare(0.0), Some(Ok(())));

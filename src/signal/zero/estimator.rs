@@ -111,7 +111,7 @@ impl Estimator {
                 Interval::unverified(reference, known.saturating_add(limits.level), &limits)
             }
         };
-        let zeroed = !measured && !(limits.absolute && start_up == StartUp::Stored);
+        let zeroed = !(measured || limits.absolute && start_up == StartUp::Stored);
         let mut estimator = Self {
             limits,
             interval,
