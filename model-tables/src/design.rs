@@ -1,6 +1,7 @@
 //! What a fingertip is, in SI units: the part of a design that the mathematical model needs.
 
 use crate::material::Law;
+use crate::object::Object;
 
 /// The undeformed membrane: half an ellipsoid of revolution, bonded to a rigid base at its equator.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +29,7 @@ pub enum RestBy {
     Height(f64),
 }
 
-/// A fingertip as the model sees it.
+/// A fingertip as the model sees it, and what it touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Design {
     /// The undeformed membrane.
@@ -40,4 +41,6 @@ pub struct Design {
     /// Compliance of tubing, actuator and bubbles, cubic metres per pascal, >= 0
     /// (1 mm^3/kPa = 1e-12 m^3/Pa).
     pub compliance: f64,
+    /// What it touches.
+    pub object: Object,
 }

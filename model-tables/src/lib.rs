@@ -6,6 +6,7 @@
 //!
 //! ```
 //! use model_tables::design::{Design, Membrane, RestBy};
+//! use model_tables::object::Object;
 //! use model_tables::{material::Law, membrane::TensionField, membrane::press::Press};
 //!
 //! // Metres and pascals: a small dome of Agilus30, inflated to 2.3 times its length at the pole.
@@ -14,6 +15,7 @@
 //!     law: Law::MooneyRivlin { c1: 160_355.0, c2: 46_559.0 },
 //!     rest: RestBy::PoleStretch(2.3),
 //!     compliance: 0.0,
+//!     object: Object::PLATE,
 //! };
 //! let mut press = Press::new(&design, TensionField::Relaxed)?;
 //! let state = press.at_indentation(1.5e-3)?;
@@ -23,7 +25,7 @@
 //!
 //! # The way through the crate
 //!
-//! [`design`] (what the fingertip is) of a [`material`] -> [`membrane`] (thin walls) or [`solid`] (walls that bend), with the
+//! [`design`] (what the fingertip is) of a [`material`], and the [`object`] that it touches -> [`membrane`] (thin walls) or [`solid`] (walls that bend), with the
 //! [`solver`], which knows no physics -> `model` (either of them behind one interface, and which of them a design needs) ->
 //! [`curve`] (pressure rise -> force and indentation) -> `generate` (fits and certifies) -> [`table`] (integers for the
 //! chip, in the quantities of [`units`], beside the [`constants`] of the design), or a [`block`] of bytes that is loaded. A design comes from a file by
@@ -75,6 +77,7 @@ pub mod membrane;
 pub mod model;
 #[cfg(feature = "std")]
 pub mod monotone;
+pub mod object;
 #[cfg(feature = "std")]
 pub mod random;
 pub mod solid;

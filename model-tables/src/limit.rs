@@ -91,3 +91,20 @@ pub(crate) fn refuse_unsolved(
         reached * 1e3
     )
 }
+
+/// That a cup is so tight that it touches beside the pole first; metres.
+pub(crate) fn refuse_cup(f: &mut fmt::Formatter<'_>, radius: f64, least: f64) -> fmt::Result {
+    write!(
+        f,
+        "a cup of radius {:.6} mm touches the tip beside its pole first: object.radius_mm has to be below -{:.6}",
+        radius * 1e3,
+        least * 1e3
+    )
+}
+
+/// That a cylinder is no body of revolution on the axis.
+pub(crate) fn refuse_cylinder(f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    f.write_str(
+        "object.shape = \"cylinder\" has no axial symmetry, as the model has: give a ball, a cup or a punch",
+    )
+}

@@ -6,6 +6,7 @@ use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::press::Press;
 use model_tables::membrane::state::Wrinkling;
+use model_tables::object::Object;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -91,6 +92,7 @@ fn design(case: &Case) -> Design {
         },
         rest: RestBy::PoleStretch(case.inflation.lambda0),
         compliance: case.compliance,
+        object: Object::PLATE,
     }
 }
 

@@ -3,6 +3,7 @@
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::material::preset::{AGILUS30, SKIN};
+use model_tables::object::Object;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::{COARSE, FULL, Press};
 
@@ -76,6 +77,7 @@ fn forces(dome: &([f64; 3], Law), elements: Elements) -> [[f64; 2]; PARTS.len()]
         law: dome.1,
         rest: RestBy::Unstretched,
         compliance: 0.0,
+        object: Object::PLATE,
     };
     let mut press = Press::new(&design, elements).expect("a rest state");
     PARTS.map(|part| {

@@ -8,6 +8,7 @@ use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::material::preset::{AGILUS30, PRESETS};
 use model_tables::model::ModelError;
+use model_tables::object::Object;
 use model_tables::solid::SolidError;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::{COARSE, FULL, Press};
@@ -24,6 +25,7 @@ const THIN: Design = Design {
     },
     rest: RestBy::Unstretched,
     compliance: 0.0,
+    object: Object::PLATE,
 };
 
 /// Force and pressure rise at the last of some indentations, in millimetres.

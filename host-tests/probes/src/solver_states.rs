@@ -6,6 +6,7 @@ use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::press::workspace::Workspace;
 use model_tables::membrane::press::{MembraneError, Press, SWEEP};
+use model_tables::object::Object;
 
 /// Gauss points an element, those of the sweep mesh.
 pub const STAGES: usize = 5;
@@ -28,6 +29,7 @@ pub const DESIGN: Design = Design {
     },
     rest: RestBy::PoleStretch(2.3),
     compliance: 0.0,
+    object: Object::PLATE,
 };
 
 /// Metres. The first is reached from rest, over states in between; the second from its neighbour.

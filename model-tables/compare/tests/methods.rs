@@ -15,6 +15,7 @@ use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::press::Press;
+use model_tables::object::Object;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -85,6 +86,7 @@ fn cases() -> Vec<(String, Design, Model)> {
                 },
                 rest: RestBy::PoleStretch(case.inflation["lambda0"]),
                 compliance: case.compliance,
+                object: Object::PLATE,
             };
             let model = case.models.remove("plain").expect("every case has it");
             (case.name, design, model)

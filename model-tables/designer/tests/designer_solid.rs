@@ -67,6 +67,45 @@ fn solve_gives_states_in_the_order_asked_and_leaves_empty_what_has_no_meaning() 
     }
 }
 
+/// Values: an independent finite-element solution of a ball of 8 mm radius. On the ball the contact's meridian turns upwards, by the
+/// radius over that of the ball.
+#[test]
+fn solve_and_profile_press_onto_the_object_of_the_design() {
+    let file = design("object-ball", "[object]\nradius_mm = 8.0\n");
+    let solved = rows(&["solve", &file, "--indentation-mm", "1.0,2.0"]);
+    for (row, [pressure, force]) in solved.iter().zip([[3.92468, 0.311_663], [15.9625, 1.24354]]) {
+        assert!((number(&row[1]) / pressure - 1.0).abs() < 0.005, "{row:?}");
+        assert!((number(&row[3]) / force - 1.0).abs() < 0.005, "{row:?}");
+    }
+    let meridian = rows(&["profile", &file, "--indentation-mm", "2.0", "--points", "41"]);
+    // The middle of the wall lies half a wall further from the ball's centre.
+    for point in meridian
+        .iter()
+        .filter(|point| point[8] == "contact")
+        .skip(1)
+        .take(8)
+    {
+        let expected = -(number(&point[1]) / 8.5).asin().to_degrees();
+        assert!((number(&point[7]) - expected).abs() < 2.5, "{point:?} {expected}");
+    }
+    for (name, object, says) in [
+        (
+            "object-pen",
+            "shape = \"cylinder\"\nradius_mm = 5",
+            "object.shape = \"cylinder\" has no axial symmetry",
+        ),
+        (
+            "object-cup",
+            "radius_mm = -9",
+            "object.radius_mm has to be below -11.5",
+        ),
+    ] {
+        let file = design(name, &format!("[object]\n{object}\n"));
+        let text = refusal(&["solve", &file, "--indentation-mm", "1"]);
+        assert!(text.contains(says), "{text}");
+    }
+}
+
 #[test]
 fn rest_gives_the_inflated_state_and_the_limit() {
     let unstretched = &rows(&["rest", &design("rest", "")])[0];

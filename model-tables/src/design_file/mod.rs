@@ -6,6 +6,7 @@
 
 mod calibration;
 mod error;
+mod object;
 mod print;
 pub mod section;
 mod sections;
@@ -13,11 +14,13 @@ mod sections;
 use crate::constants::{AIR, Quantity};
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
+use crate::object::Object;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
 pub use calibration::{Calibration, DataCurve};
 pub use error::{DesignFileError, Problem};
+pub use object::{ObjectSection, ShapeSection};
 
 /// Elements of a solid where a design does not say: through the wall and along it. Enough for a few tenths of a percent.
 pub const DEFAULT_ELEMENTS: [u32; 2] = [2, 60];
@@ -42,6 +45,8 @@ pub struct DesignFile {
     pub axes: Axes,
     /// `[fluid] compliance_mm3_per_kpa`: tubing, actuator and bubbles, cubic millimetres per kilopascal.
     pub compliance_mm3_per_kpa: f64,
+    /// `[object]`: what touches; `None`: a flat, frictionless plate, and only that.
+    pub object: Option<ObjectSection>,
     /// `[press] max_indentation_mm`: end of the tables, millimetres.
     pub max_indentation_mm: Option<f64>,
     /// `[transducer]`.
@@ -320,6 +325,7 @@ impl DesignFile {
                     .calibration
                     .compliance_mm3_per_kpa
                     .unwrap_or(self.compliance_mm3_per_kpa),
+            object: self.object.as_ref().map_or(Object::PLATE, ObjectSection::object),
         }
     }
 }

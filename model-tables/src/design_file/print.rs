@@ -67,6 +67,9 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
         };
         writeln!(out, "axes = \"{axes}\"")?;
     }
+    if let Some(object) = &file.object {
+        object.print(out)?;
+    }
     if let Some(depth) = file.max_indentation_mm {
         writeln!(out, "\n[press]\nmax_indentation_mm = {depth:?}")?;
     }

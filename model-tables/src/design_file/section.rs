@@ -145,6 +145,42 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A number (`Some(Some(_))`) or one word in its place (`Some(None)`), if the key is there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn number_or_text(
+        &mut self,
+        key: &'static str,
+        bounds: Bounds,
+        word: &str,
+    ) -> Result<Option<Option<f64>>, Fault> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        match value.get_ref() {
+            DeValue::String(text) if text.as_ref() == word => Ok(Some(None)),
+            other => match to_number(other).filter(|number| bounds.admits(*number)) {
+                Some(number) => Ok(Some(Some(number))),
+                None => Err(self.refuse(key, &format!("{}, or \"{word}\"", bounds.describe()))),
+            },
+        }
+    }
+
+    /// `true` or `false`, if the key is there.
+    ///
+    /// # Errors
+    /// [`Fault`] with the key, what was found and what is allowed.
+    pub fn flag(&mut self, key: &'static str) -> Result<Option<bool>, Fault> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        match value.get_ref() {
+            DeValue::Boolean(flag) => Ok(Some(*flag)),
+            _ => Err(self.refuse(key, "true or false")),
+        }
+    }
+
     /// Two increasing numbers, if the key is there.
     ///
     /// # Errors

@@ -5,7 +5,8 @@ use super::error::Problem;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::{
     Accuracy, Axes, DEFAULT_ELEMENTS, DEFAULT_MODEL_PERCENT, DesignFile, MembraneSection, ModelSection,
-    RestSection, Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air,
+    ObjectSection, RestSection, Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa,
+    in_any_air,
 };
 use crate::constants::Quantity;
 use crate::material::Law;
@@ -48,6 +49,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
             .unwrap_or(RestSection::Unstretched),
     };
     let compliance = root.sub("fluid")?.map(fluid).transpose()?;
+    let object = root.sub("object")?.map(ObjectSection::parse).transpose()?;
     let press = root.sub("press")?.map(press).transpose()?;
     let transducer = root.sub("transducer")?.map(transducer).transpose()?;
     let accuracy = root.sub("accuracy")?.map(accuracy).transpose()?;
@@ -73,6 +75,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         model,
         axes,
         compliance_mm3_per_kpa: compliance.unwrap_or(0.0),
+        object,
         max_indentation_mm: press,
         transducer,
         accuracy,

@@ -1,4 +1,5 @@
 use super::*;
+use crate::object::{Friction, Shape};
 
 /// A complete file; the tests break one thing in it at a time.
 const GOOD: &str = r#"
@@ -655,6 +656,130 @@ fn a_solid_rests_unstretched_or_at_a_pressure() {
     ] {
         let text = solid(rest, keys).expect_err(says).to_string();
         assert!(text.contains(says), "{text}");
+    }
+}
+
+/// The object of the good file with an `[object]` of these lines.
+fn object(lines: &str) -> Result<Option<ObjectSection>, String> {
+    let file = DesignFile::parse(&format!("{GOOD}[object]\n{lines}"), "object.toml");
+    let file = file.map_err(|error| error.to_string())?;
+    let again = DesignFile::parse(&file.canonical(), "again.toml").expect("its canonical text");
+    assert_eq!(again, file);
+    Ok(file.object)
+}
+
+#[test]
+fn an_object_is_a_plate_a_ball_a_cup_a_cylinder_or_a_punch() {
+    assert_eq!(good().object, None);
+    assert_eq!(good().design().object, Object::PLATE);
+    let mm = |millimetres: f64| millimetres * 1e-3;
+    for (lines, shape, friction) in [
+        ("", Shape::Plate, Friction::NONE),
+        ("friction = 0.3\n", Shape::Plate, Friction::Coulomb(0.3)),
+        ("radius_mm = 8\n", Shape::Ball { radius: mm(8.0) }, Friction::NONE),
+        (
+            "shape = \"ball\"\nradius_mm = -20.0\nfriction = \"stick\"\n",
+            Shape::Cup { radius: mm(20.0) },
+            Friction::Stick,
+        ),
+        (
+            "shape = \"cylinder\"\nradius_mm = 5.0\n",
+            Shape::Cylinder { radius: mm(5.0) },
+            Friction::NONE,
+        ),
+        (
+            "shape = \"punch\"\nradius_mm = 3.0\nrim_mm = 0.2\nunknown = false\n",
+            Shape::Punch {
+                radius: mm(3.0),
+                rim: mm(0.2),
+            },
+            Friction::NONE,
+        ),
+    ] {
+        let found = object(lines).expect(lines).expect("an object");
+        assert_eq!(found.object(), Object { shape, friction }, "{lines}");
+        assert!(!found.unknown);
+    }
+    assert!(
+        object("unknown = true\n")
+            .expect("unknown")
+            .expect("an object")
+            .unknown
+    );
+}
+
+/// Each object has tables of its own: designs that differ in it alone have different hashes, and none has that of the plain one.
+#[test]
+fn an_object_belongs_to_the_hash() {
+    let hash = |lines: &str| {
+        DesignFile::parse(&format!("{GOOD}{lines}"), "object.toml")
+            .expect(lines)
+            .hash()
+    };
+    let hashes = [
+        "",
+        "[object]\n",
+        "[object]\nradius_mm = 8\n",
+        "[object]\nfriction = 0.3\n",
+    ]
+    .map(hash);
+    for (i, one) in hashes.iter().enumerate() {
+        assert!(!hashes[..i].contains(one));
+    }
+}
+
+#[test]
+fn an_impossible_object_is_refused_with_its_key() {
+    for (lines, says) in [
+        (
+            "radius_mm = 0\n",
+            "`object.radius_mm` is 0: must be a ball's radius above 0, a cup's below 0",
+        ),
+        (
+            "shape = \"cone\"\n",
+            "`object.shape` is \"cone\": must be \"ball\", \"cylinder\" or \"punch\"",
+        ),
+        (
+            "shape = \"cylinder\"\n",
+            "`object.radius_mm` is missing: needs a number above 0",
+        ),
+        (
+            "shape = \"cylinder\"\nradius_mm = -5\n",
+            "`object.radius_mm` is -5: must be a number above 0",
+        ),
+        (
+            "shape = \"punch\"\nradius_mm = 3\n",
+            "`object.rim_mm` is missing: needs a number above 0",
+        ),
+        (
+            "shape = \"punch\"\nradius_mm = 3\nrim_mm = 4\n",
+            "`object.rim_mm` is 4: must be at most radius_mm, 3 mm",
+        ),
+        (
+            "radius_mm = 3\nrim_mm = 1\n",
+            "`object.rim_mm` is 1: must be left out: only shape = \"punch\"",
+        ),
+        (
+            "friction = -0.1\n",
+            "`object.friction` is -0.1: must be a number at least 0 and at most 10, or \"stick\"",
+        ),
+        (
+            "friction = \"glue\"\n",
+            "`object.friction` is \"glue\": must be a number at least 0",
+        ),
+        ("unknown = 1\n", "`object.unknown` is 1: must be true or false"),
+        (
+            "unknown = true\nradius_mm = 8\n",
+            "`object.unknown` is true: must be false or left out",
+        ),
+        (
+            "diameter_mm = 8\n",
+            "`object.diameter_mm` is not a known key: allowed are shape, radius_mm, rim_mm, friction, unknown",
+        ),
+    ] {
+        let text = object(lines).expect_err(says);
+        assert!(text.contains(says), "{text}");
+        assert_eq!(text.lines().count(), 1, "{text}");
     }
 }
 

@@ -25,6 +25,8 @@ pub enum Unsolved {
     },
     /// The press turns back: with more contact the indentation is less, and a plate that goes on would find the tip snap.
     SnapsThrough,
+    /// The membrane goes slack on an object that is no plate.
+    SlackOnObject,
     /// The edge of a wrinkled zone, or the kind of the pole, did not settle.
     Unsettled,
 }
@@ -48,6 +50,10 @@ impl fmt::Display for Unsolved {
             Self::SnapsThrough => write!(
                 f,
                 "the press turns back there, more contact goes with less indentation, and the tip would snap through"
+            ),
+            Self::SlackOnObject => write!(
+                f,
+                "the membrane goes slack on the object, which it can do under a plate alone; set model.kind to \"solid\""
             ),
             Self::Unsettled => write!(f, "the edge of a wrinkled or slack zone did not settle"),
         }
@@ -176,6 +182,9 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
             if let Some(position) = Self::turned_edge(&guess.solution) {
                 return Err(Unsolved::EdgePushes { position });
             }
+            if self.membrane().curvature != 0.0 && self.pole_is_compressed(&guess.solution) {
+                return Err(Unsolved::SlackOnObject);
+            }
             if self.change_pole(guess) || Self::stale(guess) {
                 continue;
             }
@@ -195,7 +204,9 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// The same state with a pole of the other kind, where that can help: a relaxed membrane under a plate.
     #[inline(never)] // its copies of a solution stay off the caller's stack
     pub fn with_other_pole(&self, graded: &Graded<S>) -> Option<Graded<S>> {
-        let relaxed = self.membrane().tension_field == TensionField::Relaxed;
+        // Slack lies flat.
+        let relaxed =
+            self.membrane().tension_field == TensionField::Relaxed && self.membrane().curvature == 0.0;
         (relaxed && graded.solution.contact_elements > 0).then(|| match graded.solution.pole {
             Pole::Taut => self.slacken(graded),
             Pole::Slack => self.lay(graded, Pole::Taut, 1.0),
@@ -342,13 +353,17 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
         }
     }
 
-    /// Goes over to a slack core when the pole of a relaxed membrane came out compressed.
-    fn change_pole(&self, graded: &mut Graded<S>) -> bool {
-        let solution = &graded.solution;
-        let compressed = self.membrane().tension_field == TensionField::Relaxed
+    /// Whether the pole of a relaxed membrane came out compressed.
+    fn pole_is_compressed(&self, solution: &Solution<S>) -> bool {
+        self.membrane().tension_field == TensionField::Relaxed
             && solution.contact_elements > 0
             && solution.pole == Pole::Taut
-            && solution.parameters[POLE] < 1.0;
+            && solution.parameters[POLE] < 1.0
+    }
+
+    /// Goes over to a slack core when the pole of a relaxed membrane came out compressed.
+    fn change_pole(&self, graded: &mut Graded<S>) -> bool {
+        let compressed = self.pole_is_compressed(&graded.solution);
         if compressed {
             *graded = self.slacken(graded);
         }

@@ -141,7 +141,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
 
     /// Assembles chain and border, and eliminates all nodes but the last.
     fn eliminate(&mut self, solution: &mut Solution<S>) -> Option<()> {
-        let [pole, _, contact_radius, contact_parameter] = solution.parameters;
+        let [pole, pressure, contact_radius, contact_parameter] = solution.parameters;
         let (first, first_by_pole) = self.first_node(solution.pole, pole);
         solution.nodes[0] = first;
         let mut by_parameter = [[0.0; PARAMETERS]; STATES];
@@ -151,13 +151,16 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
         let edge = self.membrane.meridian(contact_parameter);
         for e in 0..solution.elements() {
             if e == solution.contact_elements {
-                // rho(t_c) - rho_c = 0.
-                let u = solution.nodes[e][0];
+                let state = solution.nodes[e];
+                let (residual, by) = self
+                    .membrane
+                    .contact_edge(&edge, state, pressure, contact_radius)?;
                 let mut row = [0.0; UNKNOWNS + 1];
-                row[0] = edge.x;
-                row[STATES + CONTACT_RADIUS] = -1.0;
-                row[STATES + CONTACT_PARAMETER] = edge.x_rate * u;
-                row[UNKNOWNS] = edge.x * u - contact_radius;
+                row[..STATES].copy_from_slice(&by[..STATES]);
+                row[STATES + PRESSURE] = by[STATES];
+                row[STATES + CONTACT_RADIUS] = by[STATES + 1];
+                row[STATES + CONTACT_PARAMETER] = by[STATES + 2];
+                row[UNKNOWNS] = residual;
                 self.chain.add_to_border(CONTACT_EDGE, &row);
             }
             for integral in [HEIGHT, VOLUME] {
@@ -361,7 +364,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     /// Height over the base at `t`.
     pub fn height_at(&self, solution: &Solution<S>, t: f64) -> f64 {
         let [_, pressure, contact_radius, contact_parameter] = solution.parameters;
-        if t <= contact_parameter {
+        if t <= contact_parameter && self.membrane.curvature == 0.0 {
             return solution.height;
         }
         let mut height = 0.0;

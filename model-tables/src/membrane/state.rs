@@ -132,7 +132,7 @@ pub struct PressedState {
     pub indentation: f64,
     /// Pressure over that of the rest state, pascals.
     pub pressure_rise: f64,
-    /// Force on the plate, newtons: total pressure times contact area.
+    /// Force on what touches, newtons; on a plate total pressure times contact area.
     pub force: f64,
     /// Deformed radius of the contact, metres.
     pub contact_radius: f64,
@@ -204,11 +204,13 @@ fn local<L: Hyperelastic, const S: usize>(
     let n = membrane.tension_measure(zone, t, [u, w], pressure, contact_radius);
     let response = membrane.respond(n, u, guess)?;
     let angle = match zone {
-        Zone::Contact => 0.0,
+        Zone::Contact => libm::asin((-membrane.curvature * u * libm::sin(t)).clamp(-1.0, 1.0)),
         Zone::Free => {
             let x = libm::sin(t);
             let k = 0.5 * pressure * (u * u * x - contact_radius * contact_radius / x);
-            libm::atan2(k.max(0.0), w)
+            // Under a plate only rounding falls below 0.
+            let k = if membrane.curvature > 0.0 { k } else { k.max(0.0) };
+            libm::atan2(k, w)
         }
     };
     Some((

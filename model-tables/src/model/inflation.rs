@@ -4,6 +4,7 @@ use super::ModelError;
 use crate::design::{Design, RestBy};
 use crate::membrane::TensionField;
 use crate::membrane::press::{MembraneError, Press};
+use crate::object::Object;
 use crate::solid;
 use crate::solid::inflation::{FreeRest, mid_surface};
 use crate::solid::mesh::Elements;
@@ -13,6 +14,7 @@ fn free_rest(design: &Design, stretch: f64) -> Result<FreeRest, MembraneError> {
     let membrane = Design {
         membrane: mid_surface(&design.membrane),
         rest: RestBy::PoleStretch(stretch),
+        object: Object::PLATE,
         ..*design
     };
     let mut press = Press::new(&membrane, TensionField::Relaxed)?;

@@ -6,11 +6,13 @@ use super::Failure;
 use super::assembly::Assembly;
 use super::element::{self, Material};
 use super::fluid;
+use super::friction::Sliding;
 use super::front::Fronts;
 use super::mesh::{CUBIC_PRESSURES, Elements, Mesh, NODES};
-use super::plate;
+use super::object::{Action, Surface};
 use super::state::{Balance, Fluid, State};
 use crate::material::Law;
+use crate::object::Friction;
 
 /// Contact stiffness times wall thickness, over the shear modulus: a contact pressure of a tenth of the modulus penetrates
 /// 5e-4 of the wall. Seven times as stiff changes the force by less than 0.1 % and takes a third more iterations.
@@ -26,6 +28,8 @@ const STEP_LIMIT: f64 = 0.5;
 /// Displacement of a node, over the wall thickness, after which the wall's part of the equations is set up anew. What changes with the contact's edge
 /// is the plate's part.
 const RENEWAL: f64 = 0.1;
+/// Smallest part of a step that is taken, with friction.
+const LEAST_DAMPING: f64 = 0.125;
 /// A step that leaves more than this part of the residual is the last with its factors.
 const CONTRACTION: f64 = 0.1;
 /// A step that leaves more than this part although the plate's part is of its own state is the last with the wall's.
@@ -59,6 +63,10 @@ pub struct Wall {
     assembly: Assembly,
     /// Contact pressure over penetration.
     contact_stiffness: f64,
+    /// What touches the outer surface.
+    surface: Surface,
+    /// Its friction, if it has any.
+    sliding: Option<Sliding>,
     /// Undeformed radii and heights of each column's outer edge.
     outer: Vec<[[f64; 3]; 2]>,
     fronts: Fronts,
@@ -66,8 +74,8 @@ pub struct Wall {
     forces: Vec<[f64; 2]>,
     /// Derivative of the volume by the nodes: zero but for the inner ones.
     by_node: Vec<[f64; 2]>,
-    /// The plate's stiffness on each column, in the latest factors.
-    by_depth: Vec<[[f64; 3]; 3]>,
+    /// The object's stiffness on each column's outer edge, in the latest factors.
+    by_edge: Vec<[[f64; 6]; 6]>,
     /// Negative pivots of each column.
     negative: Vec<usize>,
     /// Newton's step, and the part of it that goes with the fluid's pressure.
@@ -99,7 +107,9 @@ impl Wall {
             assembly: Assembly::new(&mesh, &material),
             forces: step.nodes.clone(),
             by_node: step.nodes.clone(),
-            by_depth: vec![[[0.0; 3]; 3]; elements.along],
+            by_edge: vec![[[0.0; 6]; 6]; elements.along],
+            surface: Surface::Plate,
+            sliding: None,
             negative: Vec::with_capacity(elements.along),
             by_pressure: step.clone(),
             step,
@@ -194,6 +204,7 @@ impl Wall {
         let mut moved = f64::INFINITY;
         let mut renewed = Renewed::Nothing;
         let mut shortened = false;
+        let mut damping: f64 = 1.0;
         for _ in 0..MAX_ITERATIONS {
             let balance = self.balance(state, plate, fluid);
             self.iterations += 1;
@@ -227,12 +238,20 @@ impl Wall {
             } else {
                 Renewed::Nothing
             };
+            if self.sliding.is_some() {
+                // Points that stick and slide in turn.
+                damping = if contraction > 1.0 {
+                    (0.5 * damping).max(LEAST_DAMPING)
+                } else {
+                    (2.0 * damping).min(1.0)
+                };
+            }
             let excess = fluid.excess(&balance, state);
             let largest = self.solve(fluid, excess).ok_or(Failure::Singular)?;
             let limit = STEP_LIMIT * self.mesh.thickness / largest;
             shortened = limit < 1.0;
-            moved += largest * limit.min(1.0);
-            state.add(limit.min(1.0), &self.step);
+            moved += largest * limit.min(damping);
+            state.add(limit.min(damping), &self.step);
         }
         Err(Failure::Stalled { residual: before })
     }
@@ -253,15 +272,13 @@ impl Wall {
                     self.forces[inner[i]][c] -= state.fluid * by_node[c][i];
                 }
             }
-            let z = outer.map(|node| state.nodes[node][1]);
-            if z.iter().all(|z| *z < plate - self.mesh.thickness) {
+            let Some(action) = self.action(state, column, plate) else {
                 continue;
-            }
-            let action = plate::action(self.contact_stiffness, &self.outer[column], &z, plate);
+            };
             balance.force += action.force;
             balance.contact_energy += action.energy;
-            for i in 0..3 {
-                self.forces[outer[i]][1] += action.first[i];
+            for (i, force) in action.first.into_iter().enumerate() {
+                self.forces[outer[i % 3]][i / 3] += force;
             }
         }
         self.hold();
@@ -278,6 +295,72 @@ impl Wall {
         }
         balance.residual = largest / self.mesh.thickness;
         balance
+    }
+
+    /// The object's action on a column's outer edge, if it is near.
+    fn action(&self, state: &State, column: usize, apex: f64) -> Option<Action> {
+        let place = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
+        let (stiffness, near) = (self.contact_stiffness, self.mesh.thickness);
+        let undeformed = &self.outer[column];
+        let mut action = self.surface.action(stiffness, undeformed, &place, apex, near)?;
+        if let Some(sliding) = &self.sliding {
+            let place = self.over_apex(state, column, apex);
+            sliding.add(column, &self.surface, undeformed, &place, &mut action);
+        }
+        Some(action)
+    }
+
+    /// Radii, and heights over an apex, of a column's outer edge.
+    fn over_apex(&self, state: &State, column: usize, apex: f64) -> [[f64; 3]; 2] {
+        let [r, z] = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
+        [r, z.map(|z| z - apex)]
+    }
+
+    /// Puts an object in the plate's place.
+    pub fn touch(&mut self, surface: Surface, friction: Friction) {
+        self.surface = surface;
+        self.sliding = Sliding::new(friction, self.contact_stiffness, self.mesh.elements.along);
+    }
+
+    /// What touches the outer surface.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// Whether it has friction: a state then depends on those before it.
+    pub fn has_friction(&self) -> bool {
+        self.sliding.is_some()
+    }
+
+    /// Starts a step from a state, in which the points of the outer edges have these anchors. Nothing without friction.
+    pub fn start_sliding(&mut self, state: &State, apex: f64, anchors: &[f64]) {
+        let Some(mut sliding) = self.sliding.take() else {
+            return;
+        };
+        for column in 0..self.mesh.elements.along {
+            sliding.start(
+                column,
+                &self.surface,
+                &self.over_apex(state, column, apex),
+                anchors,
+            );
+        }
+        self.sliding = Some(sliding);
+    }
+
+    /// The anchors at the end of a step in a settled state, and the energy that sliding took in it. Nothing without friction.
+    pub fn finish_sliding(&self, state: &State, apex: f64) -> (Vec<f64>, f64) {
+        let Some(sliding) = &self.sliding else {
+            return (Vec::new(), 0.0);
+        };
+        let (mut anchors, mut dissipated) = (Vec::new(), 0.0);
+        for column in 0..self.mesh.elements.along {
+            let place = self.over_apex(state, column, apex);
+            let (of_edge, by_edge) = sliding.finish(column, &self.surface, &self.outer[column], &place);
+            anchors.extend(of_edge);
+            dissipated += by_edge;
+        }
+        (anchors, dissipated)
     }
 
     /// Takes the forces out that act on what is held: the rim, and the pole sideways.
@@ -321,7 +404,7 @@ impl Wall {
         for node in &mut self.by_node[..self.mesh.stride()] {
             node[0] = 0.0;
         }
-        self.by_depth.fill([[0.0; 3]; 3]);
+        self.by_edge.fill([[0.0; 6]; 6]);
     }
 
     /// Factors the linear equations at a state: those of the wall as they were set up, the plate's of now.
@@ -331,20 +414,28 @@ impl Wall {
         let local = edge_nodes(&self.mesh, 0, self.mesh.layers() - 1);
         let mut first = from;
         for column in 0..self.mesh.elements.along {
-            let z = edge_nodes(&self.mesh, column, self.mesh.layers() - 1).map(|node| state.nodes[node][1]);
-            let now = plate::action(self.contact_stiffness, &self.outer[column], &z, plate).second;
-            if now == self.by_depth[column] {
+            let mut now = self.action(state, column, plate).unwrap_or_default().second;
+            if column == 0 {
+                // The pole is held sideways.
+                now[0] = [0.0; 6];
+                for row in &mut now {
+                    row[0] = 0.0;
+                }
+            }
+            if now == self.by_edge[column] {
                 continue;
             }
             first = first.min(column);
             let front = self.fronts.column(column);
-            for i in 0..3 {
-                for j in i..3 {
-                    let [row, other] = [i, j].map(|i| 2 * local[i] + 1);
-                    front[Fronts::place(station, row, other)] += now[i][j] - self.by_depth[column][i][j];
+            for i in 0..6 {
+                for j in 0..6 {
+                    let [row, other] = [i, j].map(|i| 2 * local[i % 3] + i / 3);
+                    if row <= other {
+                        front[Fronts::place(station, row, other)] += now[i][j] - self.by_edge[column][i][j];
+                    }
                 }
             }
-            self.by_depth[column] = now;
+            self.by_edge[column] = now;
         }
         self.negative.truncate(first);
         self.fronts.eliminate(first, &mut self.negative)?;
@@ -399,20 +490,21 @@ impl Wall {
         self.follow_pressure();
         self.step.nodes.fill([0.0; 2]);
         let outer = self.mesh.layers() - 1;
-        for (column, by_depth) in self.by_depth.iter().enumerate() {
+        for (column, by_edge) in self.by_edge.iter().enumerate() {
             let nodes = edge_nodes(&self.mesh, column, outer);
-            for (node, row) in nodes.iter().zip(by_depth) {
-                self.step.nodes[*node][1] -= row.iter().sum::<f64>();
+            for (i, row) in by_edge.iter().enumerate() {
+                self.step.nodes[nodes[i % 3]][i / 3] -= row[3..].iter().sum::<f64>();
             }
         }
         self.fronts.solve(self.step.nodes.as_flattened_mut());
         self.assembly.pressures(&mut self.step, false);
         self.border(fluid, 0.0)?;
         let mut force = 0.0;
-        for (column, by_depth) in self.by_depth.iter().enumerate() {
+        for (column, by_edge) in self.by_edge.iter().enumerate() {
             let nodes = edge_nodes(&self.mesh, column, outer);
-            for (node, row) in nodes.iter().zip(by_depth) {
-                force += row.iter().sum::<f64>() * (1.0 + self.step.nodes[*node][1]);
+            for (i, row) in by_edge.iter().enumerate() {
+                let of_plate = if i < 3 { 0.0 } else { 1.0 };
+                force += row[3..].iter().sum::<f64>() * (of_plate + self.step.nodes[nodes[i % 3]][i / 3]);
             }
         }
         Some(Tangent {

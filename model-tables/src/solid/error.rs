@@ -1,7 +1,7 @@
 //! Why the solid gives no answer, in words.
 
 use super::Failure;
-use crate::limit::{Limit, refuse_indentation, refuse_unsolved};
+use crate::limit::{Limit, refuse_cup, refuse_cylinder, refuse_indentation, refuse_unsolved};
 use core::fmt;
 
 /// Why the solid gives no answer.
@@ -20,6 +20,15 @@ pub enum SolidError {
         asked: f64,
         /// The greatest that inflation passes.
         greatest: f64,
+    },
+    /// What touches has no axial symmetry.
+    NotAxisymmetric,
+    /// A cup does not touch the pole first.
+    CupTooTight {
+        /// Its radius, metres.
+        radius: f64,
+        /// The least that touches the pole first, metres.
+        least: f64,
     },
     /// The rest state was not found.
     RestUnsolved {
@@ -67,6 +76,8 @@ impl fmt::Display for SolidError {
                 asked * 1e-3,
                 greatest * 1e-3
             ),
+            Self::NotAxisymmetric => refuse_cylinder(f),
+            Self::CupTooTight { radius, least } => refuse_cup(f, radius, least),
             Self::RestUnsolved { failure } => {
                 write!(
                     f,

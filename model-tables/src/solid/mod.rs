@@ -6,7 +6,7 @@
 //! times the contact area: at light touch the wall's bending carries most of it.
 //!
 //! [`mesh`] (the undeformed wall) -> [`element`] (the mechanics of a point) -> [`batch`] (forces and stiffness of four elements side by side,
-//! in [`lanes`]), [`fluid`] (the volume inside) and [`plate`] (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
+//! in [`lanes`]), [`fluid`] (the volume inside) and [`object`] with [`plate`] and `friction` (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
 //! (Newton's method) -> [`inflation`] -> [`path`] (the
 //! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units, and by `branch` those beside the path)
 //! -> [`section`] (what is read off along the meridian).
@@ -33,6 +33,8 @@ mod error;
 #[cfg(feature = "std")]
 pub mod fluid;
 #[cfg(feature = "std")]
+mod friction;
+#[cfg(feature = "std")]
 pub mod front;
 #[cfg(feature = "std")]
 pub mod inflation;
@@ -40,6 +42,8 @@ pub mod inflation;
 pub mod lanes;
 #[cfg(feature = "std")]
 pub mod mesh;
+#[cfg(feature = "std")]
+pub mod object;
 #[cfg(feature = "std")]
 pub mod path;
 #[cfg(feature = "std")]

@@ -98,6 +98,7 @@ impl Path {
                         ..Balance::default()
                     },
                     contact: ContactEdge::default(),
+                    anchors: Vec::new(),
                     energy,
                     work: energy,
                     state: rest,
@@ -152,7 +153,7 @@ impl Path {
             let target = targets[targets.len() - 1];
             let asked = targets.len() == 1;
             self.interpolate(&below, &above, target);
-            let found = self.balance(wall, fluid, target).and_then(|balance| {
+            let found = self.balance(wall, fluid, &below, target).and_then(|balance| {
                 // All that may miss up to the next state of the path may miss up to here.
                 let whole = above.kept.work - below.kept.work;
                 if asked {
@@ -207,7 +208,7 @@ impl Path {
             let last = self.last().clone();
             let next = last.kept.indentation + self.step;
             self.predict(next);
-            let found = self.balance(wall, fluid, next).and_then(|balance| {
+            let found = self.balance(wall, fluid, &last, next).and_then(|balance| {
                 let tangent = wall.tangent(fluid).ok_or(Rejected::Failed(Failure::Singular))?;
                 let (kept, strain) = self.check(wall, fluid, &last, next, balance, tangent.force, None)?;
                 Ok((Station { kept, tangent }, strain))
@@ -282,12 +283,20 @@ impl Path {
         self.guess.add(step * w[3], &above.tangent.state);
     }
 
-    /// Solves from the guess, above the base.
-    fn balance(&mut self, wall: &mut Wall, fluid: &Fluid, indentation: f64) -> Result<Balance, Rejected> {
+    /// Solves from the guess, above the base; friction goes on from the state below.
+    fn balance(
+        &mut self,
+        wall: &mut Wall,
+        fluid: &Fluid,
+        below: &Station,
+        indentation: f64,
+    ) -> Result<Balance, Rejected> {
         if indentation >= self.height {
             return Err(Rejected::Touches(EndsBy::WallTouchesBase));
         }
         self.work.copy_from(&self.guess);
+        let from = &below.kept;
+        wall.start_sliding(&from.state, self.height - from.indentation, &from.anchors);
         let balance = wall
             .settle(&mut self.work, self.height - indentation, fluid)
             .map_err(Rejected::Failed)?;
@@ -314,15 +323,17 @@ impl Path {
         scale: Option<f64>,
     ) -> Result<(Kept, f64), Rejected> {
         let plate = self.height - indentation;
+        let (anchors, dissipated) = wall.finish_sliding(&self.work, plate);
         let mut kept = Kept {
             indentation,
+            anchors,
             contact: section::contact_edge(wall, &self.work, plate),
             energy: wall.energy(&self.work) + balance.contact_energy,
             state: self.work.clone(),
             balance,
             work: below.kept.work,
         };
-        let done = work(below, &kept, stiffness, fluid);
+        let done = work(below, &kept, stiffness, fluid) - dissipated;
         kept.work += done;
         let missing = (kept.energy - below.kept.energy - done).abs();
         let allowed = if below.kept.indentation > 0.0 {

@@ -10,7 +10,7 @@ use core::f64::consts::PI;
 /// Gauss points of each part of an edge that touches.
 pub const POINTS: usize = 6;
 /// Gauss points of order twelve on `[-1, 1]`.
-const PLACES: [f64; POINTS] = [
+pub const PLACES: [f64; POINTS] = [
     -0.932_469_514_203_152,
     -0.661_209_386_466_264_5,
     -0.238_619_186_083_196_9,
@@ -19,7 +19,7 @@ const PLACES: [f64; POINTS] = [
     0.932_469_514_203_152,
 ];
 /// Their weights.
-const WEIGHTS: [f64; POINTS] = [
+pub const WEIGHTS: [f64; POINTS] = [
     0.171_324_492_379_170_3,
     0.360_761_573_048_138_6,
     0.467_913_934_572_691,
@@ -94,7 +94,7 @@ fn cuts(a: f64, b: f64, c: f64) -> ([f64; 4], usize) {
 }
 
 /// Undeformed area per unit of the edge's coordinate.
-fn area([r, z]: &[[f64; 3]; 2], x: f64) -> f64 {
+pub(super) fn area([r, z]: &[[f64; 3]; 2], x: f64) -> f64 {
     let dot = |n: [f64; 3], y: &[f64; 3]| n[0] * y[0] + n[1] * y[1] + n[2] * y[2];
     let (n, dn) = (shape(x), slope(x));
     2.0 * PI * dot(n, r) * libm::hypot(dot(dn, r), dot(dn, z))

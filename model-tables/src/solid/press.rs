@@ -4,14 +4,16 @@ use super::branch;
 use super::equilibrium::Wall;
 use super::inflation;
 use super::mesh::Elements;
+use super::object::Surface;
 use super::path::{Path, Stop};
 use super::section::{self, Station};
-use super::state::{Balance, Fluid};
+use super::state::{Balance, Fluid, State};
 use super::station::Kept;
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};
 use crate::limit::Limit;
 use crate::material::{Hyperelastic as _, Law};
+use crate::object::{Object, Shape};
 use crate::solid::SolidError;
 use core::f64::consts::PI;
 
@@ -120,7 +122,8 @@ impl Press {
     ///
     /// # Errors
     /// [`SolidError::NoStiffness`], [`SolidError::PressureOutOfReach`], [`SolidError::RestUnsolved`],
-    /// [`SolidError::RestNotForSolid`] for a rest state given by the equator or the height, and those of `free`.
+    /// [`SolidError::RestNotForSolid`] for a rest state given by the equator or the height, [`SolidError::NotAxisymmetric`] and
+    /// [`SolidError::CupTooTight`] for what touches, and those of `free`.
     pub fn inflate<E: From<SolidError>>(
         design: &Design,
         elements: Elements,
@@ -148,6 +151,10 @@ impl Press {
             RestBy::PoleStretch(stretch) => inflation::bonded(&mut wall, &mut state, length, stretch, free)?,
             RestBy::EquatorRadius(_) | RestBy::Height(_) => return Err(SolidError::RestNotForSolid.into()),
         }
+        wall.touch(
+            surface(&design.object, &wall, &state, length)?,
+            design.object.friction,
+        );
         let volume = wall.volume(&state);
         let unit = length * length * length;
         let energy = wall.energy(&state);
@@ -280,6 +287,10 @@ impl Press {
     /// As [`Press::at_indentation`].
     pub fn other_state(&mut self, indentation: f64) -> Result<Option<OtherState>, SolidError> {
         self.contact_at(indentation)?;
+        if self.wall.has_friction() {
+            // A state beside the path would have come another way.
+            return Ok(None);
+        }
         let rest = &self.path.rest().state;
         let plate = self.height - self.asked.indentation;
         let found = branch::beside(&mut self.wall, &self.fluid, rest, &self.asked, plate);
@@ -348,6 +359,17 @@ impl Press {
         }
         Curve::new(points).map_err(CurveFailure::Shape)
     }
+}
+
+/// The surface of an object in units of `length`, metres, that touches a wall at rest at its pole.
+fn surface(object: &Object, wall: &Wall, rest: &State, length: f64) -> Result<Surface, SolidError> {
+    if let Shape::Cup { radius } = object.shape {
+        let least = section::least_cup(wall, rest) * length;
+        if radius < least {
+            return Err(SolidError::CupTooTight { radius, least });
+        }
+    }
+    Surface::new(object.shape, length).ok_or(SolidError::NotAxisymmetric)
 }
 
 /// A law in other units.

@@ -65,14 +65,17 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Where the outer surface leaves the plate.
+/// Where the outer surface leaves what touches it, whose apex is at the height `plate`.
 pub fn contact_edge(wall: &Wall, state: &State, plate: f64) -> ContactEdge {
     let along = wall.mesh.elements.along;
     let outer = wall.mesh.layers() - 1;
     // From the rim inwards: the first place that touches.
     for column in (0..along).rev() {
         let [r, z] = edge(&wall.mesh, &state.nodes, column, outer);
-        let depth = |x: f64| dot(&shape(x), &z) - plate;
+        let depth = |x: f64| {
+            let n = shape(x);
+            wall.surface().depth(dot(&n, &r), dot(&n, &z) - plate)
+        };
         let found = |x: f64| ContactEdge {
             radius: dot(&shape(x), &r),
             parameter: wall.mesh.parameter(column, x),
@@ -97,6 +100,20 @@ pub fn contact_edge(wall: &Wall, state: &State, plate: f64) -> ContactEdge {
         }
     }
     ContactEdge::default()
+}
+
+/// The least radius of a hollow sphere that the outer surface fits in when it touches at the pole: a sphere through the pole and a point
+/// at a radius `r`, lower by `s`, has the radius `(r^2 + s^2) / 2 s`.
+pub fn least_cup(wall: &Wall, state: &State) -> f64 {
+    let outer = wall.mesh.layers() - 1;
+    let height = state.nodes[outer][1];
+    (1..wall.mesh.stations())
+        .map(|station| {
+            let [r, z] = state.nodes[wall.mesh.node(station, outer)];
+            let s = height - z;
+            (r * r + s * s) / (2.0 * s)
+        })
+        .fold(0.0, f64::max)
 }
 
 /// Whether, and with which side, the wall has gone through the base plane; the crease does not count.

@@ -13,11 +13,13 @@ pub struct Kept {
     pub state: State,
     /// What it came with.
     pub balance: Balance,
-    /// Where the outer surface leaves the plate.
+    /// Where the outer surface leaves what touches it.
     pub contact: ContactEdge,
+    /// Where its points are anchored on what touches; empty without friction.
+    pub anchors: Vec<f64>,
     /// Energy of the wall and of the contact.
     pub energy: f64,
-    /// Work of plate and fluid since the rest state, plus the energy of that.
+    /// Work of plate and fluid since the rest state, plus the energy of that, less what friction took.
     pub work: f64,
 }
 

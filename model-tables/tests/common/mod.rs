@@ -2,6 +2,7 @@
 
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
+use model_tables::object::Object;
 
 pub(crate) use model_tables::material::preset::AGILUS30;
 
@@ -16,5 +17,6 @@ pub(crate) fn design(radial: f64, axial: f64, thickness: f64, law: Law, pole_str
         law,
         rest: RestBy::PoleStretch(pole_stretch),
         compliance: 0.0,
+        object: Object::PLATE,
     }
 }

@@ -2,6 +2,7 @@
 
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
+use model_tables::object::Object;
 
 /// An unstretched solid in millimetres.
 pub(crate) fn dome(radial: f64, axial: f64, thickness: f64, law: Law) -> Design {
@@ -14,5 +15,6 @@ pub(crate) fn dome(radial: f64, axial: f64, thickness: f64, law: Law) -> Design 
         law,
         rest: RestBy::Unstretched,
         compliance: 0.0,
+        object: Object::PLATE,
     }
 }

@@ -8,6 +8,7 @@ use model_tables::material::preset::AGILUS30;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::Resolution;
 use model_tables::membrane::press::{FULL, Press};
+use model_tables::object::Object;
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -216,6 +217,7 @@ impl Chart {
             law,
             rest: RestBy::PoleStretch(stretch),
             compliance: 0.0,
+            object: Object::PLATE,
         };
         (design, part)
     }

@@ -3,6 +3,7 @@
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::{Hyperelastic as _, Law};
 use model_tables::membrane::TensionField;
+use model_tables::object::Object;
 use model_tables::random::Random;
 
 /// Indentations a design is judged at.
@@ -95,6 +96,7 @@ pub fn case(seed: u64, index: u64) -> Case {
             rest: RestBy::PoleStretch(pole_stretch),
             compliance: compliance * radial * radial * radial * radial
                 / (law.shear_modulus() * membrane.thickness),
+            object: Object::PLATE,
         },
         pole_stretch,
         compliance,

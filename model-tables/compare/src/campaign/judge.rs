@@ -99,6 +99,11 @@ fn reason(error: &MembraneError, press: Option<&Press>) -> &'static str {
         MembraneError::NotAnIndentation { .. } => return "not-an-indentation",
         MembraneError::LawUnstable { .. } => return "law-unstable",
         MembraneError::Unstretched => return "no-rest-state",
+        MembraneError::NotAxisymmetric
+        | MembraneError::ObjectNotForMembrane
+        | MembraneError::CupTooTight { .. } => {
+            return "object-not-for-membrane";
+        }
         MembraneError::Unheld { .. } => return "inflates-by-itself",
         MembraneError::RestUnsolved { failure } | MembraneError::PressUnsolved { failure, .. } => failure,
     };
@@ -116,6 +121,7 @@ fn reason(error: &MembraneError, press: Option<&Press>) -> &'static str {
         (_, Unsolved::Newton(NewtonOutcome::Singular { .. })) => "press-singular",
         (_, Unsolved::Newton(_)) => "press-stalled",
         (_, Unsolved::EdgePushes { .. }) => "plain-edge-pushes",
+        (_, Unsolved::SlackOnObject) => "press-slack-on-object",
         (_, Unsolved::SnapsThrough) => "press-snaps-through",
         (_, Unsolved::Unsettled) => "press-unsettled",
     }

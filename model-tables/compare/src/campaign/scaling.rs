@@ -4,6 +4,7 @@ use model_tables::curve::Contact;
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::model::ModelError;
 use model_tables::model::choice::REFINED;
+use model_tables::object::Object;
 use model_tables::solid::SolidError;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::Press;
@@ -19,6 +20,7 @@ pub const PRINTED: Design = Design {
     law: model_tables::material::preset::AGILUS30,
     rest: RestBy::Unstretched,
     compliance: 0.0,
+    object: Object::PLATE,
 };
 /// Elements through the wall and along the meridian, the refined last.
 pub const MESHES: [[usize; 2]; 8] = [

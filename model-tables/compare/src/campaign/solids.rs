@@ -6,6 +6,7 @@ use model_tables::material::Law;
 use model_tables::material::preset::PRESETS;
 use model_tables::model::ModelError;
 use model_tables::model::choice::Wanted;
+use model_tables::object::Object;
 use model_tables::random::Random;
 use model_tables::solid::SolidError;
 use model_tables::solid::mesh::Elements;
@@ -110,6 +111,7 @@ pub fn draw(index: u64) -> Design {
         } else {
             0.0
         },
+        object: Object::PLATE,
     }
 }
 

@@ -8,6 +8,7 @@ use model_tables::material::preset::{AGILUS30, SKIN};
 use model_tables::model::ModelError;
 use model_tables::model::choice::{LADDER, PARTS, Wanted};
 use model_tables::model::{Fingertip, Kind};
+use model_tables::object::Object;
 use model_tables::random::Random;
 use model_tables::solid::inflation::mid_surface;
 use std::time::Instant;
@@ -92,6 +93,7 @@ pub fn draw(index: u64) -> RandomWall {
             law,
             rest,
             compliance: 0.0,
+            object: Object::PLATE,
         },
     }
 }

@@ -14,6 +14,7 @@ use model_tables::material::preset::{AGILUS30, SKIN};
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::Resolution;
 use model_tables::membrane::press::{MembraneError, Press};
+use model_tables::object::Object;
 use std::time::{Duration, Instant};
 
 /// States of a sweep.
@@ -65,6 +66,7 @@ const fn dome(radial: f64, axial: f64, law: Law, pole_stretch: f64) -> Design {
         law,
         rest: RestBy::PoleStretch(pole_stretch),
         compliance: 0.0,
+        object: Object::PLATE,
     }
 }
 

@@ -274,6 +274,7 @@ impl PlainMembrane {
 mod tests {
     use super::*;
     use model_tables::design::Membrane;
+    use model_tables::object::Object;
 
     fn problem() -> PlainMembrane {
         PlainMembrane::new(&Design {
@@ -285,6 +286,7 @@ mod tests {
             law: Law::MooneyRivlin { c1: 2e5, c2: 4e4 },
             rest: RestBy::PoleStretch(1.3),
             compliance: 0.0,
+            object: Object::PLATE,
         })
         .expect("by pole stretch")
     }

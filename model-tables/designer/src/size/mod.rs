@@ -15,6 +15,7 @@ use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::Resolution;
 use model_tables::membrane::press::{MembraneError, Press, SWEEP};
 use model_tables::membrane::state::Wrinkling;
+use model_tables::object::Object;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use target::Target;
@@ -205,6 +206,7 @@ impl Start {
             law: self.material.law,
             rest: RestBy::PoleStretch(self.stretch),
             compliance: 1e-12 * target.compliance_mm3_per_kpa,
+            object: Object::PLATE,
         }
     }
 }

@@ -17,6 +17,8 @@ pub enum GenerateError {
         /// The section.
         section: &'static str,
     },
+    /// `object.unknown` is set: tables are of one object.
+    UnknownObject,
     /// The model gives no answer, or ends before `max_indentation_mm`.
     Model(ModelError),
     /// Pressure or force do not grow throughout.
@@ -82,6 +84,10 @@ impl fmt::Display for GenerateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(error) => error.fmt(f),
+            Self::UnknownObject => write!(
+                f,
+                "`object.unknown` is true, and tables are of one object: give object.radius_mm, or leave [object] out for a plate"
+            ),
             Self::MissingSection { section } => {
                 write!(f, "`[{section}]` is missing: tables cannot be made without it")
             }

@@ -139,6 +139,9 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
     let indentation = design.max_indentation_mm.ok_or(missing("press"))?;
     let transducer = design.transducer.ok_or(missing("transducer"))?;
+    if design.object.is_some_and(|object| object.unknown) {
+        return Err(GenerateError::UnknownObject);
+    }
     let (rest_pressure, curve, end, rung) = if let Some(data) = &design.calibration.curve {
         let curve = measured(data, indentation * 1e-3)?;
         let end = curve.end();

@@ -109,6 +109,59 @@ fn a_mesh_that_is_too_coarse_is_refused() {
     assert!(of(2, 60).is_ok());
 }
 
+/// The default design against an object.
+fn against(object: &str) -> DesignFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("designs/index-fingertip.toml");
+    let text = std::fs::read_to_string(path).expect("a shipped design");
+    DesignFile::parse(&format!("{text}\n[object]\n{object}\n"), "object.toml").expect("a design")
+}
+
+/// Tables of a ball of 8 mm radius, held to states of it by an independent finite-element code (`tests/reference/object.json`): pressure in
+/// kilopascals, force in newtons, indentation in millimetres.
+#[test]
+fn tables_of_a_ball_give_its_force_and_indentation() {
+    let generated = from_design(against("radius_mm = 8.0")).expect("tables");
+    let tables = &generated.certified.tables;
+    let bits = tables.layout.pressure_fraction_bits;
+    for (pressure, force, indentation) in [
+        (1.388_41, 0.138_377, 0.5),
+        (3.924_68, 0.311_663, 1.0),
+        (8.498_38, 0.625_282, 1.5),
+        (15.962_5, 1.243_54, 2.0),
+    ] {
+        let reading = tables.lookup(PressureRise::from_pascals(1e3 * pressure, bits));
+        let (by_force, by_depth) = (
+            reading.force.newtons() / force - 1.0,
+            1e3 * reading.indentation.metres() / indentation - 1.0,
+        );
+        assert!(
+            by_force.abs() < 0.005 && by_depth.abs() < 0.005,
+            "{pressure}: {by_force} {by_depth}"
+        );
+    }
+}
+
+#[test]
+fn what_has_no_tables_is_refused_by_its_key() {
+    let refused = |object: &str| solve(&against(object)).expect_err("no tables").to_string();
+    for (object, says) in [
+        ("unknown = true", "`object.unknown` is true"),
+        (
+            "shape = \"cylinder\"\nradius_mm = 5",
+            "object.shape = \"cylinder\" has no axial symmetry",
+        ),
+        (
+            "radius_mm = -10",
+            "a cup of radius 10.000000 mm touches the tip beside its pole first",
+        ),
+        // A cup takes far more pressure than a plate.
+        ("radius_mm = -20", "beyond the limit of"),
+    ] {
+        let text = refused(object);
+        assert!(text.contains(says) && text.lines().count() == 1, "{text}");
+    }
+}
+
 /// The tables as the chip holds them, if they have this shape.
 fn fixed<const SEGMENTS: usize, const WORDS: usize>(tables: &OwnedTables) -> Option<Tables<SEGMENTS, WORDS>> {
     let segments: Vec<[i32; WORDS]> = (0..tables.segments())

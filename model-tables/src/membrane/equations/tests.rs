@@ -2,10 +2,15 @@ use super::*;
 use crate::material::Law;
 
 fn membrane(tension_field: TensionField) -> LocalEquations<Law> {
+    touching(tension_field, 0.0)
+}
+
+fn touching(tension_field: TensionField, curvature: f64) -> LocalEquations<Law> {
     LocalEquations {
         aspect: 0.7,
         law: Law::MooneyRivlin { c1: 0.4, c2: 0.1 },
         tension_field,
+        curvature,
     }
 }
 
@@ -94,6 +99,62 @@ fn derivatives_are_exact_where_hoop_wrinkles_stand() {
         .expect("admissible");
     assert!(response.wrinkled && response.w2.abs() < f64::MIN_POSITIVE);
     check_derivatives(&m, Zone::Free, 1.3, [0.8, 0.2], 0.9, 0.2);
+}
+
+#[test]
+fn derivatives_are_exact_on_a_ball_and_in_a_cup() {
+    for curvature in [1.2, -0.6] {
+        let m = touching(TensionField::Plain, curvature);
+        check_derivatives(&m, Zone::Contact, 0.4, [1.2, 0.3], 0.0, 0.0);
+        check_derivatives(&m, Zone::Contact, 0.05, [1.3, 0.5], 0.0, 0.0);
+    }
+    let m = touching(TensionField::Relaxed, 0.6);
+    let (_, response) = m
+        .point(Zone::Contact, &m.meridian(1.0), [0.8, 0.2], 0.9, 0.2, 1.2)
+        .expect("admissible");
+    assert!(response.wrinkled);
+    check_derivatives(&m, Zone::Contact, 1.0, [0.8, 0.2], 0.0, 0.0);
+}
+
+/// The condition at the contact's edge, against central differences; it is the plate's own for a vanishing curvature.
+#[test]
+fn derivatives_of_the_contact_edge_are_exact() {
+    for curvature in [1.2, -0.6, 1e-12] {
+        let m = touching(TensionField::Plain, curvature);
+        let of = |y: [f64; 5]| {
+            // Not scaled by what it is differentiated by.
+            let (value, _) = m
+                .contact_edge(&m.meridian(y[4]), [y[0], y[1]], y[2], y[3])
+                .expect("on the object");
+            value * y[2] * y[3]
+        };
+        let place = [1.2, 0.3, 0.9, 0.5, 0.4];
+        let (value, by) = m
+            .contact_edge(&m.meridian(place[4]), [place[0], place[1]], place[2], place[3])
+            .expect("on the object");
+        for (i, by) in by.iter().enumerate() {
+            let [below, above] = [-1e-5, 1e-5].map(|d| {
+                let mut moved = place;
+                moved[i] += d;
+                of(moved)
+            });
+            let slope = (above - below) / 2e-5;
+            assert!(
+                (slope - by * place[2] * place[3]).abs() < 1e-8,
+                "{curvature} {i}: {slope} {by}"
+            );
+        }
+        let rho = 1.2 * libm::sin(0.4);
+        if curvature.abs() < 1e-9 {
+            assert!((value - (rho * rho - 0.25)).abs() < 1e-9);
+        }
+    }
+    let beyond = touching(TensionField::Plain, 3.0);
+    assert!(
+        beyond
+            .contact_edge(&beyond.meridian(0.4), [1.2, 0.3], 0.9, 0.5)
+            .is_none()
+    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Why the membrane gives no answer, in words.
 
-use crate::limit::{Limit, refuse_indentation, refuse_unsolved};
+use crate::limit::{Limit, refuse_cup, refuse_cylinder, refuse_indentation, refuse_unsolved};
 use crate::material::stability::Margin;
 use crate::membrane::adapt::Unsolved;
 use crate::membrane::rest::RestQuantity;
@@ -35,6 +35,17 @@ pub enum MembraneError {
         compliance: f64,
         /// The compliance below which it holds, if any does.
         largest: Option<f64>,
+    },
+    /// What touches has no axial symmetry.
+    NotAxisymmetric,
+    /// The membrane presses onto frictionless plates, balls and cups alone.
+    ObjectNotForMembrane,
+    /// A cup does not touch the pole first.
+    CupTooTight {
+        /// Its radius, metres.
+        radius: f64,
+        /// The least that touches the pole first, metres.
+        least: f64,
     },
     /// The rest state was not found.
     RestUnsolved {
@@ -117,6 +128,12 @@ impl fmt::Display for MembraneError {
                      smaller pole stretch",
                 ),
             },
+            Self::NotAxisymmetric => refuse_cylinder(f),
+            Self::ObjectNotForMembrane => f.write_str(
+                "the membrane presses onto a frictionless plate, ball or cup: set model.kind to \"solid\" for another \
+                 [object], or leave its friction and shape out",
+            ),
+            Self::CupTooTight { radius, least } => refuse_cup(f, radius, least),
             Self::RestUnsolved { failure } => {
                 write!(
                     f,

@@ -20,7 +20,9 @@ use crate::membrane::equations::{CONTACT_PARAMETER, CONTACT_RADIUS, PRESSURE, Te
 use crate::membrane::history::History;
 use crate::membrane::press::workspace::Workspace;
 use crate::membrane::rest::Branch;
+use crate::membrane::solution::Solution;
 use crate::membrane::state::{self, MeridianPoint, PressedState, Shape, UnitScale};
+use crate::object::{Friction, Object, Shape as ObjectShape};
 use core::f64::consts::{FRAC_PI_2, PI};
 use way::Stop;
 
@@ -100,8 +102,9 @@ impl<const S: usize> Press<Law, S> {
             law,
             rest,
             compliance,
+            object,
         } = design;
-        Self::inflate(membrane, *law, *rest, *compliance, tension_field, resolution)
+        Self::inflate(membrane, *law, *rest, *compliance, tension_field, resolution)?.touching(object)
     }
 }
 
@@ -123,6 +126,44 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         let mut workspace = Workspace::new(law);
         workspace.inflate(dimensions, rest, compliance, tension_field, resolution)?;
         Ok(workspace.into_press())
+    }
+
+    /// The same fingertip, not yet pressed, with an object in the plate's place. The indentation is then the travel of the object's
+    /// apex from first touch.
+    ///
+    /// # Errors
+    /// [`MembraneError::NotAxisymmetric`] for a cylinder, [`MembraneError::ObjectNotForMembrane`] for anything else but a frictionless plate, ball or cup, and [`MembraneError::CupTooTight`] for a
+    /// cup that would touch beside the pole first.
+    pub fn touching(mut self, object: &Object) -> Result<Self, MembraneError> {
+        let length = self.scale.length;
+        let curvature = match object.shape {
+            ObjectShape::Plate => 0.0,
+            ObjectShape::Ball { radius } => length / radius,
+            ObjectShape::Cup { radius } => -length / radius,
+            ObjectShape::Cylinder { .. } => return Err(MembraneError::NotAxisymmetric),
+            ObjectShape::Punch { .. } => return Err(MembraneError::ObjectNotForMembrane),
+        };
+        if object.friction != Friction::NONE {
+            return Err(MembraneError::ObjectNotForMembrane);
+        }
+        let crown = self.crown_radius();
+        if curvature * crown <= -1.0 {
+            return Err(MembraneError::CupTooTight {
+                radius: -length / curvature,
+                least: crown * length,
+            });
+        }
+        self.solver.equilibrium.membrane.curvature = curvature;
+        self.history.clear();
+        self.limit = None;
+        Ok(self)
+    }
+
+    /// Radius of curvature of the pole at rest: `2 T / P`.
+    fn crown_radius(&self) -> f64 {
+        let rest = &self.rest.solution;
+        let [stretch, tension] = rest.nodes[0];
+        2.0 * tension / (stretch * rest.parameters[PRESSURE])
     }
 
     /// The rest state.
@@ -171,7 +212,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             indentation,
             pressure_rise: contact.pressure_rise,
             force: contact.force,
-            contact_radius: solution.parameters[CONTACT_RADIUS] * self.scale.length,
+            contact_radius: self.contact_radius(solution) * self.scale.length,
             contact_parameter: solution.parameters[CONTACT_PARAMETER],
             shape: state::shape(&self.solver.equilibrium, &self.scale, solution),
         })
@@ -215,6 +256,16 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             pressure_rise: rise * self.scale.pressure,
             force: parameters[PRESSURE] * self.scale.pressure * PI * radius * radius,
         })
+    }
+
+    /// Deformed radius of the contact's edge.
+    fn contact_radius(&self, solution: &Solution<S>) -> f64 {
+        let [_, _, force_radius, contact_parameter] = solution.parameters;
+        if self.solver.equilibrium.membrane.curvature == 0.0 {
+            force_radius
+        } else {
+            solution.nodes[solution.contact_elements][0] * libm::sin(contact_parameter)
+        }
     }
 
     /// Hoop stretch of the clamped edge: its radius over `a0`.

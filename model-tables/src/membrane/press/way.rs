@@ -188,25 +188,30 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// A guess from the rest state: the asymptotics of first contact.
     ///
     /// `H = (P0 r^2 / 2 T0) ln(K / r)`, with the edge radius for the design's length `K`; under the plate the pole's
-    /// state, outside the rest state with the plate's share taken off the vertical balance.
+    /// state, outside the rest state with the force taken off the vertical balance. On a sphere `r` is the radius of the contact and the
+    /// force that of a disc wider by `1 + Rd / R`, with `Rd` the radius of curvature of the pole.
     #[inline(never)] // its copies of a solution stay off the caller's stack
     fn first_contact(&self, indentation: f64) -> Graded<S> {
         let rest = &self.rest.solution;
         let [pole_stretch, pressure, ..] = rest.parameters;
         let tension = rest.nodes[0][1] / pole_stretch;
         let edge = self.edge();
+        let curvature = self.solver.equilibrium.membrane.curvature;
+        // Square of the radius that makes up the force over that of the contact; 1 under a plate.
+        let share = 1.0 + curvature * self.crown_radius();
         let mut radius = 0.1 * edge;
         for _ in 0..30 {
             let logarithm = libm::log(edge / radius).max(0.3);
-            radius = libm::sqrt(2.0 * tension * indentation / (pressure * logarithm)).min(0.5 * edge);
+            radius = libm::sqrt(2.0 * tension * indentation / (pressure * share * logarithm)).min(0.5 * edge);
         }
+        let force_radius = radius * libm::sqrt(share);
         let gauss = &self.solver.equilibrium.gauss;
         let contact_parameter = libm::asin((radius / pole_stretch).min(0.9));
         let mut pressed = self.rest.clone();
         pressed.depth.contact_parameter = 0.0;
         // An unpressed solution laid on a mesh with a contact zone, then corrected.
         pressed.solution.parameters[CONTACT_PARAMETER] = contact_parameter;
-        pressed.solution.parameters[CONTACT_RADIUS] = radius;
+        pressed.solution.parameters[CONTACT_RADIUS] = force_radius;
         let mut laid = self.solver.lay_contact(&pressed, contact_parameter);
         let correct = |t: f64| {
             let ([u, w], stretch) = rest.at(gauss, t);
@@ -214,9 +219,9 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             let k_rest = 0.5 * pressure * u * u * x;
             let n_squared = w * w + k_rest * k_rest;
             let k = if t > contact_parameter {
-                0.5 * pressure * (u * u * x - radius * radius / x)
+                0.5 * pressure * (u * u * x - force_radius * force_radius / x)
             } else {
-                0.0
+                curvature * u * x * libm::sqrt(n_squared)
             };
             ([u, libm::sqrt((n_squared - k * k).max(w * w))], stretch)
         };

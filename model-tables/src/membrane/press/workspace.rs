@@ -27,6 +27,7 @@ impl<L, const S: usize> Workspace<L, S> {
             aspect: 1.0,
             law: Scaled { law, factor: 1.0 },
             tension_field: TensionField::Relaxed,
+            curvature: 0.0,
         };
         Self {
             press: Press {

@@ -8,6 +8,7 @@ use model_tables::membrane::TensionField;
 use model_tables::membrane::press::Press;
 use model_tables::model::Fingertip;
 use model_tables::model::ModelError;
+use model_tables::object::Object;
 use output::Refusal;
 
 /// A pressed dome of solid finite elements.
@@ -104,6 +105,7 @@ impl Solid {
             law: AGILUS30,
             rest: RestBy::PoleStretch(stretch),
             compliance: 0.0,
+            object: Object::PLATE,
         };
         let (unstretched, stretched) = (membrane(UNSTRETCHED), membrane(STRETCHED));
         let deepest = file.max_indentation_mm.ok_or_else(|| {
