@@ -1,12 +1,12 @@
 //! Random worlds in which the assumptions of the [`zero`](crate::signal::zero) hold: whatever drifts, a reading with status ok is
 //! within the zero's bound and three 1-sigma.
 
-use std::collections::BTreeMap;
 use super::*;
 use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::Status;
 use model_tables::constants::Quantity;
 use proptest::prelude::*;
+use std::collections::BTreeMap;
 
 /// One fingertip and its days.
 struct World {
@@ -26,6 +26,7 @@ struct World {
     truth: [f64; 4],
     readings: u64,
     ok: u64,
+    /// Readings and faults, by their status.
     tally: BTreeMap<String, u64>,
 }
 
@@ -46,7 +47,7 @@ impl World {
             truth: [0.0; 4],
             readings: 0,
             ok: 0,
-            tally: BTreeMap::default(),
+            tally: BTreeMap::new(),
         };
         world.run(1.0, |_| 0.0);
         assert_eq!(world.tare(0.0), Some(Ok(())));
