@@ -15,7 +15,7 @@ pub const PLACES: [f64; 3] = [0.05, 0.25, 1.0];
 
 /// What one stage adds.
 #[derive(Clone, Debug)]
-pub struct Term {
+pub struct BudgetTerm {
     /// The stage.
     pub name: &'static str,
     /// Where the figure comes from.
@@ -34,7 +34,7 @@ pub struct Budget {
     /// The design.
     pub name: String,
     /// The stages in the order of the signal path, the model first.
-    pub terms: Vec<Term>,
+    pub terms: Vec<BudgetTerm>,
 }
 
 impl Budget {
@@ -57,14 +57,14 @@ impl Budget {
             let pascals = PressureRise(above - rise + near).pascals(bits);
             [0, 1].map(|output| 100.0 * (high[output] - low[output]) / pascals / middle[output])
         });
-        let of_pressure = |name, source, bound, pascals: f64| Term {
+        let of_pressure = |name, source, bound, pascals: f64| BudgetTerm {
             name,
             source,
             pascals: Some(pascals),
             bound,
             percent: sensitivity.map(|both| both.map(|percent| percent * pascals)),
         };
-        let of_reading = |name, source, force: f64, indentation: f64| Term {
+        let of_reading = |name, source, force: f64, indentation: f64| BudgetTerm {
             name,
             source,
             pascals: None,

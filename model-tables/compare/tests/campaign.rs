@@ -34,11 +34,11 @@ fn random_designs_are_solved_or_refused_for_a_true_reason() {
 /// All of it: `cargo campaign solids --designs 2000`.
 #[test]
 fn random_solids_give_one_answer_and_state_their_error() {
-    let mut counts = solids::Counts::default();
+    let mut counts = solids::SolidCounts::default();
     for index in 0..16 {
         let judged = solids::judge(index);
         counts.add(&judged);
         assert!(counts.holds(), "{judged:?}");
     }
-    assert!(counts.verdicts[&solids::Verdict::Agrees] >= 12, "{counts}");
+    assert!(counts.verdicts[&solids::SolidVerdict::Agrees] >= 12, "{counts}");
 }

@@ -11,6 +11,7 @@ mod print;
 mod relaxation;
 pub mod section;
 mod sections;
+mod transducer;
 
 use crate::constants::{AIR, Quantity};
 use crate::design::{Design, Membrane, RestBy};

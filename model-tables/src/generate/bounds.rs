@@ -4,9 +4,8 @@
 //! and 1 at the last. Their coefficients in Bernstein's basis enclose their values (Farin, Curves and Surfaces for CAGD, chapter
 //! 5: the convex hull property). What the integers add to the sum is bounded by [`Sum::rounding`].
 
-use super::candidate::evaluate;
 use super::owned::OwnedTables;
-use super::quantise::Coefficients;
+use super::quantise::{Coefficients, evaluate};
 use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
 

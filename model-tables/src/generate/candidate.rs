@@ -224,16 +224,6 @@ enum Failed {
     Falls,
 }
 
-/// The chip's arithmetic for one output.
-#[inline]
-pub(super) fn evaluate(sum: &Coefficients, factors: [i32; 4]) -> i32 {
-    let mut value = sum[0];
-    for (coefficient, factor) in sum[1..].iter().zip(factors) {
-        value = value.wrapping_add(((i64::from(*coefficient) * i64::from(factor)) >> 16) as i32);
-    }
-    value
-}
-
 /// The error an output is allowed.
 #[derive(Clone, Copy)]
 pub(super) struct Tolerance {

@@ -6,7 +6,7 @@
 use super::bounds::{Range, Sum};
 use super::owned::OwnedTables;
 use super::shape::Segmentation;
-use super::tally::{OutputPart, Tally};
+use super::tally::{Errors, OutputPart, Tally};
 use super::truth::{Piece, Truth};
 use crate::curve::Curve;
 use crate::design_file::Accuracy;
@@ -30,53 +30,6 @@ pub struct Certificate {
     pub indentation: Errors,
     /// Error of the comparison itself, relative: the local polynomials that stand for the curve.
     pub comparison_error: f64,
-}
-
-/// Errors of one output over every input.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Errors {
-    /// The output at the end of the press.
-    pub full_scale: f64,
-    /// Where errors of reading begin, in units of the output.
-    pub from: f64,
-    /// Largest, root-mean-square and mean error from there up, percent of reading (mean signed).
-    pub of_reading: Spread,
-    /// The same over all inputs, percent of full scale.
-    pub of_full_scale: Spread,
-    /// Largest error below `from`, percent of `from`.
-    pub below_percent_of_from: f64,
-    /// Largest error that `[accuracy]` allows, percent.
-    pub allowed_percent: f64,
-    /// Steps up by one count where the output does not change.
-    pub equal_steps: u64,
-    /// Steps up by one count where the output falls.
-    pub falling_steps: u64,
-    /// Largest step up by one count: what a count of input is worth where the output is steepest.
-    pub largest_step: i32,
-    /// Smallest and largest output.
-    pub range: [i32; 2],
-}
-
-/// Largest, root-mean-square and mean.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spread {
-    /// Largest magnitude.
-    pub max: f64,
-    /// Root mean square.
-    pub rms: f64,
-    /// Mean, signed.
-    pub mean: f64,
-}
-
-impl Errors {
-    /// Largest error as a fraction of what is allowed.
-    pub fn share_of_allowed(&self) -> f64 {
-        self.of_reading.max.max(self.below_percent_of_from) / self.allowed_percent
-    }
-
-    fn holds(&self) -> bool {
-        self.share_of_allowed() <= 1.0 && self.falling_steps == 0 && self.range[0] == 0
-    }
 }
 
 impl Certificate {

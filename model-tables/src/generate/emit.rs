@@ -3,9 +3,9 @@
 //! Rust source and the binary block give the same fields: those that [`crate::block::section`] describes.
 
 use super::TABLE_VERSION;
-use super::certify::Errors;
 use super::design::{Generated, Limit, integer};
 use super::owned::OwnedTables;
+use super::tally::Errors;
 use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::block::write::TipData;

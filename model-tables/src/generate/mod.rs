@@ -21,12 +21,13 @@ use crate::design_file::Accuracy;
 use candidate::Work;
 use truth::Truth;
 
-pub use certify::{Certificate, Errors, Spread};
+pub use certify::Certificate;
 pub use design::{
     GenerateError, Generated, Limit, Solved, State, from_design, from_design_file, from_design_or_worse,
     solve,
 };
 pub use owned::OwnedTables;
+pub use tally::{Errors, Spread};
 
 /// Version of the tables' layout and of the generator; counts up when either changes the integers.
 pub const TABLE_VERSION: u32 = 5;

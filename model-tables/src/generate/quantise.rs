@@ -103,6 +103,16 @@ impl Search<'_> {
     }
 }
 
+/// The chip's arithmetic for one output.
+#[inline]
+pub(super) fn evaluate(sum: &Coefficients, factors: [i32; 4]) -> i32 {
+    let mut value = sum[0];
+    for (coefficient, factor) in sum[1..].iter().zip(factors) {
+        value = value.wrapping_add(((i64::from(*coefficient) * i64::from(factor)) >> 16) as i32);
+    }
+    value
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -45,7 +45,7 @@ pub enum Closure {
 /// The direction in which an unpressed state goes on inflating while its edge is held: derivatives by the stretch of the
 /// pole, dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tangent {
+pub struct ClosureTangent {
     /// Of the pressure.
     pub pressure: f64,
     /// Of the volume.

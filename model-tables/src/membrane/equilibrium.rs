@@ -6,7 +6,7 @@
 //! whatever controls the press.
 
 use crate::material::Hyperelastic;
-use crate::membrane::closure::{Closure, NewtonOutcome, PressControl, RestControl, Tangent};
+use crate::membrane::closure::{Closure, ClosureTangent, NewtonOutcome, PressControl, RestControl};
 use crate::membrane::equations::{
     CONTACT_PARAMETER, CONTACT_RADIUS, HEIGHT, LocalEquations, POLE, PRESSURE, Response, VOLUME,
 };
@@ -228,7 +228,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
 
     /// How an unpressed state goes on inflating while its edge is held. `None` where it does not go on smoothly.
     /// Of `solution` only the guesses of the stretches change.
-    pub fn tangent(&mut self, solution: &mut Solution<S>) -> Option<Tangent> {
+    pub fn tangent(&mut self, solution: &mut Solution<S>) -> Option<ClosureTangent> {
         self.linearise(solution).ok()?;
         self.eliminate(solution)?;
         let [link_0, link_1] = self.chain.link();
@@ -241,7 +241,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             unit_row(STATES + CONTACT_PARAMETER, 0.0),
         ])?;
         let of = |row: &BlockRow| row.iter().zip(&change).map(|(a, x)| a * x).sum::<f64>();
-        Some(Tangent {
+        Some(ClosureTangent {
             pressure: change[STATES + PRESSURE],
             volume: of(&self.chain.borders[VOLUME]),
             height: of(&self.chain.borders[HEIGHT]),

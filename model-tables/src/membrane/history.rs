@@ -14,7 +14,7 @@ const LARGEST_WEIGHT: f64 = 40.0;
 
 /// The latest states, and one being worked on.
 #[derive(Clone, Debug)]
-pub struct History<const S: usize> {
+pub struct Predictor<const S: usize> {
     slots: [Graded<S>; SLOTS],
     /// Logarithm of the indentation of each.
     places: [f64; SLOTS],
@@ -22,13 +22,13 @@ pub struct History<const S: usize> {
     count: usize,
 }
 
-impl<const S: usize> Default for History<S> {
+impl<const S: usize> Default for Predictor<S> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<const S: usize> History<S> {
+impl<const S: usize> Predictor<S> {
     /// No states yet.
     #[must_use]
     pub const fn new() -> Self {

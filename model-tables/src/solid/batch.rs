@@ -8,7 +8,7 @@
 
 use super::element::{self, Deformation, Material};
 use super::lanes::{LANES, Lanes};
-use super::memory::{self, Held};
+use super::memory::{self, HeldStress};
 use super::mesh::{CUBIC_PRESSURES, Mesh, NODES, PLACES, POINTS};
 
 /// Bulk modulus of the steps, in shear moduli.
@@ -165,7 +165,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
         material: &Material,
         nodes: &[[f64; 2]],
         pressures: &[[f64; CUBIC_PRESSURES]],
-        held: Option<&Held>,
+        held: Option<&HeldStress>,
     ) -> Forces<N, T> {
         let positions = self.gather(nodes);
         let pressures = self.pressures(pressures);
@@ -201,7 +201,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
         material: &Material,
         nodes: &[[f64; 2]],
         pressures: &[[f64; CUBIC_PRESSURES]],
-        held: Option<&Held>,
+        held: Option<&HeldStress>,
         stiffness: &mut Stiffness<N, T>,
     ) {
         let positions = self.gather(nodes);

@@ -6,7 +6,7 @@
 //! `k/2 (J - 1)^2` besides.
 
 use super::lanes::Real;
-use super::mesh::{CUBIC_PRESSURES, FUNCTIONS};
+use super::mesh::{CUBIC_PRESSURES, FUNCTIONS, Mesh, NODES};
 use crate::material::{Hyperelastic as _, Law};
 
 /// A law as a sum of powers of the invariants.
@@ -257,4 +257,20 @@ pub fn pressure_terms(x: f64, y: f64) -> [f64; CUBIC_PRESSURES] {
 pub fn pressure_at(x: f64, y: f64, pressures: &[f64; CUBIC_PRESSURES]) -> f64 {
     let terms = pressure_terms(x, y);
     (0..CUBIC_PRESSURES).map(|i| terms[i] * pressures[i]).sum()
+}
+
+/// Radii and heights of an element's nodes, and the amplitudes of its cubic functions.
+pub fn positions(mesh: &Mesh, nodes: &[[f64; 2]], column: usize, layer: usize) -> Positions {
+    let at = mesh.element_nodes(column, layer);
+    [0, 1].map(|c| {
+        core::array::from_fn(|i| {
+            if i < NODES {
+                nodes[at[i]][c]
+            } else if mesh.is_cubic() {
+                nodes[mesh.node(2 * column + i - NODES, mesh.layers())][c]
+            } else {
+                0.0
+            }
+        })
+    })
 }

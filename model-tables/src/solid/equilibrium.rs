@@ -6,12 +6,12 @@ mod touch;
 
 use super::Failure;
 use super::assembly::Assembly;
-use super::element::{self, Material};
+use super::element::{self, Material, positions};
 use super::fluid;
 use super::friction::Sliding;
 use super::front::Fronts;
 use super::memory::Memory;
-use super::mesh::{CUBIC_PRESSURES, Elements, Mesh, NODES};
+use super::mesh::{CUBIC_PRESSURES, Elements, Mesh};
 use super::object::Surface;
 use super::state::{Balance, Fluid, State};
 use crate::material::Law;
@@ -469,20 +469,4 @@ fn edge_nodes(mesh: &Mesh, column: usize, layer: usize) -> [usize; 3] {
 /// Radii and heights of the three nodes of a column's edge in a layer of nodes.
 pub fn edge(mesh: &Mesh, nodes: &[[f64; 2]], column: usize, layer: usize) -> [[f64; 3]; 2] {
     [0, 1].map(|c| core::array::from_fn(|i| nodes[mesh.node(2 * column + i, layer)][c]))
-}
-
-/// Radii and heights of an element's nodes, and the amplitudes of its cubic functions.
-pub fn positions(mesh: &Mesh, nodes: &[[f64; 2]], column: usize, layer: usize) -> element::Positions {
-    let at = mesh.element_nodes(column, layer);
-    [0, 1].map(|c| {
-        core::array::from_fn(|i| {
-            if i < NODES {
-                nodes[at[i]][c]
-            } else if mesh.is_cubic() {
-                nodes[mesh.node(2 * column + i - NODES, mesh.layers())][c]
-            } else {
-                0.0
-            }
-        })
-    })
 }

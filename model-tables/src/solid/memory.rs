@@ -9,8 +9,7 @@
 //!
 //! `W_d` is the law's density at `I1 J^(-2/3)` and `I2 J^(-4/3)`, the powers as parabolas that touch them at `J = 1`, where the wall is.
 
-use super::element::{self, Deformation, Material, in_plane};
-use super::equilibrium::positions;
+use super::element::{self, Deformation, Material, in_plane, positions};
 use super::lanes::{LANES, Lanes, Real};
 use super::mesh::{Mesh, POINTS};
 use super::state::State;
@@ -85,7 +84,7 @@ fn deviatoric<T: Real>(material: &Material, deformation: Deformation<T>) -> Devi
 
 /// What does not change within a step of time, of elements side by side.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct HeldStress {
     /// Weight of `S_d`.
     taken: f64,
     /// The part of the memory's stress that is known.
@@ -96,7 +95,7 @@ pub struct Held {
 #[inline(always)]
 pub(super) fn add_stress(
     material: &Material,
-    held: &Held,
+    held: &HeldStress,
     point: usize,
     deformation: Deformation<Lanes>,
     nominal: &mut Deformation<Lanes>,
@@ -122,7 +121,7 @@ const IN_PLANE: [usize; 4] = [0, 1, 3, 4];
 #[inline(always)]
 pub(super) fn add_stiffness(
     material: &Material,
-    held: &Held,
+    held: &HeldStress,
     point: usize,
     deformation: Deformation<Lanes>,
     k: &mut [Deformation<Lanes>; 5],
@@ -245,7 +244,7 @@ pub(super) struct Memory {
     /// Of the step at hand.
     decays: [Decay; MAX_TERMS],
     taken: f64,
-    held: Vec<Held>,
+    held: Vec<HeldStress>,
     points: Vec<[Point; POINTS]>,
     /// At the end of the step at hand.
     next: Vec<[Point; POINTS]>,
@@ -265,7 +264,7 @@ impl Memory {
             decays: [Decay::default(); MAX_TERMS],
             taken: 0.0,
             held: vec![
-                Held {
+                HeldStress {
                     taken: 0.0,
                     stress: [[Lanes::ZERO; 4]; POINTS],
                 };
@@ -282,7 +281,7 @@ impl Memory {
     }
 
     /// What does not change in the step at hand, of a batch of elements.
-    pub(super) fn held(&self, batch: usize) -> &Held {
+    pub(super) fn held(&self, batch: usize) -> &HeldStress {
         &self.held[batch]
     }
 

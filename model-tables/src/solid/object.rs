@@ -235,7 +235,7 @@ impl Action {
 }
 
 /// A plate acts on heights alone.
-fn of_plate(plate: &plate::Action) -> Action {
+fn of_plate(plate: &plate::PlateAction) -> Action {
     let mut action = Action {
         energy: plate.energy,
         force: plate.force,

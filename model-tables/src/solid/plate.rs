@@ -30,7 +30,7 @@ pub const WEIGHTS: [f64; POINTS] = [
 
 /// The plate's action on one outer edge, with derivatives by its three heights.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Action {
+pub struct PlateAction {
     /// Energy in the contact.
     pub energy: f64,
     /// Force on the plate.
@@ -43,8 +43,8 @@ pub struct Action {
 
 /// The action of a plate at height `plate`, of a contact pressure `stiffness` times the penetration, on an edge whose nodes are
 /// at heights `z` and were at `undeformed` radii and heights.
-pub fn action(stiffness: f64, undeformed: &[[f64; 3]; 2], z: &[f64; 3], plate: f64) -> Action {
-    let mut action = Action::default();
+pub fn action(stiffness: f64, undeformed: &[[f64; 3]; 2], z: &[f64; 3], plate: f64) -> PlateAction {
+    let mut action = PlateAction::default();
     // The penetration is `c + b x + a x^2`.
     let (c, b) = (z[1] - plate, 0.5 * (z[2] - z[0]));
     let a = 0.5 * (z[0] + z[2]) - z[1];

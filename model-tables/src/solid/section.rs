@@ -1,7 +1,8 @@
 //! What is read off a state along the meridian: contact, touch of the base, stretches and section forces.
 
 use super::element;
-use super::equilibrium::{Wall, edge, positions};
+use super::element::positions;
+use super::equilibrium::{Wall, edge};
 use super::mesh::{CREASE, FUNCTIONS, PLACES, WEIGHTS, function, shape, slope};
 use super::state::State;
 use crate::limit::EndsBy;

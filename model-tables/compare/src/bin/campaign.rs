@@ -181,11 +181,11 @@ fn judge_walls(arguments: &DrawArguments) -> bool {
 
 /// Whether no solid's answer depended on the way or was off by more than stated; a line for each that was.
 fn judge_solids(arguments: &DrawArguments) -> bool {
-    let mut counts = solids::Counts::default();
+    let mut counts = solids::SolidCounts::default();
     for done in 0..arguments.designs {
         let judged = solids::judge(arguments.seed + done);
         counts.add(&judged);
-        let mut one = solids::Counts::default();
+        let mut one = solids::SolidCounts::default();
         one.add(&judged);
         if !one.holds() {
             println!("{judged:?}");

@@ -42,7 +42,7 @@ const SMALL: f64 = 2e-3;
 
 /// What became of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
+pub enum SolidVerdict {
     /// Every way gives the same bits, and the stated error covers that of the judge.
     Agrees,
     /// The same, and a finer mesh has no such state: the error is stated as not known.
@@ -59,13 +59,13 @@ pub enum Verdict {
 
 /// A judged solid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
+pub struct JudgedSolid {
     /// Its number.
     pub index: u64,
     /// The design.
     pub design: Design,
     /// What became of it.
-    pub verdict: Verdict,
+    pub verdict: SolidVerdict,
     /// Error that the second mesh states, relative.
     pub stated: f64,
     /// Error that the third mesh finds.
@@ -120,12 +120,12 @@ fn list(press: &mut Press, depths: &[f64]) -> Result<Vec<Contact>, SolidError> {
 }
 
 /// Solves the solid of a number in every way.
-pub fn judge(index: u64) -> Judged {
+pub fn judge(index: u64) -> JudgedSolid {
     let design = draw(index);
-    let mut judged = Judged {
+    let mut judged = JudgedSolid {
         index,
         design,
-        verdict: Verdict::Lost,
+        verdict: SolidVerdict::Lost,
         stated: f64::NAN,
         found: f64::NAN,
         ends_by: "",
@@ -133,7 +133,7 @@ pub fn judge(index: u64) -> Judged {
     let rest = match Press::new(&design, MESHES[0]) {
         Ok(rest) => rest,
         Err(error) => {
-            judged.verdict = Verdict::NoRest(match error {
+            judged.verdict = SolidVerdict::NoRest(match error {
                 ModelError::Solid(SolidError::NoStiffness { .. }) => "no-stiffness",
                 _ => "rest-unsolved",
             });
@@ -163,7 +163,7 @@ pub fn judge(index: u64) -> Judged {
         .iter()
         .any(|way| way.as_ref() != Ok(&in_list))
     {
-        judged.verdict = Verdict::DependsOnTheWay;
+        judged.verdict = SolidVerdict::DependsOnTheWay;
         return judged;
     }
     let wanted = Wanted {
@@ -180,14 +180,14 @@ pub fn judge(index: u64) -> Judged {
         (Some(stated), Some(found)) => {
             (judged.stated, judged.found) = (stated, found);
             if found <= SHORT * stated.max(SMALL) {
-                Verdict::Agrees
+                SolidVerdict::Agrees
             } else {
-                Verdict::Silent
+                SolidVerdict::Silent
             }
         }
         (stated, _) => {
             judged.stated = stated.unwrap_or(f64::NAN);
-            Verdict::NotKnown
+            SolidVerdict::NotKnown
         }
     };
     judged
@@ -195,29 +195,33 @@ pub fn judge(index: u64) -> Judged {
 
 /// How many solids came to what, and how their presses end.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct SolidCounts {
     /// By verdict.
-    pub verdicts: BTreeMap<Verdict, u64>,
+    pub verdicts: BTreeMap<SolidVerdict, u64>,
     /// By the word of the end.
     pub ends: BTreeMap<&'static str, u64>,
 }
 
-impl Counts {
+impl SolidCounts {
     /// Counts one more.
-    pub fn add(&mut self, judged: &Judged) {
+    pub fn add(&mut self, judged: &JudgedSolid) {
         *self.verdicts.entry(judged.verdict).or_default() += 1;
         *self.ends.entry(judged.ends_by).or_default() += 1;
     }
 
     /// Whether no answer depended on the way, none was off by more than stated, and none was lost.
     pub fn holds(&self) -> bool {
-        [Verdict::DependsOnTheWay, Verdict::Silent, Verdict::Lost]
-            .iter()
-            .all(|verdict| !self.verdicts.contains_key(verdict))
+        [
+            SolidVerdict::DependsOnTheWay,
+            SolidVerdict::Silent,
+            SolidVerdict::Lost,
+        ]
+        .iter()
+        .all(|verdict| !self.verdicts.contains_key(verdict))
     }
 }
 
-impl fmt::Display for Counts {
+impl fmt::Display for SolidCounts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (verdict, count) in &self.verdicts {
             writeln!(f, "{count:6} {verdict:?}")?;

@@ -17,7 +17,7 @@ use crate::material::{Hyperelastic, Law, Scaled};
 use crate::membrane::adapt::{Adaptive, Graded, Resolution};
 use crate::membrane::closure::{Closure, PressControl};
 use crate::membrane::equations::{CONTACT_PARAMETER, CONTACT_RADIUS, PRESSURE, TensionField};
-use crate::membrane::history::History;
+use crate::membrane::history::Predictor;
 use crate::membrane::press::workspace::Workspace;
 use crate::membrane::rest::Branch;
 use crate::membrane::solution::Solution;
@@ -73,7 +73,7 @@ pub struct Press<L = Law, const S: usize = STAGES> {
     rest: Graded<S>,
     rest_shape: Shape,
     branch: Branch,
-    history: History<S>,
+    history: Predictor<S>,
     limit: Option<Result<Limit, MembraneError>>,
 }
 

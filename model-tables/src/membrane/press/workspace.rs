@@ -8,7 +8,7 @@ use crate::material::{Hyperelastic, Law, Scaled};
 use crate::membrane::adapt::Resolution;
 use crate::membrane::adapt::{Adaptive, Graded};
 use crate::membrane::equations::{LocalEquations, TensionField};
-use crate::membrane::history::History;
+use crate::membrane::history::Predictor;
 use crate::membrane::inflation::End;
 use crate::membrane::press::{MembraneError, Press, STAGES};
 use crate::membrane::rest::{Branch, RestFailure, RestQuantity};
@@ -37,7 +37,7 @@ impl<L, const S: usize> Workspace<L, S> {
                 rest: Graded::BLANK,
                 rest_shape: Shape::BLANK,
                 branch: Branch::Only,
-                history: History::new(),
+                history: Predictor::new(),
                 limit: None,
             },
         }
