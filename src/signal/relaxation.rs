@@ -196,3 +196,6 @@ fn scaled(force: i32, part: i64, whole: i64) -> i64 {
     let quotient = i128::from(force) * i128::from(part) / i128::from(whole.max(1));
     quotient.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,219 @@
+use super::*;
+use crate::signal::test_design::{Linear, RISE_END};
+use model_tables::material::relaxation::{AGILUS30_RELAXATION, MAX_TERMS, Relaxation};
+use proptest::prelude::*;
+
+const TERMS: usize = 7;
+
+/// A factor >= 0 with all its 32 bits.
+fn factor(value: f64) -> Factor {
+    let shift = 31 - value.log2().floor() as i32;
+    Factor {
+        mantissa: (value * 2_f64.powi(shift)).round().min(f64::from(u32::MAX)) as u32,
+        shift: u32::try_from(shift).expect("below 2^32"),
+    }
+}
+
+/// Agilus30 over a step in seconds.
+fn agilus30(seconds: f64) -> SeriesStep<TERMS> {
+    let mut terms = [TermStep::default(); TERMS];
+    let mut sum = 1.0;
+    for (step, term) in terms.iter_mut().zip(AGILUS30_RELAXATION.terms()) {
+        let decay = term.over(seconds);
+        *step = TermStep {
+            lost: factor(-(-seconds / term.time).exp_m1()),
+            taken: factor(decay.taken),
+        };
+        sum += decay.taken;
+    }
+    SeriesStep {
+        terms,
+        inverse: factor(1.0 / sum),
+    }
+}
+
+/// The convolution of a series with an elastic pressure, in `f64`.
+struct Convolution {
+    series: Relaxation,
+    elastic: f64,
+    held: [f64; MAX_TERMS],
+}
+
+impl Convolution {
+    /// The pressure after an even change to an elastic pressure.
+    fn to(&mut self, elastic: f64, seconds: f64) -> f64 {
+        let change = elastic - self.elastic;
+        self.elastic = elastic;
+        let mut pressure = elastic;
+        for (held, term) in self.held.iter_mut().zip(self.series.terms()) {
+            let decay = term.over(seconds);
+            *held = decay.left * *held + decay.taken * change;
+            pressure += *held;
+        }
+        pressure
+    }
+}
+
+/// Presses at random, 1 kHz: the largest error of the elastic pressure, pascals.
+fn error_of_the_inversion(steps: u32) -> f64 {
+    const PERIOD: f64 = 1e-3;
+    let mut truth = Convolution {
+        series: AGILUS30_RELAXATION,
+        elastic: 0.0,
+        held: [0.0; MAX_TERMS],
+    };
+    let step = agilus30(PERIOD);
+    let mut wall = Relaxing::<TERMS>::default();
+    let mut seed = 1_u64;
+    let mut random = || {
+        // Knuth, MMIX.
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 32) as f64 / 2_f64.powi(32)
+    };
+    let (mut left, mut slope) = (0_u32, 0.0);
+    let mut largest = 0.0_f64;
+    for _ in 0..steps {
+        if left == 0 {
+            // 0.3 to 10 s to somewhere up to 30 kPa, or a hold.
+            left = 300 + (9_700.0 * random()) as u32;
+            let target = if random() < 0.3 {
+                truth.elastic
+            } else {
+                30e3 * random()
+            };
+            slope = (target - truth.elastic) / f64::from(left);
+        }
+        left -= 1;
+        let pressure = truth.to(truth.elastic + slope, PERIOD);
+        let rise = PressureRise::from_pascals(pressure, Linear::PRESSURE_FRACTION_BITS);
+        assert!(rise.0.abs() < i32::MAX, "{pressure} Pa has no count");
+        wall.step(&Linear::NEW, &step, rise);
+        largest = largest.max((wall.elastic as f64 / 2_f64.powi(32) - truth.elastic).abs());
+    }
+    largest
+}
+
+/// Pressures come in counts of 0.004 Pa; up to 30 kPa of elastic pressure ten minutes long.
+#[test]
+fn the_elastic_pressure_of_a_convolution_comes_back() {
+    let error = error_of_the_inversion(600_000);
+    assert!(error < 0.01, "{error} Pa");
+}
+
+/// `cargo test --release -p fingertip --lib relaxation -- --ignored`
+#[test]
+#[ignore = "28.8 million steps"]
+fn the_elastic_pressure_does_not_drift_in_eight_hours() {
+    let error = error_of_the_inversion(8 * 3_600_000);
+    assert!(error < 0.01, "{error} Pa");
+}
+
+/// `1 + sum c`: what a change over a step meets.
+fn stiffness(seconds: f64) -> f64 {
+    AGILUS30_RELAXATION
+        .terms()
+        .iter()
+        .fold(1.0, |sum, term| sum + term.over(seconds).taken)
+}
+
+/// By hand: a first step meets `1 + sum c`, and a pressure held for thirty times the slowest term is the relaxed wall's.
+#[test]
+fn a_pressure_that_stays_becomes_the_relaxed_one() {
+    let (seconds, rise) = (0.1, PressureRise(10_000 << 8));
+    let step = agilus30(seconds);
+    let mut wall = Relaxing::<TERMS>::default();
+    let mut before = wall.step(&Linear::NEW, &step, rise).elastic;
+    assert!((before.pascals(8) - 10_000.0 / stiffness(seconds)).abs() < 0.01);
+    for _ in 0..300_000 {
+        let elastic = wall.step(&Linear::NEW, &step, rise).elastic;
+        assert!(elastic >= before && elastic <= rise);
+        before = elastic;
+    }
+    assert!((before.pascals(8) - 10_000.0).abs() < 0.01, "{before:?}");
+}
+
+/// Both forms of the force are the area times the pressure where the area does not change, here 1 uN a count. The tables take whole counts of the
+/// elastic pressure, which a fast change stiffens.
+#[test]
+fn a_constant_area_bears_the_pressure() {
+    let step = agilus30(0.01);
+    let count = stiffness(0.01).ceil() as i32;
+    let mut wall = Relaxing::<TERMS>::default();
+    // To its half, held, and back to a tenth.
+    for i in 0..3_000 {
+        let part = [i, 1000, 1000 - 9 * (i - 2000) / 10][i as usize / 1000];
+        let rise = PressureRise(RISE_END / 2000 * part);
+        let reading = wall.step(&Linear::NEW, &step, rise);
+        let error = reading.force.0 - rise.0;
+        assert!(
+            error.abs() <= count + (rise.0 >> 12),
+            "{i}: {reading:?} at {rise:?}"
+        );
+        assert_eq!(reading.warnings, Warnings::NONE);
+    }
+}
+
+/// The pressure is below that of rest while the wall comes back.
+#[test]
+fn a_wall_that_was_left_is_recovering_and_bears_nothing() {
+    let step = agilus30(0.01);
+    let mut wall = Relaxing::<TERMS>::default();
+    for _ in 0..100 {
+        wall.step(&Linear::NEW, &step, PressureRise(10_000 << 8));
+    }
+    for _ in 0..100 {
+        let reading = wall.step(&Linear::NEW, &step, PressureRise(-256));
+        assert_eq!(reading.force, Micronewtons(0));
+        assert_eq!(reading.warnings, Warnings::RECOVERING);
+        assert!(reading.elastic > PressureRise(0) && reading.indentation > Nanometres(0));
+    }
+}
+
+#[test]
+fn an_untouched_wall_stays_at_zero() {
+    let step = agilus30(1e-3);
+    let mut wall = Relaxing::<TERMS>::default();
+    for _ in 0..10_000 {
+        let reading = wall.step(&Linear::NEW, &step, PressureRise(0));
+        assert_eq!(reading, RelaxedReading::default());
+    }
+    assert_eq!(wall, Relaxing::default());
+}
+
+fn any_rise() -> impl Strategy<Value = i32> {
+    prop_oneof![Just(i32::MIN), Just(i32::MAX), Just(0), any::<i32>()]
+}
+
+fn any_factor() -> impl Strategy<Value = Factor> {
+    (any::<u32>(), 0_u32..=95).prop_map(|(mantissa, shift)| Factor { mantissa, shift })
+}
+
+proptest! {
+    /// No pressure, and no series, has a force below zero or a panic.
+    #[test]
+    fn extremes_saturate(
+        rises in proptest::collection::vec(any_rise(), 1..60),
+        factors in proptest::array::uniform9(any_factor()),
+    ) {
+        let [inverse, lost @ .., a, b, c, d] = factors;
+        let mut terms = [TermStep::default(); 4];
+        for (term, (lost, taken)) in terms.iter_mut().zip(lost.into_iter().zip([a, b, c, d])) {
+            *term = TermStep { lost, taken };
+        }
+        let any_series = SeriesStep { terms, inverse };
+        let mut any_wall = Relaxing::<4>::default();
+        let mut wall = Relaxing::<TERMS>::default();
+        let step = agilus30(1e-3);
+        for rise in rises {
+            let reading = any_wall.step(&Linear::NEW, &any_series, PressureRise(rise));
+            prop_assert!(reading.force >= Micronewtons(0));
+            let reading = wall.step(&Linear::NEW, &step, PressureRise(rise));
+            prop_assert!(reading.force >= Micronewtons(0));
+            // A rise of all bits is 8.4 MPa, which the wall's memory holds.
+            let largest = (1_i64 << 55) + (1 << 40);
+            prop_assert!(wall.elastic.abs() <= largest, "{}", wall.elastic);
+        }
+    }
+}
