@@ -44,7 +44,7 @@ const USUAL: Effort = Effort {
 };
 /// Sums that a search rounds before it looks at no further size: some seconds. Designs that get tables take some dozens; those that
 /// are hardly stretched, or have a transducer of 0.01 Pa, up to 2400.
-const MOST_ROUNDED: u32 = 4_000;
+const MOST_ROUNDED: u32 = 40_000;
 /// Part of a unit that rounding can add to an error.
 const ROUNDING: f64 = 0.6;
 

@@ -306,7 +306,9 @@ pub(crate) fn assert_names_exist(line: &str, arguments: &[String]) {
     }
     if subcommand != "run" {
         assert!(
-            tests.iter().all(|option| option == "--nocapture"),
+            tests
+                .iter()
+                .all(|option| ["--nocapture", "--include-ignored"].contains(&option.as_str())),
             "{line}: {tests:?}"
         );
     }

@@ -113,7 +113,8 @@ impl History {
         let mut indentation = if self.force > 0.0 {
             self.indentation
         } else {
-            self.height - self.top(&self.trial)
+            // Nothing presses at first touch, and nothing is factored.
+            self.height - self.top(&self.trial) + 0.01 * largest
         };
         for _ in 0..FORCE_ITERATIONS {
             let balance = self.settle(indentation)?;
