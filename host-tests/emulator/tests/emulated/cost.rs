@@ -3,8 +3,9 @@
 use crate::{firmware, press_hold_release, small_board};
 use host_tests::assert_readme_figure;
 
-/// Most instructions from the averaged counts to both results.
-const INSTRUCTIONS_PER_REPORT: u64 = 500;
+/// Most instructions from the averaged counts to both results. Was 500 while the zero was a value without a bound: the bound is in
+/// every sigma now.
+const INSTRUCTIONS_PER_REPORT: u64 = 520;
 /// Most instructions in a millisecond, everything counted: 2.6 % of the core's 128 000 cycles if each took one.
 pub(crate) const INSTRUCTIONS_PER_MILLISECOND: f64 = 3_360.0;
 /// From the instant of a report to when it is ready, seconds: its block, and a millisecond.
