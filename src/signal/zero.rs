@@ -1,7 +1,7 @@
 //! The zero of a fingertip: a value, and a bound of its error. Touch, tare, undo, drift, leak and every 1-sigma come from it.
 //!
-//! The [`estimator`] sees the pressure in quiet windows. It keeps the lowest and the highest pressure that the true zero can
-//! have ([`interval`]). Both move apart with the drift that the transducer may have ([`limits`]), and together only with
+//! The `estimator` sees the pressure in quiet windows. It keeps the lowest and the highest pressure that the true zero can
+//! have (`interval`). Both move apart with the drift that the transducer may have (`limits`), and together only with
 //! evidence. A reading is ok while the bound is at most six noise floors.
 //!
 //! # What it assumes

@@ -1,7 +1,7 @@
 //! A press in time: a wall that relaxes, under a plate that comes, stays and leaves.
 //!
 //! The plate's travel, or its force, is given at instants and changes evenly between them. Each interval is cut into steps short enough that
-//! every point of the wall moves nearly evenly in each, as [`memory`](super::memory) takes it to; nothing else is approximated in time.
+//! every point of the wall moves nearly evenly in each, as `memory` takes it to; nothing else is approximated in time.
 //! A plate does not pull: where the wall recovers more slowly than the plate leaves, contact is lost, and the wall goes on alone around its fluid
 //! until the plate is back.
 

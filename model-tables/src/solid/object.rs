@@ -1,4 +1,4 @@
-//! What touches the outer surface: a rigid body of revolution on the axis. [`friction`](super::friction) is apart.
+//! What touches the outer surface: a rigid body of revolution on the axis. `friction` is apart.
 //!
 //! The penalty of the [`plate`] with the penetration along the object's normal in place of the height. Along an edge of an element the
 //! penetration is taken as the parabola through that of its three nodes: an edge is short against every radius of curvature but a punch's rim, where

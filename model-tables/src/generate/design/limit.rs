@@ -9,7 +9,7 @@ pub enum Limit {
     Accuracy,
     /// Half of what the transducer tells apart, which is coarser.
     Transducer,
-    /// What integers reach, which is coarser: [`from_design_or_worse`].
+    /// What integers reach, which is coarser: `from_design_or_worse`.
     Integers,
 }
 
