@@ -1,47 +1,14 @@
 //! The `designer` binary from outside: columns, values, errors, exit status, files.
 
+mod program;
+
+use program::{designer, header_and_rows, refusal};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 fn shipped(name: &str) -> String {
     format!("{}/../designs/{name}.toml", env!("CARGO_MANIFEST_DIR"))
-}
-
-fn designer(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_designer"))
-        .args(arguments)
-        .output()
-        .expect("the binary runs")
-}
-
-/// Header and rows of a run that must succeed.
-fn csv(arguments: &[&str]) -> (String, Vec<Vec<String>>) {
-    let output = designer(arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{stderr}");
-    let mut reader = csv::Reader::from_reader(output.stdout.as_slice());
-    let header = reader
-        .headers()
-        .expect("a header")
-        .iter()
-        .collect::<Vec<_>>()
-        .join(",");
-    let rows = reader
-        .records()
-        .map(|row| row.expect("a row").iter().map(str::to_owned).collect())
-        .collect();
-    (header, rows)
-}
-
-/// The one line of a run that must fail, with nothing on standard output.
-fn refusal(arguments: &[&str]) -> String {
-    let output = designer(arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-    let text = String::from_utf8(output.stderr).expect("text");
-    assert_eq!(text.lines().count(), 1, "{text}");
-    text
 }
 
 fn near(text: &str, truth: f64, tolerance: f64) {
@@ -59,7 +26,7 @@ fn scratch(name: &str) -> PathBuf {
 
 #[test]
 fn rest_gives_the_reference_state_and_its_limit() {
-    let (header, rows) = csv(&["rest", &shipped("paper-prestretched")]);
+    let (header, rows) = header_and_rows(&["rest", &shipped("paper-prestretched")]);
     assert_eq!(
         header,
         "rest_pressure_kpa,pole_stretch,equator_radius_mm,height_mm,volume_mm3,max_indentation_mm,ends_by"
@@ -82,7 +49,8 @@ fn rest_gives_the_reference_state_and_its_limit() {
 #[test]
 fn solve_gives_reference_states_in_the_order_asked() {
     let design = shipped("paper-prestretched");
-    let (header, rows) = csv(&["solve", &design, "--indentation-mm", "2.083053536,0.208305354,0"]);
+    let (header, rows) =
+        header_and_rows(&["solve", &design, "--indentation-mm", "2.083053536,0.208305354,0"]);
     assert_eq!(
         header,
         "indentation_mm,pressure_kpa,pressure_rise_kpa,force_n,contact_radius_mm,contact_area_mm2,pole_stretch,\
@@ -110,7 +78,7 @@ fn solve_gives_reference_states_in_the_order_asked() {
 #[test]
 fn profile_is_the_state_that_solve_gives() {
     let design = shipped("paper-prestretched");
-    let (header, rows) = csv(&[
+    let (header, rows) = header_and_rows(&[
         "profile",
         &design,
         "--indentation-mm",
@@ -144,7 +112,7 @@ fn profile_is_the_state_that_solve_gives() {
     assert!(rows[edge + 1..].iter().all(|row| row[8] == "free"));
     assert!(rows.iter().all(|row| row[9] == "no"));
 
-    let (_, rest) = csv(&["profile", &design, "--indentation-mm", "0"]);
+    let (_, rest) = header_and_rows(&["profile", &design, "--indentation-mm", "0"]);
     assert_eq!(rest.len(), 101);
     assert!(rest.iter().all(|row| row[8] == "free"));
     near(&rest[0][2], 8.081_810_613_014, 1e-9);
@@ -153,7 +121,7 @@ fn profile_is_the_state_that_solve_gives() {
 
 #[test]
 fn actuator_has_the_values_worked_by_hand() {
-    let (header, rows) = csv(&[
+    let (header, rows) = header_and_rows(&[
         "actuator",
         &shipped("index-fingertip"),
         "--pressure-kpa",
@@ -176,7 +144,7 @@ fn actuator_takes_its_diameter_from_the_design() {
     let file = folder.join("wide.toml");
     let text = fs::read_to_string(shipped("index-fingertip")).expect("the design");
     fs::write(&file, text + "\n[actuator]\ndiameter_mm = 18.0\n").expect("written");
-    let (_, rows) = csv(&[
+    let (_, rows) = header_and_rows(&[
         "actuator",
         file.to_str().expect("utf-8"),
         "--pressure-kpa",
@@ -189,7 +157,7 @@ fn actuator_takes_its_diameter_from_the_design() {
 #[test]
 fn published_writes_the_page_of_this_crate() {
     let out = scratch("published").join("PUBLISHED.md");
-    let (header, rows) = csv(&["published", "--out", out.to_str().expect("utf-8")]);
+    let (header, rows) = header_and_rows(&["published", "--out", out.to_str().expect("utf-8")]);
     assert_eq!(header, "quantity,published,here,ratio");
     // The independent reference again.
     assert_eq!(rows[0][0], "rest_pressure_kpa");
@@ -226,7 +194,7 @@ fn solve_knows_both_tension_fields() {
             "--tension-field",
             field,
         ];
-        csv(&arguments).1[0].clone()
+        header_and_rows(&arguments).1[0].clone()
     };
     // Rest pressures of the two differ: 17919 Pa relaxed, 17659 Pa plain (9 x 4.05 mm at 1.05).
     let (relaxed, plain) = (at("relaxed"), at("plain"));
@@ -238,7 +206,7 @@ fn solve_knows_both_tension_fields() {
 
 #[test]
 fn numbers_have_twelve_significant_digits() {
-    let (_, rows) = csv(&["rest", &shipped("skin-analogue")]);
+    let (_, rows) = header_and_rows(&["rest", &shipped("skin-analogue")]);
     for text in &rows[0][..6] {
         let digits = text
             .trim_start_matches(['0', '.'])
@@ -252,14 +220,14 @@ fn numbers_have_twelve_significant_digits() {
 #[test]
 fn estimate_agrees_with_the_model_and_flags_both_ends() {
     let design = shipped("index-fingertip");
-    let (_, solved) = csv(&["solve", &design, "--indentation-mm", "0.3,1.0,2.4"]);
+    let (_, solved) = header_and_rows(&["solve", &design, "--indentation-mm", "0.3,1.0,2.4"]);
     let rises: Vec<f64> = solved
         .iter()
         .map(|row| 1e3 * row[2].parse::<f64>().expect("a number"))
         .collect();
     // The transducer tells 10 Pa apart: eight times that below zero is noise still.
     let list = format!("{},{},{},1e6,-5,-79,-81,-1e12", rises[0], rises[1], rises[2]);
-    let (header, rows) = csv(&["estimate", &design, "--pressure-rise-pa", &list]);
+    let (header, rows) = header_and_rows(&["estimate", &design, "--pressure-rise-pa", &list]);
     assert_eq!(header, "pressure_rise_pa,force_n,indentation_mm,status");
     for (row, solved) in rows.iter().zip(&solved) {
         near(&row[1], solved[3].parse().expect("a number"), 1.2e-3);
@@ -279,7 +247,7 @@ fn table_writes_four_files_and_the_same_ones_again() {
     let folder = scratch("tables");
     let run = |name: &str| {
         let out = folder.join(name);
-        let (_, rows) = csv(&[
+        let (_, rows) = header_and_rows(&[
             "table",
             &shipped("skin-analogue"),
             "--out",
@@ -366,9 +334,14 @@ fn an_accuracy_that_is_not_reached_is_refused_unless_worse_is_allowed() {
         }
     }
     assert!(!fs::exists(out).expect("readable"));
-    assert_eq!(csv(&[&table[..], &["--allow-worse"][..]].concat()).1.len(), 4);
     assert_eq!(
-        csv(&[&estimate[..], &["--allow-worse"][..]].concat()).1[0][3],
+        header_and_rows(&[&table[..], &["--allow-worse"][..]].concat())
+            .1
+            .len(),
+        4
+    );
+    assert_eq!(
+        header_and_rows(&[&estimate[..], &["--allow-worse"][..]].concat()).1[0][3],
         "ok"
     );
 }
@@ -394,7 +367,7 @@ fn an_accuracy_that_integers_do_not_reach_is_refused_unless_worse_is_allowed() {
     let line = refusal(&table);
     assert!(line.contains("allow"), "{line}");
     assert!(!fs::exists(out).expect("readable"));
-    csv(&[&table[..], &["--allow-worse"][..]].concat());
+    header_and_rows(&[&table[..], &["--allow-worse"][..]].concat());
     let certificate = fs::read_to_string(Path::new(out).join("certificate.toml")).expect("written");
     assert!(
         certificate.contains("asked_percent_of_reading = 0.001"),
@@ -532,7 +505,7 @@ fn json_and_tables_are_printed_on_request() {
 fn chart_writes_what_was_measured() {
     let folder = scratch("chart");
     let out = folder.to_str().expect("text");
-    let (_, rows) = csv(&["chart", "skin", "--out", out]);
+    let (_, rows) = header_and_rows(&["chart", "skin", "--out", out]);
     assert_eq!(rows.len(), 5);
     for name in ["speed-accuracy", "ladder"] {
         let svg = fs::read_to_string(folder.join(format!("{name}.svg"))).expect("the chart");
@@ -613,7 +586,7 @@ fn an_unstable_law_is_warned_of_on_one_line() {
 fn atlas_maps_every_method_and_ours_is_never_silently_wrong() {
     let folder = scratch("atlas");
     let out = folder.to_str().expect("text");
-    let (header, rows) = csv(&["atlas", "--stride", "8", "--out", out]);
+    let (header, rows) = header_and_rows(&["atlas", "--stride", "8", "--out", out]);
     assert_eq!(header, "map,method,verdict,cells");
     for map in ["aspect", "indentation", "mooney-rivlin", "yeoh"] {
         for method in ["collocation", "shooting", "bisection"] {

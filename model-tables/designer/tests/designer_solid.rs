@@ -1,8 +1,10 @@
 //! The `designer` binary on designs solved as a solid.
 
+mod program;
+
+use program::{designer, header_and_rows, refusal};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 /// The printed fingertip, with its `[model]` and whatever else is given.
 const PRINTED: &str = "name = \"printed\"\n\
@@ -16,36 +18,6 @@ fn design(name: &str, more: &str) -> String {
     path.display().to_string()
 }
 
-fn designer(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_designer"))
-        .args(arguments)
-        .output()
-        .expect("the binary runs")
-}
-
-fn rows(arguments: &[&str]) -> Vec<Vec<String>> {
-    let output = designer(arguments);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let text = String::from_utf8(output.stdout).expect("text");
-    text.lines()
-        .skip(1)
-        .map(|line| line.split(',').map(str::to_owned).collect())
-        .collect()
-}
-
-fn refusal(arguments: &[&str]) -> String {
-    let output = designer(arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-    let text = String::from_utf8(output.stderr).expect("text");
-    assert_eq!(text.lines().count(), 1, "{text}");
-    text
-}
-
 fn number(text: &str) -> f64 {
     text.parse().expect("a number")
 }
@@ -54,7 +26,7 @@ fn number(text: &str) -> f64 {
 #[test]
 fn solve_gives_states_in_the_order_asked_and_leaves_empty_what_has_no_meaning() {
     let file = design("solve", "");
-    let rows = rows(&["solve", &file, "--indentation-mm", "2.0,0.5,0"]);
+    let rows = header_and_rows(&["solve", &file, "--indentation-mm", "2.0,0.5,0"]).1;
     for (row, [pressure, force, radius]) in rows.iter().zip([[41.525, 5.754, 6.02], [1.790, 0.1800, 1.77]]) {
         assert!((number(&row[1]) / pressure - 1.0).abs() < 0.01, "{row:?}");
         assert!((number(&row[3]) / force - 1.0).abs() < 0.01, "{row:?}");
@@ -72,12 +44,12 @@ fn solve_gives_states_in_the_order_asked_and_leaves_empty_what_has_no_meaning() 
 #[test]
 fn solve_and_profile_press_onto_the_object_of_the_design() {
     let file = design("object-ball", "[object]\nradius_mm = 8.0\n");
-    let solved = rows(&["solve", &file, "--indentation-mm", "1.0,2.0"]);
+    let solved = header_and_rows(&["solve", &file, "--indentation-mm", "1.0,2.0"]).1;
     for (row, [pressure, force]) in solved.iter().zip([[3.92468, 0.311_663], [15.9625, 1.24354]]) {
         assert!((number(&row[1]) / pressure - 1.0).abs() < 0.005, "{row:?}");
         assert!((number(&row[3]) / force - 1.0).abs() < 0.005, "{row:?}");
     }
-    let meridian = rows(&["profile", &file, "--indentation-mm", "2.0", "--points", "41"]);
+    let meridian = header_and_rows(&["profile", &file, "--indentation-mm", "2.0", "--points", "41"]).1;
     // The middle of the wall lies half a wall further from the ball's centre.
     for point in meridian
         .iter()
@@ -108,12 +80,12 @@ fn solve_and_profile_press_onto_the_object_of_the_design() {
 
 #[test]
 fn rest_gives_the_inflated_state_and_the_limit() {
-    let unstretched = &rows(&["rest", &design("rest", "")])[0];
+    let unstretched = &header_and_rows(&["rest", &design("rest", "")]).1[0];
     assert!(number(&unstretched[0]).abs() < 1e-300);
     assert!((number(&unstretched[3]) - 7.0).abs() < 1e-9);
     assert!((3.2..3.8).contains(&number(&unstretched[5])), "{unstretched:?}");
     assert_eq!(unstretched[6], "bulge-touches-base");
-    let inflated = &rows(&["rest", &design("inflated", "[rest]\npressure_kpa = 30\n")])[0];
+    let inflated = &header_and_rows(&["rest", &design("inflated", "[rest]\npressure_kpa = 30\n")]).1[0];
     assert!((number(&inflated[0]) - 30.0).abs() < 1e-9);
     assert!(
         number(&inflated[3]) > 7.5 && number(&inflated[1]) > 1.05,
@@ -124,7 +96,7 @@ fn rest_gives_the_inflated_state_and_the_limit() {
 #[test]
 fn profile_runs_along_the_middle_of_the_wall() {
     let file = design("profile", "through = 1\n");
-    let rows = rows(&["profile", &file, "--indentation-mm", "1", "--points", "51"]);
+    let rows = header_and_rows(&["profile", &file, "--indentation-mm", "1", "--points", "51"]).1;
     assert_eq!(rows.len(), 51);
     assert!(number(&rows[0][1]).abs() < 1e-12 && number(&rows[50][2]).abs() < 1e-12);
     assert!((number(&rows[50][1]) - 8.5).abs() < 1e-9);
@@ -286,7 +258,7 @@ fn ladder_writes_every_number_the_map_and_the_page() {
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ladder");
     let _ = fs::remove_dir_all(&out);
     let folder = out.to_str().expect("text");
-    let rows = rows(&["ladder", "--designs", "1", "--out", folder]);
+    let rows = header_and_rows(&["ladder", "--designs", "1", "--out", folder]).1;
     // Five accuracies, five rungs, one wall.
     assert_eq!(rows.len(), 25);
     let walls: u32 = rows

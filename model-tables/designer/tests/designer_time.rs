@@ -1,10 +1,12 @@
 //! The `designer` binary on walls that relax.
 
+mod program;
+
+use program::{header_and_rows, refusal};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 /// The printed fingertip; `{}` is its series.
 const PRINTED: &str = "name = \"printed\"\n\
@@ -25,37 +27,6 @@ fn write(name: &str, text: &str) -> String {
 
 fn design(name: &str, series: &str, more: &str) -> String {
     write(&format!("{name}.toml"), &(PRINTED.replace("{}", series) + more))
-}
-
-fn designer(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_designer"))
-        .args(arguments)
-        .output()
-        .expect("the binary runs")
-}
-
-/// The header and the rows.
-fn rows(arguments: &[&str]) -> (String, Vec<Vec<String>>) {
-    let output = designer(arguments);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let text = String::from_utf8(output.stdout).expect("text");
-    let mut lines = text.lines();
-    let header = lines.next().expect("a header").to_owned();
-    let rows = lines.map(|line| line.split(',').map(str::to_owned).collect());
-    (header, rows.collect())
-}
-
-fn refusal(arguments: &[&str]) -> String {
-    let output = designer(arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-    let text = String::from_utf8(output.stderr).expect("text");
-    assert_eq!(text.lines().count(), 1, "{text}");
-    text
 }
 
 fn number(text: &str) -> f64 {
@@ -111,7 +82,7 @@ fn history_gives_a_row_for_a_row_as_an_independent_code_has_it() {
     for [seconds, millimetres] in &asked {
         writeln!(csv, "{seconds},{millimetres}").expect("a string");
     }
-    let (header, rows) = rows(&[
+    let (header, rows) = header_and_rows(&[
         "history",
         &design("press", AGILUS30, ""),
         "--history",
@@ -244,7 +215,7 @@ fn estimate_reads_force_and_indentation_from_the_pressure_of_an_independent_code
         for (seconds, kilopascals) in case.seconds.iter().zip(&case.pressure) {
             writeln!(csv, "{seconds},{kilopascals}").expect("a string");
         }
-        let (header, rows) = rows(&[
+        let (header, rows) = header_and_rows(&[
             "estimate",
             &design(id, AGILUS30, ""),
             "--history",
@@ -290,8 +261,8 @@ fn a_slow_history_against_a_ball_is_the_press_of_solve() {
     let [on_ball, on_plate] =
         [("ball", "[object]\nradius_mm = 8.0\n"), ("plate", "")].map(|(name, object)| {
             let file = design(name, NEARLY_ELASTIC, object);
-            let (_, slow) = rows(&["history", &file, "--history", &csv]);
-            let (_, still) = rows(&["solve", &file, "--indentation-mm", "1,2"]);
+            let (_, slow) = header_and_rows(&["history", &file, "--history", &csv]);
+            let (_, still) = header_and_rows(&["solve", &file, "--indentation-mm", "1,2"]);
             for (slow, still) in slow[1..].iter().zip(&still) {
                 for (slow, still) in [(&slow[2], &still[2]), (&slow[3], &still[3])] {
                     assert!(
