@@ -8,3 +8,4 @@
 pub mod commands;
 pub mod fit;
 pub mod size;
+mod table_text;

@@ -45,17 +45,17 @@ pub(super) fn about(preset: &Preset) -> String {
 /// Points of a membrane's meridian at which its strain is looked at.
 const POINTS: usize = 61;
 /// Warns when the state at `depth` metres (0 is rest) leaves the range of strain that the material was fitted in.
-pub(super) fn warn_of_strain(file: &Path, design: &DesignFile, rung: &mut Fingertip, depth: f64) {
-    if let Some(reason) = beyond_strain(design, rung, depth) {
+pub(super) fn warn_of_strain(file: &Path, design: &DesignFile, tip: &mut Fingertip, depth: f64) {
+    if let Some(reason) = beyond_strain(design, tip, depth) {
         warn(file, &reason);
     }
 }
 
 /// What to say when the state at `depth` metres (0 is rest) leaves the range of strain that the material was fitted in.
-pub(super) fn beyond_strain(design: &DesignFile, rung: &mut Fingertip, depth: f64) -> Option<String> {
+pub(super) fn beyond_strain(design: &DesignFile, tip: &mut Fingertip, depth: f64) -> Option<String> {
     let preset = Preset::of(&design.material)?;
     let most = preset.largest_invariant()?;
-    let reached = match rung {
+    let reached = match tip {
         Fingertip::Membrane(press) => press
             .profile(depth, POINTS)
             .ok()?

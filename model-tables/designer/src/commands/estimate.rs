@@ -1,6 +1,6 @@
 //! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
 
-use super::{estimate_in_time, finite};
+use super::{estimate_in_time, finite, read};
 use fingertip::signal::contact::contact;
 use fingertip::signal::design::{Design, LoadedDesign};
 use fingertip::status::{Status, Warnings};
@@ -31,8 +31,7 @@ pub(super) struct Arguments {
 }
 
 /// The tables of a design; those that do not reach the accuracy asked for only where worse is allowed.
-pub(super) fn generated(file: &Path, allow_worse: bool) -> Result<Generated, Refusal> {
-    let design = DesignFile::read(file).map_err(Refusal::of)?;
+pub(super) fn generated(file: &Path, design: DesignFile, allow_worse: bool) -> Result<Generated, Refusal> {
     let made = if allow_worse {
         from_design_or_worse(design)
     } else {
@@ -61,7 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     if let Some(history) = &arguments.history {
         return estimate_in_time::run(file, history, arguments.allow_worse);
     }
-    let generated = generated(file, arguments.allow_worse)?;
+    let generated = generated(file, read(file)?, arguments.allow_worse)?;
     let block = generated.binary();
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;

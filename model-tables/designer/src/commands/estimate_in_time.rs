@@ -85,7 +85,7 @@ pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<Comm
     }
     let read = time_rows::read(history, &[KILOPASCALS, PASCALS])?;
     let unit = if read.column == KILOPASCALS { 1e3 } else { 1.0 };
-    let generated = generated(file, allow_worse)?;
+    let generated = generated(file, design_file, allow_worse)?;
     let block = generated.binary();
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;

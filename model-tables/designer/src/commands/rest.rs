@@ -58,10 +58,10 @@ pub(super) fn run(file: &Path) -> Result<CommandAnswer, Refusal> {
             "two rest states: this is the more stretched, the other has a pole stretch of {other:.6}"
         )],
     };
-    let mut rung = Fingertip::Membrane(Box::new(press));
-    bench::warn_of_strain(file, &design_file, &mut rung, 0.0);
+    let mut tip = Fingertip::Membrane(Box::new(press));
+    bench::warn_of_strain(file, &design_file, &mut tip, 0.0);
     notes.extend(model.note);
-    notes.push(model::note_of_error(&design_file, &mut rung, 0.0));
+    notes.push(model::note_of_error(&design_file, &mut tip, 0.0));
     notes.extend(bench::caution(&design_file));
     Ok(CommandAnswer { rows, notes })
 }
@@ -88,9 +88,9 @@ fn solid(
         Cell::Number(calibration.indentation_read(limit.indentation) * 1e3),
         Cell::word(limit.ends_by.word()),
     ]);
-    let mut rung = Fingertip::Solid(Box::new(press));
-    bench::warn_of_strain(file, design_file, &mut rung, 0.0);
-    let error = model::note_of_error(design_file, &mut rung, 0.0);
+    let mut tip = Fingertip::Solid(Box::new(press));
+    bench::warn_of_strain(file, design_file, &mut tip, 0.0);
+    let error = model::note_of_error(design_file, &mut tip, 0.0);
     Ok(CommandAnswer {
         rows,
         notes: model

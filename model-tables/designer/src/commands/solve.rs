@@ -78,9 +78,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     if let Some((indentation, margin)) = worst {
         warn_of_instability(file, &format!("at indentation {indentation} mm"), margin);
     }
-    let mut rung = Fingertip::Membrane(Box::new(press));
-    bench::warn_of_strain(file, &design_file, &mut rung, deepest);
-    let error = model::note_of_error(&design_file, &mut rung, deepest);
+    let mut tip = Fingertip::Membrane(Box::new(press));
+    bench::warn_of_strain(file, &design_file, &mut tip, deepest);
+    let error = model::note_of_error(&design_file, &mut tip, deepest);
     let mut rows = Rows::new(COLUMNS);
     for (state, &asked) in states.iter().flatten().zip(&arguments.indentation_mm) {
         rows.push(vec![
@@ -143,8 +143,8 @@ fn solid(
     let mut notes: Vec<String> = model.note.iter().cloned().collect();
     notes.push(mesh_error::note(&model.design, elements, &contacts));
     notes.extend(other_state(&mut press, &contacts, calibration));
-    let mut rung = Fingertip::Solid(Box::new(press));
-    bench::warn_of_strain(&arguments.design, design_file, &mut rung, deepest);
+    let mut tip = Fingertip::Solid(Box::new(press));
+    bench::warn_of_strain(&arguments.design, design_file, &mut tip, deepest);
     Ok(CommandAnswer { rows, notes })
 }
 

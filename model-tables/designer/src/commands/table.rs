@@ -1,6 +1,6 @@
 //! `designer table`: writes the tables of a design.
 
-use super::estimate;
+use super::{estimate, read};
 use output::files::write_all;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -24,7 +24,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let begun = Instant::now();
-    let generated = estimate::generated(file, arguments.allow_worse)?;
+    let generated = estimate::generated(file, read(file)?, arguments.allow_worse)?;
     let seconds = begun.elapsed().as_secs_f64();
     let contents: [(&str, Vec<u8>); 4] = [
         ("tables.rs", generated.rust_source().into_bytes()),

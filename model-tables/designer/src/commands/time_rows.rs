@@ -1,5 +1,6 @@
 //! Rows of a quantity over time, from a CSV file.
 
+use crate::table_text;
 use output::Refusal;
 use std::path::Path;
 
@@ -30,19 +31,11 @@ pub(super) struct TimeRows {
 
 /// Reads `time_s` and exactly one of the columns that may be given, and `temperature_c` where it is there; other columns are left out.
 pub(super) fn read(file: &Path, given: &[&'static str]) -> Result<TimeRows, Refusal> {
-    let about = |reason: &str| Refusal::about(file, &reason.split_whitespace().collect::<Vec<_>>().join(" "));
+    let about = |reason: &str| Refusal::about(file, &table_text::one_line(reason));
     let text = std::fs::read_to_string(file).map_err(|error| about(&format!("cannot be read: {error}")))?;
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(text.as_bytes());
+    let mut reader = table_text::reader(&text);
     let unreadable = |error: csv::Error| about(&format!("not a CSV file: {error}"));
-    let header: Vec<String> = reader
-        .headers()
-        .map_err(unreadable)?
-        .iter()
-        .map(|name| name.trim_start_matches('\u{feff}').to_owned())
-        .collect();
+    let header = table_text::header(&mut reader).map_err(unreadable)?;
     let place = |name: &str| header.iter().position(|column| column == name);
     let time = place(TIME).ok_or_else(|| {
         about(&format!(

@@ -3,6 +3,7 @@
 pub use super::data_error::DataError;
 
 use super::data_error::{FORCE, INDENTATION, PRESSURE};
+use crate::table_text;
 
 /// Which way the plate moved.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -89,19 +90,9 @@ impl Data {
     /// # Errors
     /// [`DataError`] for the first thing that is wrong.
     pub fn parse(text: &str, name: &str, choice: &DataChoice) -> Result<Self, DataError> {
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .comment(Some(b'#'))
-            .from_reader(text.as_bytes());
-        let unreadable = |error: csv::Error| {
-            DataError::Unreadable(error.to_string().split_whitespace().collect::<Vec<_>>().join(" "))
-        };
-        let header: Vec<String> = reader
-            .headers()
-            .map_err(unreadable)?
-            .iter()
-            .map(|name| name.trim_start_matches('\u{feff}').to_owned())
-            .collect();
+        let mut reader = table_text::reader(text);
+        let unreadable = |error: csv::Error| DataError::Unreadable(table_text::one_line(&error.to_string()));
+        let header = table_text::header(&mut reader).map_err(unreadable)?;
         let place = |name: &str| header.iter().position(|column| column == name);
         let needed = |name: &str| {
             place(name).ok_or_else(|| DataError::Column {

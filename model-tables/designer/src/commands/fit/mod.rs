@@ -111,8 +111,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let seconds = start.elapsed().as_secs_f64();
     let mut notes = report::findings(&file, &data, &fit);
     notes.extend(bench::caution(&file));
-    let mut rung = Fingertip::new(&file).map_err(|error| Refusal::about(&arguments.design, &error))?;
-    notes.push(super::model::note_of_error(&file, &mut rung, 0.0));
+    let mut tip = Fingertip::new(&file).map_err(|error| Refusal::about(&arguments.design, &error))?;
+    notes.push(super::model::note_of_error(&file, &mut tip, 0.0));
     if let Some(out) = &arguments.out {
         let design_text = std::fs::read_to_string(&arguments.design)
             .map_err(|error| Refusal::about(&arguments.design, &error))?;

@@ -61,7 +61,7 @@ pub(super) fn costs(file: &DesignFile, used: Kind, design: &Design, deepest: f64
             let own = (!LADDER.contains(&used)).then_some(used);
             for kind in LADDER.into_iter().filter(|kind| kind.applies(design)).chain(own) {
                 let is_used = kind == Kind::Solid(elements);
-                add(kind.to_string(), is_used, rung(kind, design, deepest));
+                add(kind.to_string(), is_used, states(kind, design, deepest));
             }
             // The finest last.
             solved.sort_by_key(|(model, ..)| *model == Kind::Solid(REFINED).to_string());
@@ -93,9 +93,9 @@ fn membrane<const S: usize>(
     Ok(timed(deepest, |indentation| press.contact_at(indentation))?)
 }
 
-fn rung(kind: Kind, design: &Design, deepest: f64) -> Result<Solved, ModelError> {
-    let mut rung = Fingertip::of(kind, design)?;
-    timed(deepest, |indentation| rung.contact_at(indentation))
+fn states(kind: Kind, design: &Design, deepest: f64) -> Result<Solved, ModelError> {
+    let mut tip = Fingertip::of(kind, design)?;
+    timed(deepest, |indentation| tip.contact_at(indentation))
 }
 
 fn timed<E>(deepest: f64, mut contact_at: impl FnMut(f64) -> Result<Contact, E>) -> Result<Solved, E> {

@@ -90,13 +90,13 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     let refuse = |error: ModelError| Refusal::about(path, &bench::as_read(&file.calibration, error));
     let Model { kind, design, note } = model::of(path, &file)?;
     progress.set(0.1);
-    let mut rung = match kind {
+    let mut tip = match kind {
         Kind::Membrane => Fingertip::Membrane(Box::new(
             Press::new(&design, TensionField::Relaxed).map_err(|error| refuse(error.into()))?,
         )),
         Kind::Solid(_) => Fingertip::of(kind, &design).map_err(refuse)?,
     };
-    let limit = rung.limit().map_err(refuse)?;
+    let limit = tip.limit().map_err(refuse)?;
     let deepest = file
         .max_indentation_mm
         .map_or(DEPTH * limit.indentation, |depth| depth / 1e3);
@@ -104,13 +104,13 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     let states = (0..=STATES)
         .map(|k| {
             let part = k as f64 / STATES as f64;
-            rung.at_indentation(deepest * part * libm::sqrt(part))
+            tip.at_indentation(deepest * part * libm::sqrt(part))
         })
         .collect::<Result<Vec<_>, _>>()
         .map_err(refuse)?;
     let meridians = SHAPES
         .iter()
-        .map(|part| meridian(&mut rung, &design, part * deepest))
+        .map(|part| meridian(&mut tip, &design, part * deepest))
         .collect::<Result<Vec<_>, _>>()
         .map_err(refuse)?;
     progress.set(0.4);
@@ -122,15 +122,15 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     let costs = cost::costs(&file, kind, &design, deepest);
     progress.set(0.9);
     let bending = if kind == Kind::Membrane {
-        bending(&file.design_to(Axes::Outer), &mut rung, deepest)
+        bending(&file.design_to(Axes::Outer), &mut tip, deepest)
     } else {
         Vec::new()
     };
-    let mut warnings = warnings(&file, &mut rung, limit, deepest);
+    let mut warnings = warnings(&file, &mut tip, limit, deepest);
     warnings.extend(bench::caution(&file));
     Ok(Findings {
         actuator: actuator(&file, &design),
-        rest: rung.rest(),
+        rest: tip.rest(),
         model: kind,
         note,
         limit,
@@ -146,12 +146,12 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     })
 }
 
-fn meridian(rung: &mut Fingertip, design: &Design, indentation: f64) -> Result<Meridian, ModelError> {
+fn meridian(tip: &mut Fingertip, design: &Design, indentation: f64) -> Result<Meridian, ModelError> {
     Ok(Meridian {
         indentation,
-        force: rung.contact_at(indentation)?.force,
+        force: tip.contact_at(indentation)?.force,
         wall: design.membrane.thickness,
-        points: rung.profile(indentation, POINTS)?,
+        points: tip.profile(indentation, POINTS)?,
     })
 }
 
@@ -245,9 +245,9 @@ fn actuator(file: &DesignFile, design: &Design) -> Vec<(f64, Blocked)> {
         .collect()
 }
 
-fn warnings(file: &DesignFile, rung: &mut Fingertip, limit: Limit, deepest: f64) -> Vec<String> {
+fn warnings(file: &DesignFile, tip: &mut Fingertip, limit: Limit, deepest: f64) -> Vec<String> {
     let mut lines = Vec::new();
-    if let Fingertip::Membrane(press) = rung {
+    if let Fingertip::Membrane(press) = tip {
         match press.branch() {
             Branch::Only => {}
             Branch::Lower { other } => lines.push(format!(
@@ -286,7 +286,7 @@ fn warnings(file: &DesignFile, rung: &mut Fingertip, limit: Limit, deepest: f64)
             _ => {}
         }
     }
-    lines.extend(bench::beyond_strain(file, rung, deepest));
+    lines.extend(bench::beyond_strain(file, tip, deepest));
     let share = deepest / limit.indentation;
     if share > 0.9 && file.max_indentation_mm.is_some() {
         lines.push(format!(
