@@ -282,6 +282,9 @@ impl<L: Hyperelastic> LocalEquations<L> {
         contact_radius: f64,
         guess: f64,
     ) -> Option<(GaussPoint, Response)> {
+        if zone == Zone::Contact && self.curvature != 0.0 {
+            return self.on_sphere(meridian, [u, w], guess);
+        }
         let Meridian {
             x,
             x_rate,
@@ -290,9 +293,6 @@ impl<L: Hyperelastic> LocalEquations<L> {
         let g_t = (self.aspect * self.aspect - 1.0) * x * x_rate / g;
         let over_x = 1.0 / x;
         let mut point = GaussPoint::default();
-        if zone == Zone::Contact && self.curvature != 0.0 {
-            return self.on_sphere(meridian, [u, w], guess);
-        }
         if zone == Zone::Contact {
             let r = self.respond(w, u, guess)?;
             let rate = [(g * r.l1 - x_rate * u) * over_x, (g * r.w2 - x_rate * w) * over_x];
