@@ -238,12 +238,7 @@ fn auto_says_what_it_took() {
         assert!(output.status.success());
         String::from_utf8(output.stderr).expect("text")
     };
-    let thin = auto(
-        "thin",
-        "thickness_mm = 0.1\n",
-        "[rest]\npole_stretch = 1.5\n[accuracy]\nforce_percent_of_reading = 2.0\n\
-         indentation_percent_of_reading = 2.0\nfrom_percent_of_full_scale = 1.0\n",
-    );
+    let thin = auto("thin", "thickness_mm = 0.1\n", "[rest]\npole_stretch = 1.5\n");
     assert!(thin.contains("note: auto takes the membrane: "), "{thin}");
     let printed = auto("unstretched", "thickness_mm = 1\n", "");
     assert!(printed.contains("note: auto takes the solid "), "{printed}");

@@ -7,7 +7,7 @@ pub const NAME: &str = "index-fingertip";
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x57e21f1b2d57bec1,
     table_version: 5,
-    certificate: 0xcd8fc3466c5e2b90,
+    certificate: 0xcd1a1a0be5c2f91e,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {

@@ -1,15 +1,15 @@
-// Tables of the design `skin-analogue`, 112 bytes. Generated: change the design, not this file.
+// Tables of the design `skin-analogue`, 128 bytes. Generated: change the design, not this file.
 
 /// Its `name`.
 pub const NAME: &str = "skin-analogue";
 
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    hash: 0x021e38b343300df4,
+    hash: 0x390d166db74fda12,
     table_version: 5,
-    certificate: 0x7983f97064e31bac,
-    rest_pressure: 8269,
-    maximum_pressure: 16195,
+    certificate: 0x6cb932f7f67ef255,
+    rest_pressure: 8312,
+    maximum_pressure: 16418,
     transducer: model_tables::constants::Transducer {
         range: [0, 40000],
         resolution: 5000,
@@ -20,29 +20,30 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
 };
 
 /// The type of [`TABLES`].
-pub type DesignTables = model_tables::table::Tables<7, 4>;
+pub type DesignTables = model_tables::table::Tables<8, 4>;
 
 /// Pressure rise -> force and indentation.
 pub const TABLES: DesignTables = model_tables::table::Tables {
     layout: model_tables::table::Layout {
-        pressure_fraction_bits: 5,
-        maximum: 253952,
-        bias: 22,
+        pressure_fraction_bits: 6,
+        maximum: 524287,
+        bias: 44,
         octaves: 2,
         halvings: 0,
         powers: model_tables::table::Powers::Four,
         constant: model_tables::table::Constant::Half,
-        first_index: 7,
+        first_index: 6,
         force_shift: 0,
         indentation_shift: 0,
     },
     segments: [
-        [107483048, 262539100, 61537043, -14161770],
-        [60229283, 262736628, -1312590, -11538937],
-        [32768897, 214567980, -4785748, -3475983],
-        [16908774, 150538940, -2098082, 64113],
-        [8323326, 95029241, -917997, 982275],
-        [3670144, 51905891, -721155, 1375765],
-        [655426, 12518342, 131298, -1913],
+        [117314243, 186253381, 59176162, 60815057],
+        [58525526, 185206437, 15661919, -14356162],
+        [32703357, 161286246, -4457711, -3475739],
+        [17105382, 113641490, -2032414, -852867],
+        [8519937, 71173612, -655749, 523991],
+        [3997827, 42206193, -327734, 785885],
+        [1572925, 22479494, -1769481, 3734598],
+        [-393183, -6618517, -196092, 1031712],
     ],
 };

@@ -5,11 +5,11 @@ pub const NAME: &str = "skin-light-touch";
 
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    hash: 0xcf52ef64f58d3e8b,
+    hash: 0x8e7fbb454372d43d,
     table_version: 5,
-    certificate: 0x116569d925b98743,
-    rest_pressure: 1811,
-    maximum_pressure: 4133,
+    certificate: 0x124922f41573d2f3,
+    rest_pressure: 1825,
+    maximum_pressure: 4483,
     transducer: model_tables::constants::Transducer {
         range: [30000, 120000],
         resolution: 1000,
@@ -26,24 +26,24 @@ pub type DesignTables = model_tables::table::Tables<8, 4>;
 pub const TABLES: DesignTables = model_tables::table::Tables {
     layout: model_tables::table::Layout {
         pressure_fraction_bits: 8,
-        maximum: 598016,
-        bias: 16,
+        maximum: 684032,
+        bias: 22,
         octaves: 2,
         halvings: 0,
-        powers: model_tables::table::Powers::Four,
+        powers: model_tables::table::Powers::Six,
         constant: model_tables::table::Constant::Half,
         first_index: 6,
         force_shift: 5,
         indentation_shift: 0,
     },
     segments: [
-        [490817902, 101908874, 213646241, 185793125],
-        [263724534, 102761425, 50199997, -106956663],
-        [159780658, 94635134, -33227357, -48170474],
-        [90310909, 76153973, -20709893, -16581546],
-        [47711525, 54133712, -9175365, 589293],
-        [23855814, 34931416, -3080378, 2096872],
-        [11796817, 19923441, -10944610, 20315991],
-        [3080385, 6881630, 1507404, -2556395],
+        [540628162, 94044757, 411630676, -52628832],
+        [318841193, 93586328, -5637139, -270863711],
+        [190190105, 71894111, -61670202, -80217020],
+        [99683018, 43189160, -18743571, 1638217],
+        [49677772, 25428566, -3801168, 7798431],
+        [24183537, 15466856, -2031654, 10681964],
+        [11272544, 9437402, -7929927, 46595790],
+        [2162876, 2752680, -458772, 1309579],
     ],
 };

@@ -222,10 +222,13 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
         PressureRise(tables.layout.maximum).pascals(tables.layout.pressure_fraction_bits),
         certificate.comparison_error,
     )?;
+    if let Some(kind) = generated.kind {
+        writeln!(out, "[model]\nkind = \"{kind}\"")?;
+    }
     if let Some(model) = &generated.model_error {
         writeln!(
             out,
-            "[model] # the curve against states of its own on a finer mesh, between those it was made from\n\
+            "# The curve against states of its own on a finer mesh, between those it was made from.\n\
              mesh = \"{}\"\n\
              states = {}\n\
              force_percent = {:.1e}\n\

@@ -1,10 +1,12 @@
 //! Which model a design needs.
 //!
 //! `kind = "auto"` solves every rung of a ladder up to the solid of 2 x 60 elements, at eight indentations up to the deepest. **The rule:**
-//! the first rung, from the cheapest, is taken whose force and pressure rise differ from that solid's by no more than what
-//! [`Accuracy`](crate::design_file::Accuracy) allows of the force, less the solid's own error ([`Wanted::own_error`]); the solid itself if
-//! only that is allowed. If even that is not, a refined solid judges them all. Coarse solids judge nobody: their errors are of one
-//! kind, and two of them agreed with each other where both were wrong. `designer ladder` holds the rule to the refined solid over
+//! the first rung, from the cheapest, is taken whose force and pressure rise differ from that solid's by no more than 1 % of the
+//! reading, or [`model_percent`](crate::design_file::Accuracy::model_percent) where a design states less, less the solid's own error
+//! ([`Wanted::own_error`]). Where that error takes most of what is allowed, or no rung is that near, a refined solid judges them all.
+//! Coarse solids judge nobody, because their errors are of one kind: two of them agreed with each other where both were wrong. Nor are they taken:
+//! under them the contact edge moves from element to element, which puts the indentation of a light touch 2 % off between the
+//! indentations compared, and the ripple costs tables 12 to 112 bytes more. `designer ladder` holds the rule to the refined solid over
 //! random walls.
 
 use super::{Fingertip, Kind, ModelError};
@@ -15,7 +17,7 @@ use crate::solid;
 use crate::solid::SolidError;
 use crate::solid::mesh::Elements;
 
-/// The ladder that `auto` climbs.
+/// The ladder that `auto` climbs, past its coarse solids; `designer ladder` measures them all.
 pub const LADDER: [Kind; 5] = [
     Kind::Membrane,
     Kind::Solid(solid::press::COARSE),
@@ -39,12 +41,14 @@ pub const PARTS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
 const FINE_ERROR: f64 = 0.006;
 /// The same of walls that are [`THIN`], and of presses that are [`DEEP`].
 const HARD_ERROR: f64 = 0.01;
+/// The largest part of what is allowed that a judge's own error may take.
+const MAX_SHARE: f64 = 0.75;
 /// Wall over outer radius under which 60 elements are long for what bends, `sqrt(radius * wall)`.
 const THIN: f64 = 0.02;
 /// Indentation over the height beyond which the bonded rim takes part.
 const DEEP: f64 = 0.36;
-/// What is allowed of the force where a design does not say, percent.
-const DEFAULT_PERCENT: f64 = 1.0;
+/// What is allowed of a model's force and pressure rise where a design does not state less, percent of the reading.
+const MAX_PERCENT: f64 = 1.0;
 /// Where the percentage begins where a design does not say, percent of the deepest.
 const DEFAULT_FROM: f64 = 1.0;
 /// The deepest indentation where a design does not say, over the height: well before the end of any press.
@@ -62,11 +66,12 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// What a design file says, and what goes without saying.
+    /// What a design file states, and the defaults of the rest. The accuracy of the tables is another matter: they round a curve,
+    /// whichever model made it.
     pub fn of(file: &DesignFile) -> Self {
         let percent = file
             .accuracy
-            .map_or(DEFAULT_PERCENT, |a| a.force_percent_of_reading);
+            .map_or(MAX_PERCENT, |a| a.model_percent.min(MAX_PERCENT));
         let from = file
             .accuracy
             .map_or(DEFAULT_FROM, |a| a.from_percent_of_full_scale);
@@ -78,7 +83,8 @@ impl Wanted {
         }
     }
 
-    /// The error that a rung counts with as a judge; infinite if it does not judge.
+    /// The error that a rung counts with as a judge; infinite if it does not judge, as where its own error would leave cheaper rungs
+    /// too little ([`MAX_SHARE`]).
     pub fn own_error(&self, kind: Kind, design: &Design) -> f64 {
         let outer = &design.membrane;
         match kind {
@@ -86,7 +92,12 @@ impl Wanted {
             Kind::Solid(FINE) => {
                 let thin = outer.thickness < THIN * outer.radial_semi_axis;
                 let deep = self.deepest > DEEP * outer.axial_semi_axis;
-                if thin || deep { HARD_ERROR } else { FINE_ERROR }
+                let own = if thin || deep { HARD_ERROR } else { FINE_ERROR };
+                if own <= MAX_SHARE * self.error {
+                    own
+                } else {
+                    f64::INFINITY
+                }
             }
             _ => f64::INFINITY,
         }
@@ -152,7 +163,7 @@ pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
     let mut solved: Vec<(Kind, Fingertip, Vec<Contact>)> = Vec::new();
     let mut failure = ModelError::Solid(SolidError::RestNotForSolid);
     for judge in LADDER {
-        if !judge.applies(design) {
+        if !judge.applies(design) || judge.is_coarse() {
             continue;
         }
         let own_error = wanted.own_error(judge, design);

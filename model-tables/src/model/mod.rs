@@ -36,6 +36,11 @@ impl Kind {
     pub fn applies(self, design: &Design) -> bool {
         self != Self::Membrane || matches!(design.rest, RestBy::PoleStretch(_))
     }
+
+    /// Whether it is a solid of fewer elements along the meridian than [`choice::FINE`].
+    pub fn is_coarse(self) -> bool {
+        matches!(self, Self::Solid(Elements { along, .. }) if along < choice::FINE.along)
+    }
 }
 
 impl fmt::Display for Kind {
@@ -127,6 +132,14 @@ impl Fingertip {
                 });
                 Ok((Self::of(kind, &file.design_to(Axes::Outer))?, kind.to_string()))
             }
+        }
+    }
+
+    /// Which model it is.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Membrane(_) => Kind::Membrane,
+            Self::Solid(press) => Kind::Solid(press.elements()),
         }
     }
 

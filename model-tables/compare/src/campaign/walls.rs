@@ -179,6 +179,9 @@ impl Measured {
             else {
                 continue;
             };
+            if LADDER[place].is_coarse() {
+                continue;
+            }
             below.push((place, contacts));
             let rungs = below.iter().map(|&(_, contacts)| contacts);
             let own_error = wanted.own_error(LADDER[place], &self.case.design);

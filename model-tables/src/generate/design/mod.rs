@@ -10,8 +10,8 @@ use super::{Certified, NoTables, tables};
 use crate::constants::{BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{DataCurve, DesignFile, Supply, TransducerKindSection, TransducerSection, Transfer};
-use crate::model::Fingertip;
 use crate::model::own_error::{Comparison, OwnError};
+use crate::model::{Fingertip, Kind};
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
@@ -56,6 +56,8 @@ pub struct Generated {
     /// The curve against states of the same model on a finer mesh, half way between those that it was made from; nothing where it
     /// is of data.
     pub model_error: Option<Comparison>,
+    /// The model that the curve is of; `None` where it was measured.
+    pub kind: Option<Kind>,
     /// The membrane against the solid of the same wall; nothing where the model is a solid, or there is none.
     pub membrane_error: Option<OwnError>,
 }
@@ -97,6 +99,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
     } = solve(&design)?;
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let (mut model_error, mut membrane_error) = (None, None);
+    let kind = rung.as_ref().map(Fingertip::kind);
     if let Some(mut rung) = rung {
         model_error = convergence(&design, &rung, &curve, end, from);
         if matches!(rung, Fingertip::Membrane(_)) {
@@ -127,6 +130,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         end,
         certified,
         model_error,
+        kind,
         membrane_error,
     })
 }
