@@ -8,7 +8,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip.toml";
+const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip-elastic.toml";
 
 /// Each board with the linker's sizes of its chip; those of the default board are in `memory.x`.
 const BOARDS: [(&str, Option<&str>); 2] = [

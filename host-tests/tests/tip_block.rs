@@ -18,7 +18,7 @@ const BLOCKS: u64 = 200_000;
 #[allow(clippy::unreadable_literal, unreachable_pub, dead_code)] // generated source
 mod golden {
     pub(crate) mod index {
-        include!("../../model-tables/golden/index-fingertip/tables.rs");
+        include!("../../model-tables/golden/index-fingertip-elastic/tables.rs");
     }
     pub(crate) mod paper {
         include!("../../model-tables/golden/paper-prestretched/tables.rs");

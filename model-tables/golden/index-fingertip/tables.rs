@@ -5,13 +5,13 @@ pub const NAME: &str = "index-fingertip";
 
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    hash: 0x57e21f1b2d57bec1,
+    hash: 0xb0b47dd1ad5990fa,
     table_version: 5,
-    certificate: 0xcd8fc3466c5e2b90,
+    certificate: 0x4332dbbd67be216c,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {
-        range: [0, 100000],
+        range: [-10000, 100000],
         resolution: 10000,
         noise: 10000,
         quantity: model_tables::constants::Quantity::Gauge,
