@@ -19,6 +19,7 @@ const BOARDS: [(&str, Option<&str>); 2] = [
 fn main() {
     println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rustc-check-cfg=cfg(relaxation)");
     println!(
         "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
     );
@@ -96,6 +97,10 @@ fn tables(design: &Path) -> Result<String, String> {
         TransducerKind::Dps310 { .. } => "dps310",
     };
     println!("cargo::rustc-cfg=transducer=\"{kind}\"");
+    if generated.wall().is_some() {
+        // The wall's memory, which an elastic one has not.
+        println!("cargo::rustc-cfg=relaxation");
+    }
     if generated.limits() != [Limit::Accuracy; 2] {
         println!("cargo::warning={}: {}", design.display(), generated.choice());
     }

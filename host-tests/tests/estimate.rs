@@ -17,7 +17,8 @@ use model_tables::units::PressureRise;
 
 /// The default design, unless the image was built for another one.
 fn generated() -> Option<Generated> {
-    let generated = generate::from_design_file(&design("index-fingertip-elastic")).expect("the default design");
+    let generated =
+        generate::from_design_file(&design("index-fingertip-elastic")).expect("the default design");
     (ImageDesign::CONSTANTS.hash == generated.hash()).then_some(generated)
 }
 

@@ -47,3 +47,22 @@ pub const TABLES: DesignTables = model_tables::table::Tables {
         [1048640, 7274836, 88, 64895],
     ],
 };
+
+/// The wall in time: only a wall that relaxes has it.
+pub const RELAXATION: model_tables::material::series::WallSeries = model_tables::material::series::WallSeries {
+    remaining_permille: 30,
+    step: model_tables::material::series::SeriesStep {
+        count: 7,
+        inverse: model_tables::material::series::Factor { mantissa: 2687298560, shift: 40 },
+        terms: [
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2714937127, shift: 32 }, taken: model_tables::material::series::Factor { mantissa: 2337391183, shift: 23 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 3269761419, shift: 35 }, taken: model_tables::material::series::Factor { mantissa: 3496473392, shift: 25 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2735080873, shift: 38 }, taken: model_tables::material::series::Factor { mantissa: 2508047793, shift: 27 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2197924110, shift: 41 }, taken: model_tables::material::series::Factor { mantissa: 2392710842, shift: 29 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 3518261293, shift: 45 }, taken: model_tables::material::series::Factor { mantissa: 3328433230, shift: 31 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2814735693, shift: 48 }, taken: model_tables::material::series::Factor { mantissa: 3437674635, shift: 33 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2251798688, shift: 51 }, taken: model_tables::material::series::Factor { mantissa: 3714285860, shift: 34 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 0, shift: 0 }, taken: model_tables::material::series::Factor { mantissa: 0, shift: 0 } },
+        ],
+    },
+};

@@ -48,7 +48,11 @@ fn tables_of_the_shipped_designs_agree_with_fresh_states_of_the_model() {
                 (reading.indentation.metres(), indentation, 2.5e-3),
             ] {
                 // The curve of a solid has the grain of its elements.
-                let grain = if name == "index-fingertip-elastic" { 1e-3 } else { 0.0 };
+                let grain = if name == "index-fingertip-elastic" {
+                    1e-3
+                } else {
+                    0.0
+                };
                 let allowed = (1e-3 + grain) * truth.max(0.01 * full) + 1.05 * rounding * truth;
                 assert!(
                     (got - truth).abs() <= allowed,
