@@ -185,6 +185,12 @@ impl Warnings {
         if condition { self } else { Self::NONE }
     }
 
+    /// Their reasons in words, the gravest first.
+    pub fn reasons(self) -> impl Iterator<Item = &'static str> {
+        let named = Self::REASONS.iter().filter(move |(one, _)| self.contains(*one));
+        named.map(|(_, word)| *word)
+    }
+
     /// Whether all of `those` are among these.
     pub const fn contains(self, those: Self) -> bool {
         self.0 & those.0 == those.0
@@ -195,11 +201,9 @@ impl fmt::Display for Warnings {
     /// The reasons, the gravest first, separated by "; ".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
-        for (one, word) in Self::REASONS {
-            if self.contains(one) {
-                write!(f, "{separator}{word}")?;
-                separator = "; ";
-            }
+        for word in self.reasons() {
+            write!(f, "{separator}{word}")?;
+            separator = "; ";
         }
         Ok(())
     }
@@ -288,9 +292,10 @@ impl ResetCause {
     ];
 }
 
-impl fmt::Display for ResetCause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl ResetCause {
+    /// The cause in words.
+    pub const fn word(self) -> &'static str {
+        match self {
             Self::Unknown => "unknown",
             Self::PowerOn => "power-on",
             Self::Pin => "pin",
@@ -298,7 +303,13 @@ impl fmt::Display for ResetCause {
             Self::Watchdog => "watchdog",
             Self::BrownOut => "brown-out",
             Self::LowPower => "low power",
-        })
+        }
+    }
+}
+
+impl fmt::Display for ResetCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
     }
 }
 

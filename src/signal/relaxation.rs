@@ -3,14 +3,19 @@
 //! A wall that relaxes as `g(t) = 1 + sum g_i exp(-t / tau_i)` answers an indentation with `P = g * P_e`, the convolution of its series with the
 //! changes of the pressure `P_e` that the settled wall has at that indentation. Each step of time inverts it exactly:
 //!
-//! `q_i -= k_i q_i; d = (P - P_e - sum q_i) / (1 + sum c_i); P_e += d; q_i += c_i d`
+//! `q_i -= k_i q_i; d = P - P_e - sum q_i; P_e += d / (1 + sum c); q_i += d c_i / (1 + sum c)`
 //!
 //! with `k_i = 1 - exp(-dt / tau_i)` and `c_i = g_i tau_i / dt k_i`. Afterwards `P = P_e + sum q_i` again, so that nothing drifts. The tables
 //! lead from `P_e` to the indentation and to the settled force `F_e`.
 //!
-//! The contact's area goes with `P_e` and the stress with `P`, so the force is between a convolution of `F_e` and `A P` with `A = F_e / P_e`.
-//! Pressed and held, `F = w (y + sum r_i)` with `w = sqrt(A)`, `y = w P_e` and `r_i` to `y` what `q_i` is to `P_e` is nearest to finite
-//! elements; released and pressed again, `A P = w (w P)`. The one goes over into the other as `P_e` falls from its peak.
+//! The contact's area goes with `P_e` and the stress with `P`. On the first press the force is half way between the convolution `g * F_e`, which is
+//! too high where the contact grows fast, and `A P` with the area `A = F_e / P_e`, which is too low. From the first release on it is `A P`: what the
+//! wall remembers acts through the shape of now.
+//!
+//! A plate cannot pull. Where `P < 0`, and `P` or `P_e` are not above what they were when this was so before, the wall is free, and `P_c = P_e` and
+//! `P_0 = P` are noted: no force. Where it is touched again, stress grows from `P_0` on a wall that is softer than its shape:
+//!
+//! `F = rho A (P - P_0), rho = 1 - (1 - 0.63) exp(-(P_e / P_c - 1) / 0.3)`
 //!
 //! All states are 64-bit integers and saturate.
 
@@ -28,10 +33,14 @@ const LARGEST: i64 = 1 << 24;
 const AREA_SHIFT: u32 = 8;
 /// The fall of `P_e` from its peak, `1 / 2^5` of it, over which the force goes over to `A P`.
 const FALL_SHIFT: u32 = 5;
-/// Bits of `y` below the square root of a micronewton times a pascal.
-const ROOT_BITS: u32 = 24;
-/// Bits between two counts that are looked up, and of a force below a micronewton.
-const BETWEEN_BITS: u32 = 16;
+/// Bits of forces below a micronewton, and of the place between two counts.
+const FORCE_BITS: u32 = 16;
+/// One as a share.
+const WHOLE: u32 = 1 << 16;
+/// `1 - rho` at the first touch of a wall that recovers, as a share: 0.37.
+const SOFTER: u32 = WHOLE / 100 * 37;
+/// `P_e / P_c - 1` at which the wall has its own stiffness again, as a share: eight times 0.3. `(1 - x / 8)^8` stands for `exp(-x)`.
+const STIFF_AGAIN: u32 = WHOLE / 10 * 24;
 
 /// What a relaxing wall's pressure says.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -53,38 +62,46 @@ pub struct Relaxing<const TERMS: usize> {
     elastic: i64,
     /// `q_i`.
     held: [i64; TERMS],
-    /// `y` and `r_i`.
-    root: i64,
-    roots: [i64; TERMS],
-    /// The largest `P_e`, and the largest force with [`ROOT_BITS`] below one; forgotten with the slowest term.
+    /// `F_e`, and what `q_i` is to `P_e` over `1 + sum c`.
+    settled: i64,
+    forces: [i64; TERMS],
+    /// The largest `P_e` and the largest force, forgotten with the slowest term.
     peak: i64,
     peak_force: i64,
+    /// How far `P_e` has fallen from its peak, of what the force goes over to `A P` in: a share.
+    fallen: u32,
+    /// `P_c` and `P_0` of a wall that is free, or was.
+    free: Option<[i64; 2]>,
 }
 
 /// What the tables have at an elastic pressure, between two counts.
 struct Lookup {
     elastic: PressureRise,
-    /// With [`BETWEEN_BITS`] below a micronewton.
+    /// With [`FORCE_BITS`].
     force: i64,
     indentation: i32,
     saturated: bool,
 }
 
 impl Lookup {
+    #[inline(never)]
     fn at(design: &impl Design, elastic: i64) -> Self {
         let below_count = FRACTION_BITS - design.parameters().pressure_fraction_bits;
-        let word = |counts: i64| PressureRise(counts.clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32);
-        let counts = elastic >> below_count;
-        let (below, above) = (design.lookup(word(counts)), design.lookup(word(counts + 1)));
-        let part = (elastic >> (below_count - BETWEEN_BITS)) & ((1 << BETWEEN_BITS) - 1);
+        let part = (elastic >> (below_count - FORCE_BITS)) & i64::from(WHOLE - 1);
+        // The states' words have room for a hundred times a largest pressure of 2^24 Pa, which has 41 bits here.
+        let counts = (elastic >> below_count).clamp(i64::from(-i32::MAX), i64::from(i32::MAX - 1)) as i32;
+        let mut read = [design.lookup(PressureRise(counts)); 2];
+        for (reading, next) in read.iter_mut().zip(0..) {
+            *reading = design.lookup(PressureRise(counts + next));
+        }
+        let [below, above] = read;
         // Outputs are below 2^31.
-        let between = |below: i32, above: i32| {
-            (i64::from(below) << BETWEEN_BITS) + (i64::from(above) - i64::from(below)) * part
-        };
+        let between =
+            |below: i32, above: i32| (i64::from(below) << FORCE_BITS) + i64::from(above - below) * part;
         Self {
-            elastic: word(counts),
+            elastic: PressureRise(counts),
             force: between(below.force.0, above.force.0),
-            indentation: (between(below.indentation.0, above.indentation.0) >> BETWEEN_BITS) as i32,
+            indentation: (between(below.indentation.0, above.indentation.0) >> FORCE_BITS) as i32,
             saturated: below.saturated,
         }
     }
@@ -95,19 +112,20 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     pub const NEW: Self = Self {
         elastic: 0,
         held: [0; TERMS],
-        root: 0,
-        roots: [0; TERMS],
+        settled: 0,
+        forces: [0; TERMS],
         peak: 0,
         peak_force: 0,
+        fallen: 0,
+        free: None,
     };
 
     /// A wall that has been at a pressure for ever.
     pub fn settled(design: &impl Design, rise: PressureRise) -> Self {
         let elastic = pressure(design, rise);
-        let (_, _, root) = Self::area(design, elastic, &Lookup::at(design, elastic));
         Self {
             elastic,
-            root,
+            settled: Lookup::at(design, elastic).force,
             peak: elastic.max(0),
             ..Self::NEW
         }
@@ -115,31 +133,29 @@ impl<const TERMS: usize> Relaxing<TERMS> {
 
     /// Goes on by a step of time to a pressure rise.
     pub fn step(&mut self, design: &impl Design, step: &SeriesStep, rise: PressureRise) -> RelaxedReading {
-        let pressure = pressure(design, rise);
-        self.invert(step, pressure);
-        let at = Lookup::at(design, self.elastic);
-        let (to_root, to_force, root) = Self::area(design, self.elastic, &at);
-        let change = root.saturating_sub(self.root);
-        self.root = root;
-        let mut sum = root;
-        for (state, term) in self.roots.iter_mut().zip(step.terms()) {
-            *state = state
-                .saturating_sub(term.lost.of(*state))
-                .saturating_add(term.taken.of(change));
-            sum = sum.saturating_add(*state);
-        }
-        let sum = self.between(step, sum, to_root.of(pressure));
-        let force = to_force.of(sum).clamp(0, i64::from(i32::MAX)) as i32;
-        self.remember(step, force);
         let parameters = design.parameters();
-        let level = parameters.limits.level;
-        let pressed_before = at.elastic.0 > level;
+        let pressure = pressure(design, rise);
+        let stress = pressure.saturating_sub(self.elastic);
+        let change = follow(step, &mut self.held, stress);
+        self.elastic = self.elastic.saturating_add(change);
+        let at = Lookup::at(design, self.elastic);
+        let change = at.force - core::mem::replace(&mut self.settled, at.force);
+        // Its terms are kept over the stiffness, as a change of force has no stress to be shared.
+        let convolved = self.convolved(step, change);
+        let pressed_before = at.elastic.0 > parameters.limits.level;
+        let by_area = self.by_area(design, &at, pressure, pressed_before);
+        self.note_fall(step, pressed_before);
+        let excess = share(WHOLE - self.fallen).of(convolved.saturating_sub(by_area)) >> 1;
+        let force = by_area.saturating_add(excess);
+        let force = (force >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
+        self.peak_force = self.peak_force.max(i64::from(force) << FORCE_BITS);
+
         let recovering = pressed_before && force == 0 && rise.0 < 0;
         let below = !pressed_before && rise < parameters.lowest_rest;
         RelaxedReading {
             elastic: at.elastic,
-            lowered: pressed_before && rise.0 < at.elastic.0.saturating_sub(level),
-            settled: Micronewtons((at.force >> BETWEEN_BITS) as i32),
+            settled: Micronewtons((at.force >> FORCE_BITS) as i32),
+            lowered: pressed_before && rise.0 < at.elastic.0.saturating_sub(parameters.limits.level),
             contact: Contact {
                 force: Micronewtons(force),
                 indentation: Nanometres(at.indentation),
@@ -151,92 +167,114 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         }
     }
 
-    /// The elastic pressure at a pressure.
-    fn invert(&mut self, step: &SeriesStep, pressure: i64) {
-        let mut rest = pressure.saturating_sub(self.elastic);
-        for (state, term) in self.held.iter_mut().zip(step.terms()) {
-            *state = state.saturating_sub(term.lost.of(*state));
-            rest = rest.saturating_sub(*state);
+    /// `g * F_e` after a change of `F_e`.
+    fn convolved(&mut self, step: &SeriesStep, change: i64) -> i64 {
+        let mut sum = 0_i64;
+        for (state, term) in self.forces.iter_mut().zip(step.terms()) {
+            *state = *state - term.lost.of(*state) + term.share.of(change);
+            sum = sum.saturating_add(*state);
         }
-        let change = step.inverse.of(rest);
-        self.elastic = self.elastic.saturating_add(change);
-        for (state, term) in self.held.iter_mut().zip(step.terms()) {
-            *state = state.saturating_add(term.taken.of(change));
-        }
+        // A force of 2^28 and its terms have 2^47, the stiffness 2^28.
+        let [low, stiffness] = [SeriesStep::STIFFNESS_BITS, step.stiffness].map(i64::from);
+        self.settled
+            .saturating_add((sum >> low).saturating_mul(stiffness))
     }
 
-    /// The square root `w` of the area at an elastic pressure, micronewtons over a pascal: as a factor from a pressure to `w P`, as one from there
-    /// to a force, and `y`.
-    fn area(design: &impl Design, elastic: i64, at: &Lookup) -> (Factor, Factor, i64) {
+    /// `A P`, or `rho A (P - P_0)`.
+    fn by_area(&mut self, design: &impl Design, at: &Lookup, pressure: i64, pressed_before: bool) -> i64 {
         let parameters = design.parameters();
         let below_count = FRACTION_BITS - parameters.pressure_fraction_bits;
         let last = i64::from(parameters.last_rise.0) << below_count;
-        let first = (last >> AREA_SHIFT).max(1);
-        let place = elastic.clamp(first, last);
-        let force = if place == elastic {
+        let place = self.elastic.clamp(last >> AREA_SHIFT, last);
+        let force = if place == self.elastic {
             at.force
         } else {
             Lookup::at(design, place).force
         };
-        // `A = force / place 2^16`, each shifted to the top of its word: the ratio has 32 or 33 bits.
-        let (force, place) = (force.max(1) as u64, place as u64);
+        // `force / place`, each shifted to the top of its word: 32 or 33 bits.
+        let (force, place) = (force.max(1) as u64, place.max(1) as u64);
         let (up, down) = (force.leading_zeros(), place.leading_zeros());
-        let ratio = (force << up) / ((place << down) >> 32);
-        let exponent = down as i32 - up as i32 - 16;
-        // An even exponent is left, so that its half is whole.
-        let room = 30 + (exponent & 1);
-        let root = (ratio << room).isqrt();
-        // 10 to 51, as a force has 1 to 44 bits and a place 17 to 56.
-        let shift = ((room - exponent) / 2) as u32;
-        let mantissa = root as u32;
-        let to_root = Factor {
-            mantissa,
-            shift: shift + FRACTION_BITS - ROOT_BITS,
+        let ratio = (force << up) / ((place << down) >> 32) >> 1;
+        // From a pressure with 32 bits below a pascal to a force with 16 below a micronewton. An area is below 32 768 mm2.
+        let area = Factor {
+            mantissa: ratio as u32,
+            shift: up.saturating_sub(down + 1).min(Factor::MOST_SHIFT),
         };
-        let to_force = Factor {
-            mantissa,
-            shift: shift + ROOT_BITS,
+        let left = |[touched, from]: [i64; 2]| self.elastic <= touched || pressure <= from;
+        if !pressed_before {
+            self.free = None;
+        } else if pressure < 0 && self.free.is_none_or(left) {
+            self.free = Some([self.elastic, pressure]);
+        }
+        let Some([touched, from]) = self.free else {
+            return area.of(pressure);
         };
-        (to_root, to_force, to_root.of(elastic.clamp(0, last)))
+        let grown = pressure - from;
+        // Noise around a wall that nothing touches.
+        if grown < i64::from(parameters.thresholds.release.0) << below_count {
+            return 0;
+        }
+        // In eighths of what makes it stiff again, `1 - x / 8` to the eighth.
+        let grown_by = self.elastic - touched;
+        let mut softer = WHOLE - part(grown_by, touched).min(STIFF_AGAIN) * 10 / 24;
+        for _ in 0..3 {
+            softer = (softer.min(WHOLE - 1) * softer.min(WHOLE - 1)) >> 16;
+        }
+        let softer = (softer * SOFTER) >> 16;
+        share(WHOLE - softer).of(area.of(grown))
     }
 
-    /// From the convolved root to that by the area as the elastic pressure falls from its peak.
-    fn between(&mut self, step: &SeriesStep, convolved: i64, by_area: i64) -> i64 {
+    /// How far the elastic pressure has fallen from its peak since the wall had last recovered. Peaks are forgotten with the slowest term.
+    fn note_fall(&mut self, step: &SeriesStep, pressed_before: bool) {
         if let Some(slowest) = step.terms().last() {
-            self.peak = self.peak.saturating_sub(slowest.lost.of(self.peak));
-        }
-        self.peak = self.peak.max(self.elastic);
-        let whole = (self.peak >> FALL_SHIFT).max(1);
-        let fall = self.peak.saturating_sub(self.elastic);
-        if fall >= whole {
-            return by_area;
-        }
-        // To 16 bits.
-        let excess = (64 - whole.leading_zeros()).saturating_sub(16);
-        let part = ((fall >> excess) << 16) as u32 / (whole >> excess) as u32;
-        let part = Factor {
-            mantissa: part << 16,
-            shift: 32,
-        };
-        convolved.saturating_add(part.of(by_area.saturating_sub(convolved)))
-    }
-
-    /// The largest force.
-    fn remember(&mut self, step: &SeriesStep, force: i32) {
-        if let Some(slowest) = step.terms().last() {
+            self.peak -= slowest.lost.of(self.peak);
             self.peak_force -= slowest.lost.of(self.peak_force);
         }
-        self.peak_force = self.peak_force.max(i64::from(force) << ROOT_BITS);
+        self.peak = self.peak.max(self.elastic);
+        let fallen = part(self.peak.saturating_sub(self.elastic), self.peak >> FALL_SHIFT);
+        self.fallen = if pressed_before {
+            self.fallen.max(fallen.min(WHOLE))
+        } else {
+            0
+        };
     }
 
     /// The largest force so far, forgotten with the slowest term.
     pub fn peak_force(&self) -> Micronewtons {
-        Micronewtons((self.peak_force >> ROOT_BITS) as i32)
+        Micronewtons((self.peak_force >> FORCE_BITS) as i32)
     }
 
     /// The zero moved, and with it every pressure: by so many counts.
     pub fn shift(&mut self, design: &impl Design, by: PressureRise) {
         self.elastic = self.elastic.saturating_add(pressure(design, by));
+    }
+}
+
+/// The terms go on by a step at whose end they and the settled wall bear a stress: the settled wall's change.
+fn follow(step: &SeriesStep, terms: &mut [i64], mut stress: i64) -> i64 {
+    for (state, term) in terms.iter_mut().zip(step.terms()) {
+        *state -= term.lost.of(*state);
+        stress = stress.saturating_sub(*state);
+    }
+    for (state, term) in terms.iter_mut().zip(step.terms()) {
+        *state = state.saturating_add(term.share.of(stress));
+    }
+    step.settled.of(stress)
+}
+
+/// A part of a whole, both >= 0, as a share to 15 bits; of up to 2^15 wholes.
+fn part(of: i64, whole: i64) -> u32 {
+    let whole = whole.max(1);
+    let excess = (64 - whole.leading_zeros()).saturating_sub(15);
+    let of = (of >> excess).clamp(0, i64::from(u16::MAX)) as u32;
+    (of << 16) / (whole >> excess) as u32
+}
+
+/// A share as a factor; one is the largest there is.
+fn share(share: u32) -> Factor {
+    Factor {
+        mantissa: (share << 15).saturating_mul(2),
+        shift: 0,
     }
 }
 

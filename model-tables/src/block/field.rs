@@ -116,28 +116,30 @@ impl Field for Factor {
     }
 }
 
-/// What is lost, a part, and what is taken.
+/// What is lost, and its share.
 impl Field for TermStep {
     const LENGTH: usize = 2 * Factor::LENGTH;
 
     fn get(bytes: &[u8]) -> Option<Self> {
-        let (lost, taken) = bytes.split_at_checked(Factor::LENGTH)?;
-        let (lost, taken) = (Factor::get(lost)?, Factor::get(taken)?);
-        lost.is_a_part().then_some(Self { lost, taken })
+        let (lost, share) = bytes.split_at_checked(Factor::LENGTH)?;
+        Some(Self {
+            lost: Factor::get(lost)?,
+            share: Factor::get(share)?,
+        })
     }
 
     #[cfg(feature = "std")]
     fn put(&self, out: &mut Vec<u8>) {
         self.lost.put(out);
-        self.taken.put(out);
+        self.share.put(out);
     }
 
     #[cfg(feature = "std")]
     fn spell(&self, out: &mut String) -> fmt::Result {
         out.push_str("model_tables::material::series::TermStep { lost: ");
         self.lost.spell(out)?;
-        out.push_str(", taken: ");
-        self.taken.spell(out)?;
+        out.push_str(", share: ");
+        self.share.spell(out)?;
         out.push_str(" }");
         Ok(())
     }

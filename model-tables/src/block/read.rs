@@ -7,7 +7,7 @@ use super::{
     BlockError, ENTRY, HEAD, LAYOUT_VERSION, LONGEST_NAME, MAGIC, StoredCalibration, aligned, check,
 };
 use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
-use crate::material::series::WallSeries;
+use crate::material::series::{SeriesStep, WallSeries};
 use crate::table::loaded::LoadedTables;
 use crate::table::{Constant, Layout, Powers};
 
@@ -96,8 +96,8 @@ fn relaxation(mut own: Cursor<'_>) -> Result<WallSeries, BlockError> {
     if wall.remaining_permille > 1000 {
         return Err(value("remaining_permille"));
     }
-    if !wall.step.inverse.is_a_part() {
-        return Err(value("inverse"));
+    if wall.step.stiffness < 1 << SeriesStep::STIFFNESS_BITS {
+        return Err(value("stiffness"));
     }
     for term in &mut wall.step.terms {
         if !own.bytes.is_empty() {

@@ -70,17 +70,18 @@ const DATA: TipData<'_> = TipData {
     relaxation: None,
 };
 
-/// A half of a term is lost, and it takes three times a change.
+/// A half of a term is lost, and it takes three tenths of a change.
 fn wall(terms: usize) -> WallSeries {
     let mut step = SeriesStep {
-        inverse: Factor::nearest(0.1),
+        settled: Factor::nearest(0.1),
+        stiffness: 10 << SeriesStep::STIFFNESS_BITS,
         count: terms,
         ..SeriesStep::default()
     };
     for term in &mut step.terms[..terms] {
         *term = TermStep {
             lost: Factor::nearest(0.5),
-            taken: Factor::nearest(3.0),
+            share: Factor::nearest(0.3),
         };
     }
     WallSeries {
@@ -118,13 +119,13 @@ fn a_wall_in_time_that_cannot_be_is_refused() {
     odd.remaining_permille = 1001;
     assert_eq!(refused(odd), value("remaining_permille"));
     let mut odd = wall(2);
-    odd.step.inverse = Factor::nearest(1.5);
-    assert_eq!(refused(odd), value("inverse"));
+    odd.step.stiffness = 255;
+    assert_eq!(refused(odd), value("stiffness"));
     let mut odd = wall(2);
-    odd.step.terms[1].lost = Factor::nearest(1.5);
-    assert_eq!(refused(odd), value("term"));
+    odd.step.settled.shift = 63;
+    assert_eq!(refused(odd), value("settled"));
     let mut odd = wall(2);
-    odd.step.terms[1].taken.shift = 96;
+    odd.step.terms[1].share.shift = 63;
     assert_eq!(refused(odd), value("term"));
 }
 

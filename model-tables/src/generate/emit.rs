@@ -148,11 +148,12 @@ fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
          pub const RELAXATION: {OF}::WallSeries = {OF}::WallSeries {{\n\
          \x20   remaining_permille: {},\n\
          \x20   step: {OF}::SeriesStep {{\n\
-         \x20       count: {},",
-        wall.remaining_permille, wall.step.count
+         \x20       count: {},\n\
+         \x20       stiffness: {},",
+        wall.remaining_permille, wall.step.count, wall.step.stiffness
     )?;
     let mut source = Source { out, indent: 8 };
-    source.field("inverse", &mut wall.step.inverse)?;
+    source.field("settled", &mut wall.step.settled)?;
     writeln!(out, "        terms: [")?;
     for term in &wall.step.terms {
         write!(out, "            ")?;

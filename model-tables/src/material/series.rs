@@ -1,8 +1,8 @@
 //! The series of a relaxing wall over a step of time, in the integers that the chip computes with.
 
-use super::relaxation::{MAX_TERMS, Relaxation};
+use super::relaxation::{MAX_TERMS, Relaxation, Term};
 
-/// A factor from 0 up: `mantissa / 2^shift`.
+/// A factor from 0 to below 1: `mantissa / 2^(32 + shift)`.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Factor {
     /// 32 bits.
@@ -13,46 +13,31 @@ pub struct Factor {
 
 impl Factor {
     /// Largest shift.
-    pub const MOST_SHIFT: u32 = 95;
+    pub const MOST_SHIFT: u32 = 62;
 
-    /// The nearest factor to a value >= 0; one too small for the word is 0.
+    /// The nearest factor to a value from 0 to 1; one too small for the word is 0.
     pub fn nearest(value: f64) -> Self {
-        let (mantissa, exponent) = libm::frexp(value);
-        let scaled = libm::round(libm::ldexp(mantissa, 32));
-        // Rounded up to the next power of two.
-        let (scaled, exponent) = if scaled < 4_294_967_296.0 {
-            (scaled, exponent)
-        } else {
-            (2_147_483_648.0, exponent + 1)
-        };
-        match u32::try_from(32 - exponent) {
-            Ok(shift @ 0..=Self::MOST_SHIFT) if value > 0.0 => Self {
-                mantissa: scaled as u32,
-                shift,
+        let (fraction, exponent) = libm::frexp(value);
+        // From 2^31 to 2^32, which is one too many.
+        let mantissa = libm::round(libm::ldexp(fraction, 32)) as u32;
+        match u32::try_from(-exponent) {
+            Ok(shift @ 0..=Self::MOST_SHIFT) if value > 0.0 => Self { mantissa, shift },
+            // One.
+            Err(_) if value > 0.0 => Self {
+                mantissa: u32::MAX,
+                shift: 0,
             },
             _ => Self::default(),
         }
     }
 
-    /// Its product with a number, within one unit, or for a factor above 1 within one unit times the next power of two; saturates.
-    pub fn of(self, x: i64) -> i64 {
-        // The product over 2^32, rounded down: at most 2^63 (1 - 2^-32).
-        let high = (x >> 32) * i64::from(self.mantissa);
-        let low = (u64::from(x as u32) * u64::from(self.mantissa)) >> 32;
-        let upper = high + low as i64;
-        match self.shift.checked_sub(32) {
-            Some(0) => upper,
-            Some(right) => upper.saturating_add(1 << (right - 1)) >> right,
-            None => {
-                let left = 32 - self.shift;
-                upper.clamp(i64::MIN >> left, i64::MAX >> left) << left
-            }
-        }
-    }
-
-    /// Whether it is at most 1 and the chip computes with it.
-    pub(crate) const fn is_a_part(self) -> bool {
-        self.shift <= Self::MOST_SHIFT && self.mantissa as u128 <= 1 << self.shift
+    /// Its product with a number, within one unit.
+    pub const fn of(self, x: i64) -> i64 {
+        // The product over 2^32, rounded down: less than the number, so that neither it nor its sum with a half leaves the word.
+        let high = (x >> 32) * self.mantissa as i64;
+        let low = ((x as u32 as u64) * self.mantissa as u64) >> 32;
+        let half = (1_i64 << self.shift) >> 1;
+        (high + low as i64).saturating_add(half) >> self.shift
     }
 }
 
@@ -61,15 +46,17 @@ impl Factor {
 pub struct TermStep {
     /// `k = 1 - exp(-dt / tau)`: what is lost of it.
     pub lost: Factor,
-    /// `c = g tau / dt k`: what it takes of a change.
-    pub taken: Factor,
+    /// `c / (1 + sum c)` with `c = g tau / dt k`: its share of a change of stress.
+    pub share: Factor,
 }
 
 /// A series over a step of time.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct SeriesStep {
-    /// `1 / (1 + sum c_i)`.
-    pub inverse: Factor,
+    /// `1 / (1 + sum c)`: the settled wall's share of a change of stress.
+    pub settled: Factor,
+    /// `1 + sum c`, in `1 / 2^`[`SeriesStep::STIFFNESS_BITS`]: the stress of a change over the settled wall's.
+    pub stiffness: u32,
     /// How many terms it has.
     pub count: usize,
     /// The terms, the slowest last; those beyond the count are 0.
@@ -77,22 +64,26 @@ pub struct SeriesStep {
 }
 
 impl SeriesStep {
+    /// Bits below one of the stiffness, which is at most 2^20.
+    pub const STIFFNESS_BITS: u32 = 8;
+
     /// A series over a step of so many seconds, > 0.
     pub fn over(relaxation: &Relaxation, seconds: f64) -> Self {
+        let taken = |term: &Term| term.over(seconds).taken;
+        let stiffness = relaxation.terms().iter().fold(1.0, |sum, term| sum + taken(term));
+        let scaled = libm::ldexp(stiffness, Self::STIFFNESS_BITS as i32);
         let mut step = Self {
+            settled: Factor::nearest(1.0 / stiffness),
+            stiffness: libm::round(scaled) as u32,
             count: relaxation.terms().len(),
             ..Self::default()
         };
-        let mut sum = 1.0;
         for (step, term) in step.terms.iter_mut().zip(relaxation.terms()) {
-            let decay = term.over(seconds);
             *step = TermStep {
                 lost: Factor::nearest(-libm::expm1(-seconds / term.time)),
-                taken: Factor::nearest(decay.taken),
+                share: Factor::nearest(taken(term) / stiffness),
             };
-            sum += decay.taken;
         }
-        step.inverse = Factor::nearest(1.0 / sum);
         step
     }
 
@@ -114,24 +105,34 @@ pub struct WallSeries {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::relaxation::AGILUS30_RELAXATION;
 
     #[test]
-    fn a_product_is_the_nearest_and_saturates() {
-        let x = 123_456_789_012_345_678;
-        for value in [1e-7, 0.25, 0.632, 1.0 - 1e-12, 3.0, 440.8, 5.7e4] {
-            let factor = Factor::nearest(value);
-            let exact = x as f64 * value;
-            for (found, exact) in [(factor.of(x), exact), (factor.of(-x), -exact)] {
-                let exact = exact.clamp(i64::MIN as f64, i64::MAX as f64);
+    fn a_product_is_the_nearest() {
+        let x = 1_234_567_890_123_456_789_i64;
+        for value in [1e-7, 0.25, 0.632, 1.0 - 1e-12, 1.0] {
+            for x in [x, -x, i64::MAX, i64::MIN] {
+                let (found, exact) = (Factor::nearest(value).of(x) as f64, x as f64 * value);
                 // The mantissa is within 2^-32 of the value.
                 assert!(
-                    (found as f64 - exact).abs() <= exact.abs() * 3e-10 + 1.0,
+                    (found - exact).abs() <= exact.abs() * 3e-10 + 1.0,
                     "{value}: {found} for {exact}"
                 );
             }
         }
-        assert_eq!(Factor::nearest(440.8).of(i64::MAX), i64::MAX >> 9 << 9);
         assert_eq!(Factor::nearest(0.0).of(i64::MAX), 0);
-        assert_eq!(Factor::nearest(0.5).of(3), 2);
+        assert_eq!(Factor::nearest(0.25).of(2), 1);
+    }
+
+    /// Nothing of a change of stress is lost, and each term's share is of its stiffness.
+    #[test]
+    fn shares_are_of_the_whole() {
+        let step = SeriesStep::over(&AGILUS30_RELAXATION, 1e-3);
+        let change = 1_i64 << 60;
+        let shares = step.terms().iter().map(|term| term.share.of(change)).sum::<i64>();
+        let whole = shares + step.settled.of(change);
+        assert!((whole - change).abs() < change >> 29, "{whole}");
+        let unit = (step.settled.of(change) as f64 * f64::from(step.stiffness)) / 256.0;
+        assert!((unit / change as f64 - 1.0).abs() < 1e-4, "{unit}");
     }
 }

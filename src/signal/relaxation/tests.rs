@@ -161,7 +161,7 @@ fn any_rise() -> impl Strategy<Value = i32> {
 }
 
 fn any_factor() -> impl Strategy<Value = Factor> {
-    (any::<u32>(), 0_u32..=95).prop_map(|(mantissa, shift)| Factor { mantissa, shift })
+    (any::<u32>(), 0..=Factor::MOST_SHIFT).prop_map(|(mantissa, shift)| Factor { mantissa, shift })
 }
 
 proptest! {
@@ -170,11 +170,12 @@ proptest! {
     fn extremes_saturate(
         rises in proptest::collection::vec(any_rise(), 1..60),
         factors in proptest::array::uniform9(any_factor()),
+        stiffness in any::<u32>(),
     ) {
-        let [inverse, lost @ .., a, b, c, d] = factors;
-        let mut any_series = SeriesStep { inverse, count: 4, ..SeriesStep::default() };
-        for (term, (lost, taken)) in any_series.terms.iter_mut().zip(lost.into_iter().zip([a, b, c, d])) {
-            *term = TermStep { lost, taken };
+        let [settled, lost @ .., a, b, c, d] = factors;
+        let mut any_series = SeriesStep { settled, stiffness, count: 4, ..SeriesStep::default() };
+        for (term, (lost, share)) in any_series.terms.iter_mut().zip(lost.into_iter().zip([a, b, c, d])) {
+            *term = TermStep { lost, share };
         }
         let mut any_wall = Relaxing::<4>::NEW;
         let mut wall = Relaxing::<TERMS>::NEW;

@@ -13,5 +13,6 @@ fn an_elastic_wall_reads_as_the_tables_do() {
     let sigma = through_tables(&Linear::NEW, rise.rise, &at, rise.sigma);
     assert_eq!(Elastic.read(&Linear::NEW, rise), (at, sigma));
     // What is loaded has room for a memory, and none without a series.
-    assert_eq!(Memory::<8>::NEW.read(&Linear::NEW, rise), (at, sigma));
+    let mut memory = Memory::<8>::NEW;
+    assert_eq!(memory.read(&Linear::NEW, rise), (at, sigma));
 }
