@@ -108,12 +108,13 @@ async fn main(spawner: Spawner) {
         firmware,
         range: constants.transducer.range,
     };
-    let (store, stored) = if start.give_up {
-        (None, Stored::Unreadable)
-    } else {
-        retained::enter(Stage::Store);
-        let (store, stored) = Store::open(board.memory, SLOT, identity).await;
-        (Some(store), stored)
+    let mut store = (!start.give_up).then(|| Store::new(board.memory, SLOT, identity));
+    let stored = match &mut store {
+        None => Stored::Unreadable,
+        Some(store) => {
+            retained::enter(Stage::Store);
+            store.load().await
+        }
     };
     retained::enter(Stage::Transducer);
     let beginning = Beginning {

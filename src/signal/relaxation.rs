@@ -70,8 +70,9 @@ pub struct Relaxing<const TERMS: usize> {
     peak_force: i64,
     /// How far `P_e` has fallen from its peak, of what the force goes over to `A P` in: a share.
     fallen: u32,
-    /// `P_c` and `P_0` of a wall that is free, or was.
-    free: Option<[i64; 2]>,
+    /// `P_c` and `P_0` of a wall that is free, or was: 0 where it was not since it had last recovered.
+    touched: i64,
+    from: i64,
 }
 
 /// What the tables have at an elastic pressure, between two counts.
@@ -117,7 +118,8 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         peak: 0,
         peak_force: 0,
         fallen: 0,
-        free: None,
+        touched: 0,
+        from: 0,
     };
 
     /// A wall that has been at a pressure for ever.
@@ -135,19 +137,18 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     pub fn step(&mut self, design: &impl Design, step: &SeriesStep, rise: PressureRise) -> RelaxedReading {
         let parameters = design.parameters();
         let pressure = pressure(design, rise);
-        let stress = pressure.saturating_sub(self.elastic);
-        let change = follow(step, &mut self.held, stress);
-        self.elastic = self.elastic.saturating_add(change);
+        let stress = pressure
+            .saturating_sub(self.elastic)
+            .saturating_sub(decay(step, &mut self.held));
+        take(step, &mut self.held, stress);
+        self.elastic = self.elastic.saturating_add(step.settled.of(stress));
         let at = Lookup::at(design, self.elastic);
-        let change = at.force - core::mem::replace(&mut self.settled, at.force);
-        // Its terms are kept over the stiffness, as a change of force has no stress to be shared.
-        let convolved = self.convolved(step, change);
+        let convolved = self.convolved(step, at.force);
         let pressed_before = at.elastic.0 > parameters.limits.level;
         let by_area = self.by_area(design, &at, pressure, pressed_before);
         self.note_fall(step, pressed_before);
-        let excess = share(WHOLE - self.fallen).of(convolved.saturating_sub(by_area)) >> 1;
-        let force = by_area.saturating_add(excess);
-        let force = (force >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
+        let excess = share(WHOLE - self.fallen).of(convolved - by_area) >> 1;
+        let force = ((by_area + excess) >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
         self.peak_force = self.peak_force.max(i64::from(force) << FORCE_BITS);
 
         let recovering = pressed_before && force == 0 && rise.0 < 0;
@@ -167,17 +168,13 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         }
     }
 
-    /// `g * F_e` after a change of `F_e`.
-    fn convolved(&mut self, step: &SeriesStep, change: i64) -> i64 {
-        let mut sum = 0_i64;
-        for (state, term) in self.forces.iter_mut().zip(step.terms()) {
-            *state = *state - term.lost.of(*state) + term.share.of(change);
-            sum = sum.saturating_add(*state);
-        }
-        // A force of 2^28 and its terms have 2^47, the stiffness 2^28.
-        let [low, stiffness] = [SeriesStep::STIFFNESS_BITS, step.stiffness].map(i64::from);
-        self.settled
-            .saturating_add((sum >> low).saturating_mul(stiffness))
+    /// `g * F_e` where the settled force becomes another one. The terms are kept over the stiffness: below 2^62 with it.
+    fn convolved(&mut self, step: &SeriesStep, settled: i64) -> i64 {
+        let change = settled - core::mem::replace(&mut self.settled, settled);
+        let left = decay(step, &mut self.forces);
+        take(step, &mut self.forces, change);
+        let sum = left.saturating_add(change - step.settled.of(change)) >> SeriesStep::STIFFNESS_BITS;
+        settled + sum.clamp(-(1 << 33), 1 << 33) * i64::from(step.stiffness)
     }
 
     /// `A P`, or `rho A (P - P_0)`.
@@ -200,23 +197,23 @@ impl<const TERMS: usize> Relaxing<TERMS> {
             mantissa: ratio as u32,
             shift: up.saturating_sub(down + 1).min(Factor::MOST_SHIFT),
         };
-        let left = |[touched, from]: [i64; 2]| self.elastic <= touched || pressure <= from;
+        let left = self.touched == 0 || self.elastic <= self.touched || pressure <= self.from;
         if !pressed_before {
-            self.free = None;
-        } else if pressure < 0 && self.free.is_none_or(left) {
-            self.free = Some([self.elastic, pressure]);
+            self.touched = 0;
+        } else if pressure < 0 && left {
+            self.touched = self.elastic;
+            self.from = pressure;
         }
-        let Some([touched, from]) = self.free else {
+        if self.touched == 0 {
             return area.of(pressure);
-        };
-        let grown = pressure - from;
+        }
+        let grown = pressure - self.from;
         // Noise around a wall that nothing touches.
         if grown < i64::from(parameters.thresholds.release.0) << below_count {
             return 0;
         }
         // In eighths of what makes it stiff again, `1 - x / 8` to the eighth.
-        let grown_by = self.elastic - touched;
-        let mut softer = WHOLE - part(grown_by, touched).min(STIFF_AGAIN) * 10 / 24;
+        let mut softer = WHOLE - part(self.elastic - self.touched, self.touched).min(STIFF_AGAIN) * 10 / 24;
         for _ in 0..3 {
             softer = (softer.min(WHOLE - 1) * softer.min(WHOLE - 1)) >> 16;
         }
@@ -250,16 +247,23 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     }
 }
 
-/// The terms go on by a step at whose end they and the settled wall bear a stress: the settled wall's change.
-fn follow(step: &SeriesStep, terms: &mut [i64], mut stress: i64) -> i64 {
+/// What is left of the terms after a step, and their sum.
+#[inline(never)]
+fn decay(step: &SeriesStep, terms: &mut [i64]) -> i64 {
+    let mut sum = 0_i64;
     for (state, term) in terms.iter_mut().zip(step.terms()) {
         *state -= term.lost.of(*state);
-        stress = stress.saturating_sub(*state);
+        sum = sum.saturating_add(*state);
     }
+    sum
+}
+
+/// The terms take their shares of a change.
+#[inline(never)]
+fn take(step: &SeriesStep, terms: &mut [i64], change: i64) {
     for (state, term) in terms.iter_mut().zip(step.terms()) {
-        *state = state.saturating_add(term.share.of(stress));
+        *state = state.saturating_add(term.share.of(change));
     }
-    step.settled.of(stress)
 }
 
 /// A part of a whole, both >= 0, as a share to 15 bits; of up to 2^15 wholes.

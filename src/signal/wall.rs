@@ -79,18 +79,24 @@ impl Wall for Elastic {
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Memory<const TERMS: usize> {
     wall: Relaxing<TERMS>,
-    /// The other end of the bracket.
-    settled: Option<Relaxing<TERMS>>,
-    /// Where the wall is, if its past is known.
-    last: Option<(Microseconds, PressureRise)>,
+    /// The other end of the bracket, while that is open.
+    settled: Relaxing<TERMS>,
+    open: bool,
+    /// Whether nothing is missing since the last reading, and where that was.
+    tracked: bool,
+    time: Microseconds,
+    rise: PressureRise,
     lowered: bool,
 }
 
 impl<const TERMS: usize> Wall for Memory<TERMS> {
     const NEW: Self = Self {
         wall: Relaxing::NEW,
-        settled: None,
-        last: None,
+        settled: Relaxing::NEW,
+        open: false,
+        tracked: false,
+        time: Microseconds(0),
+        rise: PressureRise(0),
         lowered: false,
     };
 
@@ -98,36 +104,36 @@ impl<const TERMS: usize> Wall for Memory<TERMS> {
         let Some(series) = design.series() else {
             return Elastic.read(design, rise);
         };
-        let first = self.go_on(design, series, &rise);
+        let steps = self.steps(design, &rise);
+        let from = i64::from(self.rise.0);
+        let change = i64::from(rise.rise.0) - from;
+        let mut readings = [RelaxedReading::default(); 2];
+        for i in 1..=i64::from(steps) {
+            let between = PressureRise((from + change * i / i64::from(steps)) as i32);
+            readings[0] = self.wall.step(design, &series.step, between);
+            if self.open {
+                readings[1] = self.settled.step(design, &series.step, between);
+            }
+        }
+        self.rise = rise.rise;
+        let [first, second] = readings;
         self.lowered = first.lowered;
         let mut values = first.contact;
         let mut sigma = sigma_of(design, series, &self.wall, &first, rise.sigma);
-        if let Some(settled) = &mut self.settled {
-            let second = settled.step(design, &series.step, rise.rise);
-            let half = |one: i32, other: i32| (i64::from(one).abs_diff(i64::from(other)) / 2) as i32;
-            let middle = |one: i32, other: i32| i32::midpoint(one, other);
-            let (one, other) = (first.contact, second.contact);
-            let apart = [
-                half(one.force.0, other.force.0),
-                half(one.indentation.0, other.indentation.0),
-            ];
-            values.force = Micronewtons(middle(one.force.0, other.force.0));
-            values.indentation = Nanometres(middle(one.indentation.0, other.indentation.0));
-            let known = [sigma.force.0, sigma.indentation.0];
-            sigma.force = Micronewtons(hypotenuse(known[0], apart[0]));
-            sigma.indentation = Nanometres(hypotenuse(known[1], apart[1]));
-            let open = apart
-                .iter()
-                .zip(&known)
-                .any(|(apart, known)| *apart > known / TOGETHER);
-            let doubtful = apart.iter().zip(&known).any(|(apart, known)| apart > known);
+        if self.open {
+            let other = second.contact;
+            let force = middle(values.force.0, other.force.0, sigma.force.0);
+            let indentation = middle(values.indentation.0, other.indentation.0, sigma.indentation.0);
+            values.force = Micronewtons(force.value);
+            values.indentation = Nanometres(indentation.value);
+            sigma.force = Micronewtons(force.sigma);
+            sigma.indentation = Nanometres(indentation.sigma);
+            let doubtful = force.doubtful || indentation.doubtful;
             values.warnings = values
                 .warnings
                 .and(other.warnings)
                 .and(Warnings::PAST_UNKNOWN.when(doubtful));
-            if !open {
-                self.settled = None;
-            }
+            self.open = force.open || indentation.open;
         }
         values.warnings = values.warnings.and(rise.warnings);
         (values, sigma)
@@ -138,47 +144,49 @@ impl<const TERMS: usize> Wall for Memory<TERMS> {
     }
 
     fn shift(&mut self, design: &impl Design, by: PressureRise) {
-        for wall in [Some(&mut self.wall), self.settled.as_mut()]
-            .into_iter()
-            .flatten()
-        {
-            wall.shift(design, by);
-        }
-        if let Some((_, rise)) = &mut self.last {
-            rise.0 = rise.0.saturating_add(by.0);
-        }
+        self.wall.shift(design, by);
+        self.settled.shift(design, by);
+        self.rise.0 = self.rise.0.saturating_add(by.0);
     }
 
     fn lose_track(&mut self) {
-        self.last = None;
+        self.tracked = false;
     }
 }
 
 impl<const TERMS: usize> Memory<TERMS> {
-    /// To a rise, in whole reports, even from the last one on.
-    fn go_on(&mut self, design: &impl Design, series: &WallSeries, to: &Rise) -> RelaxedReading {
+    /// How many reports after the last one this one is; one where that is not known, and then the bracket opens.
+    fn steps(&mut self, design: &impl Design, to: &Rise) -> u32 {
         let parameters = design.parameters();
-        let period = u64::from(parameters.period);
-        let passed = self
-            .last
-            .map(|(time, rise)| (to.time.0.saturating_sub(time.0), rise));
-        self.last = Some((to.time, to.rise));
-        match passed {
-            Some((passed, from)) if passed <= parameters.gap() => {
-                // At most 20.
-                let steps = ((passed + period / 2) / period).max(1) as i64;
-                let change = i64::from(to.rise.0) - i64::from(from.0);
-                for i in 1..steps {
-                    let rise = i64::from(from.0) + change * i / steps;
-                    self.wall.step(design, &series.step, PressureRise(rise as i32));
-                    if let Some(settled) = &mut self.settled {
-                        settled.step(design, &series.step, PressureRise(rise as i32));
-                    }
-                }
-            }
-            _ => self.settled = Some(Relaxing::settled(design, to.rise)),
+        let passed = to.time.0.saturating_sub(self.time.0);
+        self.time = to.time;
+        if core::mem::replace(&mut self.tracked, true) && passed <= parameters.gap() {
+            // At most 20.
+            return ((passed as u32 + parameters.period / 2) / parameters.period).max(1);
         }
-        self.wall.step(design, &series.step, to.rise)
+        self.settled = Relaxing::settled(design, to.rise);
+        self.open = true;
+        1
+    }
+}
+
+/// The middle of two values of which one is known to this 1-sigma.
+struct Middle {
+    value: i32,
+    sigma: i32,
+    /// Half of what they are apart is more than the 1-sigma, or counts beside it.
+    doubtful: bool,
+    open: bool,
+}
+
+#[inline(never)]
+fn middle(one: i32, other: i32, sigma: i32) -> Middle {
+    let apart = (one.abs_diff(other) / 2) as i32;
+    Middle {
+        value: i32::midpoint(one, other),
+        sigma: hypotenuse(sigma, apart),
+        doubtful: apart > sigma,
+        open: apart > sigma / TOGETHER,
     }
 }
 

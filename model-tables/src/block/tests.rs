@@ -119,8 +119,10 @@ fn a_wall_in_time_that_cannot_be_is_refused() {
     odd.remaining_permille = 1001;
     assert_eq!(refused(odd), value("remaining_permille"));
     let mut odd = wall(2);
-    odd.step.stiffness = 255;
-    assert_eq!(refused(odd), value("stiffness"));
+    for stiffness in [255, (1 << 28) + 1] {
+        odd.step.stiffness = stiffness;
+        assert_eq!(refused(odd), value("stiffness"));
+    }
     let mut odd = wall(2);
     odd.step.settled.shift = 63;
     assert_eq!(refused(odd), value("settled"));

@@ -32,6 +32,8 @@ impl Factor {
     }
 
     /// Its product with a number, within one unit.
+    // A call where space is short: fifty bytes each time else.
+    #[inline(never)]
     pub const fn of(self, x: i64) -> i64 {
         // The product over 2^32, rounded down: less than the number, so that neither it nor its sum with a half leaves the word.
         let high = (x >> 32) * self.mantissa as i64;
@@ -64,8 +66,10 @@ pub struct SeriesStep {
 }
 
 impl SeriesStep {
-    /// Bits below one of the stiffness, which is at most 2^20.
+    /// Bits below one of the stiffness.
     pub const STIFFNESS_BITS: u32 = 8;
+    /// The largest stiffness: eight terms of 100 000, and more than one.
+    pub const MOST_STIFFNESS: u32 = 1 << (20 + Self::STIFFNESS_BITS);
 
     /// A series over a step of so many seconds, > 0.
     pub fn over(relaxation: &Relaxation, seconds: f64) -> Self {

@@ -170,7 +170,7 @@ proptest! {
     fn extremes_saturate(
         rises in proptest::collection::vec(any_rise(), 1..60),
         factors in proptest::array::uniform9(any_factor()),
-        stiffness in any::<u32>(),
+        stiffness in 256..=SeriesStep::MOST_STIFFNESS,
     ) {
         let [settled, lost @ .., a, b, c, d] = factors;
         let mut any_series = SeriesStep { settled, stiffness, count: 4, ..SeriesStep::default() };
