@@ -91,11 +91,7 @@ impl Lookup {
         let part = (elastic >> (below_count - FORCE_BITS)) & i64::from(WHOLE - 1);
         // The states' words have room for a hundred times a largest pressure of 2^24 Pa, which has 41 bits here.
         let counts = (elastic >> below_count).clamp(i64::from(-i32::MAX), i64::from(i32::MAX - 1)) as i32;
-        let mut read = [design.lookup(PressureRise(counts)); 2];
-        for (reading, next) in read.iter_mut().zip(0..) {
-            *reading = design.lookup(PressureRise(counts + next));
-        }
-        let [below, above] = read;
+        let [below, above] = [counts, counts + 1].map(|count| design.lookup(PressureRise(count)));
         // Outputs are below 2^31.
         let between =
             |below: i32, above: i32| (i64::from(below) << FORCE_BITS) + i64::from(above - below) * part;
@@ -122,15 +118,12 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         from: 0,
     };
 
-    /// A wall that has been at a pressure for ever.
-    pub fn settled(design: &impl Design, rise: PressureRise) -> Self {
-        let elastic = pressure(design, rise);
-        Self {
-            elastic,
-            settled: Lookup::at(design, elastic).force,
-            peak: elastic.max(0),
-            ..Self::NEW
-        }
+    /// It has been at a pressure for ever.
+    pub fn settle(&mut self, design: &impl Design, rise: PressureRise) {
+        *self = Self::NEW;
+        self.elastic = pressure(design, rise);
+        self.settled = Lookup::at(design, self.elastic).force;
+        self.peak = self.elastic.max(0);
     }
 
     /// Goes on by a step of time to a pressure rise.
@@ -271,7 +264,7 @@ fn part(of: i64, whole: i64) -> u32 {
     let whole = whole.max(1);
     let excess = (64 - whole.leading_zeros()).saturating_sub(15);
     let of = (of >> excess).clamp(0, i64::from(u16::MAX)) as u32;
-    (of << 16) / (whole >> excess) as u32
+    (of << 16) / ((whole >> excess) as u32).max(1)
 }
 
 /// A share as a factor; one is the largest there is.

@@ -164,7 +164,7 @@ impl<const TERMS: usize> Memory<TERMS> {
             // At most 20.
             return ((passed as u32 + parameters.period / 2) / parameters.period).max(1);
         }
-        self.settled = Relaxing::settled(design, to.rise);
+        self.settled.settle(design, to.rise);
         self.open = true;
         1
     }

@@ -124,15 +124,13 @@ impl<F: NorFlash> Store<F> {
     /// Reads both slots.
     // In place, and the latest record into its own: moved from one future to another they take a `memmove`, 1.6 kB of flash.
     pub async fn load(&mut self) -> Stored {
-        let first = self.scan(0).await;
-        let before = self.latest.take();
-        let second = self.scan(1).await;
-        let sequence = |latest: &Option<Record>| latest.as_ref().map_or(0, |record| record.sequence);
-        let home = usize::from(sequence(&self.latest) > sequence(&before));
-        if home == 0 {
-            self.latest = before;
-        }
-        let (serves, other) = [(&first, &second), (&second, &first)][home];
+        let logs = [self.scan(0).await, self.scan(1).await];
+        let [first, second] = &logs;
+        let (serves, other) = if self.home == 0 {
+            (first, second)
+        } else {
+            (second, first)
+        };
         // Saves leave a slot when it is full, so behind a slot that is not full there is no newer one; and the records
         // of a slot are older than the first of the next.
         let turned_over = !serves.holds || serves.used == self.places();
@@ -140,7 +138,6 @@ impl<F: NorFlash> Store<F> {
         if turned_over && !other.holds {
             self.hidden += other.hidden;
         }
-        self.home = home as u32;
         self.current = self.home;
         self.next = serves.used;
         self.erasures = serves.erasures.max(other.erasures);
@@ -153,7 +150,7 @@ impl<F: NorFlash> Store<F> {
         }
     }
 
-    /// Reads one slot, each place once, and keeps its last record. All of it: a place that cannot be read now may read as blank at another start,
+    /// Reads one slot, each place once, and keeps its last record where that is newer than the other slot's. All of it: a place that cannot be read now may read as blank at another start,
     /// so blanks may lie before a record.
     async fn scan(&mut self, which: u32) -> Log {
         let mut log = Log::default();
@@ -164,7 +161,10 @@ impl<F: NorFlash> Store<F> {
                 Place::Record(record) => {
                     log.erasures = log.erasures.max(record.erasures);
                     log.holds = true;
-                    self.latest = Some(record);
+                    if self.home == which || record.sequence > self.sequence() {
+                        self.latest = Some(record);
+                        self.home = which;
+                    }
                     log.hidden = 0;
                 }
                 Place::Cut => {}
@@ -266,7 +266,7 @@ impl<F: NorFlash> Store<F> {
             let _ = self.flash.write(self.offset(self.current, place), &bytes).await;
             match self.read(self.current, place).await {
                 Place::Record(found) if found == *record => {
-                    self.latest = Some(*record);
+                    self.latest = Some(found);
                     self.hidden = 0;
                     self.home = self.current;
                     self.next = place + 1;
