@@ -17,7 +17,7 @@
 //!
 //! `F = rho A (P - P_0), rho = 1 - (1 - 0.63) exp(-(P_e / P_c - 1) / 0.3)`
 //!
-//! All states are 64-bit integers and saturate.
+//! All states are 64-bit integers. A change of pressure, of at most 2^57, is shared, and nothing that the terms hold grows beyond it.
 
 use crate::signal::contact::Contact;
 use crate::signal::design::Design;
@@ -29,6 +29,7 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 pub const FRACTION_BITS: u32 = 32;
 /// Largest pressure, pascals either way: of the states' word a hundredth, as terms may add.
 const LARGEST: i64 = 1 << 24;
+const LARGEST_STATE: i64 = LARGEST << FRACTION_BITS;
 /// Part of the tables' range, `1 / 2^8`, below which the area counts as constant.
 const AREA_SHIFT: u32 = 8;
 /// The fall of `P_e` from its peak, `1 / 2^5` of it, over which the force goes over to `A P`.
@@ -39,8 +40,6 @@ const FORCE_BITS: u32 = 16;
 const WHOLE: u32 = 1 << 16;
 /// `1 - rho` at the first touch of a wall that recovers, as a share: 0.37.
 const SOFTER: u32 = WHOLE / 100 * 37;
-/// `P_e / P_c - 1` at which the wall has its own stiffness again, as a share: eight times 0.3. `(1 - x / 8)^8` stands for `exp(-x)`.
-const STIFF_AGAIN: u32 = WHOLE / 10 * 24;
 
 /// What a relaxing wall's pressure says.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -70,9 +69,9 @@ pub struct Relaxing<const TERMS: usize> {
     peak_force: i64,
     /// How far `P_e` has fallen from its peak, of what the force goes over to `A P` in: a share.
     fallen: u32,
-    /// `P_c` and `P_0` of a wall that is free, or was: 0 where it was not since it had last recovered.
-    touched: i64,
-    from: i64,
+    /// `P_c` and `P_0` of a wall that is free, or was, counts: 0 where it was not since it had last recovered.
+    touched: i32,
+    from: i32,
 }
 
 /// What the tables have at an elastic pressure, between two counts.
@@ -130,15 +129,13 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     pub fn step(&mut self, design: &impl Design, step: &SeriesStep, rise: PressureRise) -> RelaxedReading {
         let parameters = design.parameters();
         let pressure = pressure(design, rise);
-        let stress = pressure
-            .saturating_sub(self.elastic)
-            .saturating_sub(decay(step, &mut self.held));
+        let stress = pressure - self.elastic - decay(step, &mut self.held);
         take(step, &mut self.held, stress);
-        self.elastic = self.elastic.saturating_add(step.settled.of(stress));
+        self.elastic += step.settled.of(stress);
         let at = Lookup::at(design, self.elastic);
         let convolved = self.convolved(step, at.force);
         let pressed_before = at.elastic.0 > parameters.limits.level;
-        let by_area = self.by_area(design, &at, pressure, pressed_before);
+        let by_area = self.by_area(design, &at, rise, pressed_before);
         self.note_fall(step, pressed_before);
         let excess = share(WHOLE - self.fallen).of(convolved - by_area) >> 1;
         let force = ((by_area + excess) >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
@@ -166,12 +163,18 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         let change = settled - core::mem::replace(&mut self.settled, settled);
         let left = decay(step, &mut self.forces);
         take(step, &mut self.forces, change);
-        let sum = left.saturating_add(change - step.settled.of(change)) >> SeriesStep::STIFFNESS_BITS;
+        let sum = (left + change - step.settled.of(change)) >> SeriesStep::STIFFNESS_BITS;
         settled + sum.clamp(-(1 << 33), 1 << 33) * i64::from(step.stiffness)
     }
 
     /// `A P`, or `rho A (P - P_0)`.
-    fn by_area(&mut self, design: &impl Design, at: &Lookup, pressure: i64, pressed_before: bool) -> i64 {
+    fn by_area(
+        &mut self,
+        design: &impl Design,
+        at: &Lookup,
+        rise: PressureRise,
+        pressed_before: bool,
+    ) -> i64 {
         let parameters = design.parameters();
         let below_count = FRACTION_BITS - parameters.pressure_fraction_bits;
         let last = i64::from(parameters.last_rise.0) << below_count;
@@ -181,37 +184,39 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         } else {
             Lookup::at(design, place).force
         };
-        // `force / place`, each shifted to the top of its word: 32 or 33 bits.
+        // `force / place` to 2^-15 of itself: 32 bits over 16, each shifted to the top of its word.
         let (force, place) = (force.max(1) as u64, place.max(1) as u64);
         let (up, down) = (force.leading_zeros(), place.leading_zeros());
-        let ratio = (force << up) / ((place << down) >> 32) >> 1;
-        // From a pressure with 32 bits below a pascal to a force with 16 below a micronewton. An area is below 32 768 mm2.
+        let ratio = ((force << up) >> 32) as u32 / ((place << down) >> 48) as u32;
+        // 16 or 17 bits. From a pressure with 32 bits below a pascal to a force with 16 below a micronewton: an area is below 32 768 mm2.
         let area = Factor {
-            mantissa: ratio as u32,
+            mantissa: ratio << 15,
             shift: up.saturating_sub(down + 1).min(Factor::MOST_SHIFT),
         };
-        let left = self.touched == 0 || self.elastic <= self.touched || pressure <= self.from;
+        let left = self.touched == 0 || at.elastic.0 <= self.touched || rise.0 <= self.from;
         if !pressed_before {
             self.touched = 0;
-        } else if pressure < 0 && left {
-            self.touched = self.elastic;
-            self.from = pressure;
+        } else if rise.0 < 0 && left {
+            self.touched = at.elastic.0;
+            self.from = rise.0;
         }
         if self.touched == 0 {
-            return area.of(pressure);
+            return area.of(pressure(design, rise));
         }
-        let grown = pressure - self.from;
+        let grown = PressureRise(rise.0.saturating_sub(self.from));
         // Noise around a wall that nothing touches.
-        if grown < i64::from(parameters.thresholds.release.0) << below_count {
+        if grown < parameters.thresholds.release {
             return 0;
         }
-        // In eighths of what makes it stiff again, `1 - x / 8` to the eighth.
-        let mut softer = WHOLE - part(self.elastic - self.touched, self.touched).min(STIFF_AGAIN) * 10 / 24;
+        // `(1 - x / 8)^8` stands for `exp(-x)`; eight times 0.3 is 12/5.
+        let stiff_again = self.touched / 5 * 12;
+        let mut softer = WHOLE - part(at.elastic.0 - self.touched, stiff_again);
         for _ in 0..3 {
-            softer = (softer.min(WHOLE - 1) * softer.min(WHOLE - 1)) >> 16;
+            let share = softer.min(WHOLE - 1);
+            softer = (share * share) >> 16;
         }
         let softer = (softer * SOFTER) >> 16;
-        share(WHOLE - softer).of(area.of(grown))
+        share(WHOLE - softer).of(area.of(pressure(design, grown)))
     }
 
     /// How far the elastic pressure has fallen from its peak since the wall had last recovered. Peaks are forgotten with the slowest term.
@@ -221,9 +226,11 @@ impl<const TERMS: usize> Relaxing<TERMS> {
             self.peak_force -= slowest.lost.of(self.peak_force);
         }
         self.peak = self.peak.max(self.elastic);
-        let fallen = part(self.peak.saturating_sub(self.elastic), self.peak >> FALL_SHIFT);
+        // 2^24 Pa in 1 / 2^6: below 2^31.
+        let [peak, now] = [self.peak, self.elastic].map(|elastic| (elastic >> (FRACTION_BITS - 6)) as i32);
+        let fallen = part(peak.saturating_sub(now), peak >> FALL_SHIFT);
         self.fallen = if pressed_before {
-            self.fallen.max(fallen.min(WHOLE))
+            self.fallen.max(fallen)
         } else {
             0
         };
@@ -236,17 +243,17 @@ impl<const TERMS: usize> Relaxing<TERMS> {
 
     /// The zero moved, and with it every pressure: by so many counts.
     pub fn shift(&mut self, design: &impl Design, by: PressureRise) {
-        self.elastic = self.elastic.saturating_add(pressure(design, by));
+        self.elastic = (self.elastic + pressure(design, by)).clamp(-LARGEST_STATE, LARGEST_STATE);
     }
 }
 
 /// What is left of the terms after a step, and their sum.
 #[inline(never)]
 fn decay(step: &SeriesStep, terms: &mut [i64]) -> i64 {
-    let mut sum = 0_i64;
+    let mut sum = 0;
     for (state, term) in terms.iter_mut().zip(step.terms()) {
         *state -= term.lost.of(*state);
-        sum = sum.saturating_add(*state);
+        sum += *state;
     }
     sum
 }
@@ -255,16 +262,19 @@ fn decay(step: &SeriesStep, terms: &mut [i64]) -> i64 {
 #[inline(never)]
 fn take(step: &SeriesStep, terms: &mut [i64], change: i64) {
     for (state, term) in terms.iter_mut().zip(step.terms()) {
-        *state = state.saturating_add(term.share.of(change));
+        *state += term.share.of(change);
     }
 }
 
-/// A part of a whole, both >= 0, as a share to 15 bits; of up to 2^15 wholes.
-fn part(of: i64, whole: i64) -> u32 {
-    let whole = whole.max(1);
-    let excess = (64 - whole.leading_zeros()).saturating_sub(15);
-    let of = (of >> excess).clamp(0, i64::from(u16::MAX)) as u32;
-    (of << 16) / ((whole >> excess) as u32).max(1)
+/// A part of a whole, as a share: at least nothing and at most all of it.
+fn part(of: i32, whole: i32) -> u32 {
+    let (of, whole) = (of.max(0) as u32, whole.max(1) as u32);
+    if of >= whole {
+        return WHOLE;
+    }
+    // As many of 16 bits as the word has room for come before the division.
+    let up = whole.leading_zeros().min(16);
+    ((of << up) / (whole >> (16 - up))).min(WHOLE)
 }
 
 /// A share as a factor; one is the largest there is.
@@ -278,8 +288,7 @@ fn share(share: u32) -> Factor {
 /// A pressure as the wall's memory counts it.
 fn pressure(design: &impl Design, rise: PressureRise) -> i64 {
     let below_count = FRACTION_BITS - design.parameters().pressure_fraction_bits;
-    let largest = LARGEST << FRACTION_BITS;
-    (i64::from(rise.0) << below_count).clamp(-largest, largest)
+    (i64::from(rise.0) << below_count).clamp(-LARGEST_STATE, LARGEST_STATE)
 }
 
 #[cfg(test)]

@@ -164,8 +164,11 @@ impl<const TERMS: usize> Memory<TERMS> {
             // At most 20.
             return ((passed as u32 + parameters.period / 2) / parameters.period).max(1);
         }
-        self.settled.settle(design, to.rise);
-        self.open = true;
+        // At rest there is nothing to be settled or not.
+        self.open = to.rise.0.saturating_abs() > parameters.thresholds.release.0;
+        if self.open {
+            self.settled.settle(design, to.rise);
+        }
         1
     }
 }

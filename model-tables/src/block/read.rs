@@ -109,6 +109,9 @@ fn relaxation(mut own: Cursor<'_>) -> Result<WallSeries, BlockError> {
     if wall.step.count == 0 {
         return Err(BlockError::SectionLength(SectionKind::Relaxation));
     }
+    if !wall.step.is_passive() {
+        return Err(value("term"));
+    }
     Ok(wall)
 }
 

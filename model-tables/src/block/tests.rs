@@ -70,7 +70,7 @@ const DATA: TipData<'_> = TipData {
     relaxation: None,
 };
 
-/// A half of a term is lost, and it takes three tenths of a change.
+/// A half of a term is lost, and it takes a tenth of a change.
 fn wall(terms: usize) -> WallSeries {
     let mut step = SeriesStep {
         settled: Factor::nearest(0.1),
@@ -81,7 +81,7 @@ fn wall(terms: usize) -> WallSeries {
     for term in &mut step.terms[..terms] {
         *term = TermStep {
             lost: Factor::nearest(0.5),
-            share: Factor::nearest(0.3),
+            share: Factor::nearest(0.1),
         };
     }
     WallSeries {
@@ -124,10 +124,14 @@ fn a_wall_in_time_that_cannot_be_is_refused() {
         assert_eq!(refused(odd), value("stiffness"));
     }
     let mut odd = wall(2);
-    odd.step.settled.shift = 63;
+    odd.step.settled.shift = 32;
     assert_eq!(refused(odd), value("settled"));
     let mut odd = wall(2);
-    odd.step.terms[1].share.shift = 63;
+    odd.step.terms[1].share.shift = 32;
+    assert_eq!(refused(odd), value("term"));
+    // More than the whole of a change.
+    let mut odd = wall(2);
+    odd.step.terms[1].share = Factor::nearest(0.9);
     assert_eq!(refused(odd), value("term"));
 }
 
