@@ -8,7 +8,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip.toml";
+const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip-elastic.toml";
 
 /// Each board with the linker's sizes of its chip; those of the default board are in `memory.x`.
 const BOARDS: [(&str, Option<&str>); 2] = [
@@ -19,6 +19,7 @@ const BOARDS: [(&str, Option<&str>); 2] = [
 fn main() {
     println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rustc-check-cfg=cfg(relaxation)");
     println!(
         "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
     );
@@ -96,6 +97,10 @@ fn tables(design: &Path) -> Result<String, String> {
         TransducerKind::Dps310 { .. } => "dps310",
     };
     println!("cargo::rustc-cfg=transducer=\"{kind}\"");
+    if generated.wall().is_some() {
+        // The wall's memory, which an elastic one has not.
+        println!("cargo::rustc-cfg=relaxation");
+    }
     if generated.limits() != [Limit::Accuracy; 2] {
         println!("cargo::warning={}: {}", design.display(), generated.choice());
     }

@@ -1,6 +1,10 @@
 //! The design this image is built for: what the build script solved and wrote.
 
 use crate::signal::design::{Design, Parameters};
+#[cfg(not(relaxation))]
+use crate::signal::wall::Elastic;
+#[cfg(relaxation)]
+use crate::signal::wall::Memory;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;
@@ -10,7 +14,11 @@ use model_tables::units::PressureRise;
 pub mod generated {
     include!(concat!(env!("OUT_DIR"), "/design.rs"));
 }
+#[cfg(relaxation)]
+use generated::RELAXATION;
 use generated::{DESIGN, TABLES};
+#[cfg(relaxation)]
+use model_tables::material::series::WallSeries;
 
 /// The design of the image: no bytes, as all of it folds into the code.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +37,17 @@ impl ImageDesign {
 }
 
 impl Design for ImageDesign {
+    #[cfg(not(relaxation))]
+    type Wall = Elastic;
+    #[cfg(relaxation)]
+    type Wall = Memory<{ RELAXATION.step.count }>;
+
+    #[cfg(relaxation)]
+    #[inline]
+    fn series(&self) -> Option<&WallSeries> {
+        const { Some(&RELAXATION) }
+    }
+
     #[inline]
     fn parameters(&self) -> &Parameters {
         const { &Self::PARAMETERS }

@@ -135,14 +135,18 @@ impl Warnings {
     pub const CLOCK: Self = Self(256);
     /// The wall recovers from a press that it has left: the pressure is below the zero, the force 0 and the indentation an upper bound.
     pub const RECOVERING: Self = Self(512);
+    /// What a relaxing wall went through is not known: after a reset or a gap, or at the transducer's lower end. Half of what that leaves
+    /// open is in the 1-sigma.
+    pub const PAST_UNKNOWN: Self = Self(1024);
 
     /// Every reason with its word, the gravest first.
-    const REASONS: [(Self, &'static str); 10] = [
+    const REASONS: [(Self, &'static str); 11] = [
         (Self::SATURATED, "saturated"),
         (Self::LEAK_SUSPECTED, "leak suspected"),
         (Self::BUBBLE_SUSPECTED, "bubble suspected"),
         (Self::BELOW_ZERO, "below zero"),
         (Self::RECOVERING, "recovering"),
+        (Self::PAST_UNKNOWN, "past unknown"),
         (Self::ZERO_UNVERIFIED, "zero unverified"),
         (Self::CALIBRATION_REFUSED, "calibration refused"),
         (Self::ZERO_AGED, "zero aged"),
@@ -151,7 +155,7 @@ impl Warnings {
     ];
 
     /// Every warning at once.
-    pub const ALL: Self = Self(1023);
+    pub const ALL: Self = Self(2047);
 
     /// The bits, as telemetry carries them.
     pub const fn bits(self) -> u16 {
@@ -181,6 +185,12 @@ impl Warnings {
         if condition { self } else { Self::NONE }
     }
 
+    /// Their reasons in words, the gravest first.
+    pub fn reasons(self) -> impl Iterator<Item = &'static str> {
+        let named = Self::REASONS.iter().filter(move |(one, _)| self.contains(*one));
+        named.map(|(_, word)| *word)
+    }
+
     /// Whether all of `those` are among these.
     pub const fn contains(self, those: Self) -> bool {
         self.0 & those.0 == those.0
@@ -191,11 +201,9 @@ impl fmt::Display for Warnings {
     /// The reasons, the gravest first, separated by "; ".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
-        for (one, word) in Self::REASONS {
-            if self.contains(one) {
-                write!(f, "{separator}{word}")?;
-                separator = "; ";
-            }
+        for word in self.reasons() {
+            write!(f, "{separator}{word}")?;
+            separator = "; ";
         }
         Ok(())
     }
@@ -284,9 +292,10 @@ impl ResetCause {
     ];
 }
 
-impl fmt::Display for ResetCause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl ResetCause {
+    /// The cause in words.
+    pub const fn word(self) -> &'static str {
+        match self {
             Self::Unknown => "unknown",
             Self::PowerOn => "power-on",
             Self::Pin => "pin",
@@ -294,7 +303,13 @@ impl fmt::Display for ResetCause {
             Self::Watchdog => "watchdog",
             Self::BrownOut => "brown-out",
             Self::LowPower => "low power",
-        })
+        }
+    }
+}
+
+impl fmt::Display for ResetCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
     }
 }
 
@@ -388,7 +403,7 @@ mod tests {
     #[test]
     fn unknown_warning_bits_are_not_believed() {
         assert_eq!(Warnings::from_bits(7).map(Warnings::bits), Some(7));
-        assert_eq!(Warnings::from_bits(1024), None);
+        assert_eq!(Warnings::from_bits(2048), None);
         let named = Warnings::REASONS.iter().fold(0, |all, (one, _)| all | one.0);
         assert_eq!(Warnings::ALL.bits(), named);
     }

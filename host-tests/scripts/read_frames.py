@@ -12,7 +12,8 @@ import sys
 
 VERSION = 2
 WARNINGS = ["saturated", "zero unverified", "below zero", "leak suspected", "bubble suspected",
-            "calibration refused", "zero aged", "temperature", "clock", "recovering"]
+            "calibration refused", "zero aged", "temperature", "clock", "recovering",
+            "past unknown"]
 FAULTS = {1: "sensor open", 2: "sensor short", 3: "zeroing", 4: "settling", 5: "samples lost", 6: "converter stalled",
           7: "stuck", 8: "jump", 9: "reset loop", 10: "sensor supply", 16: "sensor absent", 17: "bus fault", 18: "wrong sensor",
           19: "sensor calibration", 20: "sensor busy", 21: "sensor memory", 22: "sensor saturated",

@@ -5,7 +5,6 @@
 
 use fingertip::signal::uncertainty::averaged;
 use fingertip::signal::zero::estimator::WINDOW;
-use fingertip::transducer::period;
 use model_tables::generate::Generated;
 use model_tables::units::PressureRise;
 use std::fmt::Write as _;
@@ -72,7 +71,7 @@ impl Budget {
             percent: [[force, indentation]; PLACES.len()],
         };
         let averaged = f64::from(averaged(&constants.kind));
-        let window = (WINDOW / u64::from(period(&constants.kind))) as f64;
+        let window = (WINDOW / u64::from(constants.kind.period())) as f64;
         // Steps are uniform: 1 / sqrt 12 of one.
         let step = transducer.resolution_pa / 12.0_f64.sqrt();
         let sample = transducer.noise_pa / averaged.sqrt();

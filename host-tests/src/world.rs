@@ -31,6 +31,8 @@ impl WithAbsolutePart {
 }
 
 impl Design for WithAbsolutePart {
+    type Wall = <ImageDesign as Design>::Wall;
+
     fn parameters(&self) -> &Parameters {
         const { &Self::PARAMETERS }
     }
@@ -76,7 +78,7 @@ impl Xorshift {
 
 /// One fingertip and the firmware that reads it.
 #[derive(Debug)]
-pub struct World<D> {
+pub struct World<D: Design> {
     design: D,
     station: Station<D>,
     /// Microseconds since reset.

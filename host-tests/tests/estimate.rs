@@ -5,20 +5,57 @@ use fingertip::image::ImageDesign;
 use fingertip::link::command::Command;
 use fingertip::link::telemetry::Message;
 use fingertip::signal::contact::contact;
-use fingertip::signal::design::{Design, LoadedDesign};
+use fingertip::signal::design::{Design, LoadedDesign, Parameters};
 use fingertip::signal::report::Report;
+use fingertip::signal::wall::Memory;
 use fingertip::status::{Fault, Warnings};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::Millipascals;
 use host_tests::design;
 use host_tests::world::{World, Xorshift, full_scale, rest, sample};
 use model_tables::generate::{self, Generated};
+use model_tables::material::series::WallSeries;
+use model_tables::table::Reading;
 use model_tables::units::PressureRise;
 
 /// The default design, unless the image was built for another one.
 fn generated() -> Option<Generated> {
-    let generated = generate::from_design_file(&design("index-fingertip")).expect("the default design");
+    let generated =
+        generate::from_design_file(&design("index-fingertip-elastic")).expect("the default design");
     (ImageDesign::CONSTANTS.hash == generated.hash()).then_some(generated)
+}
+
+/// The reviewed tables and wall of the design that relaxes, as they fold into an image.
+#[allow(clippy::unreadable_literal, unreachable_pub, dead_code)] // generated source
+mod golden {
+    include!("../../model-tables/golden/index-fingertip/tables.rs");
+}
+
+#[derive(Clone, Copy, Debug)]
+struct RelaxingImage;
+
+impl RelaxingImage {
+    const PARAMETERS: Parameters = Parameters::of(
+        golden::DESIGN,
+        golden::TABLES.layout.pressure_fraction_bits,
+        PressureRise(golden::TABLES.layout.maximum),
+    );
+}
+
+impl Design for RelaxingImage {
+    type Wall = Memory<{ golden::RELAXATION.step.count }>;
+
+    fn parameters(&self) -> &Parameters {
+        &Self::PARAMETERS
+    }
+
+    fn series(&self) -> Option<&WallSeries> {
+        Some(&golden::RELAXATION)
+    }
+
+    fn lookup(&self, rise: PressureRise) -> Reading {
+        golden::TABLES.lookup(rise)
+    }
 }
 
 fn loaded(block: &[u8]) -> LoadedDesign<'_> {
@@ -85,10 +122,24 @@ fn reports_of_a_loaded_design_are_those_of_the_image() {
     let Some(generated) = generated() else {
         return;
     };
+    same_lives(&generated.binary(), ImageDesign);
+}
+
+/// With the memory of a wall that relaxes.
+#[test]
+fn reports_of_a_loaded_wall_that_relaxes_are_those_of_the_image() {
+    let generated = generate::from_design_file(&design("index-fingertip")).expect("it is shipped");
     let block = generated.binary();
-    let loaded = loaded(&block);
+    let tool = loaded(&block);
+    assert_eq!(tool.parameters(), RelaxingImage.parameters());
+    assert_eq!(tool.series(), RelaxingImage.series());
+    same_lives(&block, RelaxingImage);
+}
+
+fn same_lives<D: Design + Copy>(block: &[u8], image: D) {
+    let loaded = loaded(block);
     for seed in 0..4 {
-        let (tool, chip) = (life(loaded, seed), life(ImageDesign, seed));
+        let (tool, chip) = (life(loaded, seed), life(image, seed));
         for (tool, chip) in tool.0.iter().zip(&chip.0) {
             assert_eq!(tool, chip, "seed {seed}");
         }

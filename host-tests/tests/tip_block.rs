@@ -34,13 +34,14 @@ mod golden {
 /// The shipped designs, with and without a calibration.
 fn shipped() -> Vec<Vec<u8>> {
     macro_rules! block {
-        ($design:ident, $calibration:expr) => {
+        ($design:ident, $calibration:expr, $relaxation:expr) => {
             TipData {
                 constants: golden::$design::DESIGN,
                 layout: golden::$design::TABLES.layout,
                 words: golden::$design::TABLES.segments.as_flattened(),
                 name: golden::$design::NAME,
                 calibration: $calibration,
+                relaxation: $relaxation,
             }
             .write()
         };
@@ -52,10 +53,10 @@ fn shipped() -> Vec<Vec<u8>> {
         gain: 500,
     });
     vec![
-        block!(index, None),
-        block!(paper, calibration),
-        block!(analogue, None),
-        block!(light, calibration),
+        block!(index, None, Some(golden::index::RELAXATION)),
+        block!(paper, calibration, None),
+        block!(analogue, None, None),
+        block!(light, calibration, None),
     ]
 }
 

@@ -107,3 +107,27 @@ pub enum TransducerKind {
         address: u8,
     },
 }
+
+/// From one sample of a kind to the next, microseconds.
+pub mod period {
+    /// A block of the converter.
+    pub const CONVERTER: u32 = 1_000;
+    /// The part measures about 200 times a second.
+    pub const ABP2: u32 = 8_000;
+    /// Two conversions of it.
+    pub const MS5837: u32 = 7_000;
+    /// Two measurements of it.
+    pub const DPS310: u32 = 14_000;
+}
+
+impl TransducerKind {
+    /// From one sample, and report, to the next, microseconds.
+    pub const fn period(&self) -> u32 {
+        match self {
+            Self::Ratiometric { .. } => period::CONVERTER,
+            Self::Abp2 { .. } => period::ABP2,
+            Self::Ms5837 { .. } => period::MS5837,
+            Self::Dps310 { .. } => period::DPS310,
+        }
+    }
+}

@@ -86,7 +86,7 @@ struct Pending {
 
 /// One fingertip and its line.
 #[derive(Clone, Debug)]
-pub struct Station<D> {
+pub struct Station<D: Design> {
     /// What others count.
     pub counters: Counters,
     pipeline: Pipeline<D>,

@@ -108,12 +108,13 @@ async fn main(spawner: Spawner) {
         firmware,
         range: constants.transducer.range,
     };
-    let (store, stored) = if start.give_up {
-        (None, Stored::Unreadable)
-    } else {
-        retained::enter(Stage::Store);
-        let (store, stored) = Store::open(board.memory, SLOT, identity).await;
-        (Some(store), stored)
+    let mut store = (!start.give_up).then(|| Store::new(board.memory, SLOT, identity));
+    let stored = match &mut store {
+        None => Stored::Unreadable,
+        Some(store) => {
+            retained::enter(Stage::Store);
+            store.load().await
+        }
     };
     retained::enter(Stage::Transducer);
     let beginning = Beginning {
@@ -126,11 +127,11 @@ async fn main(spawner: Spawner) {
         firmware,
     };
     defmt::info!(
-        "fingertip {=str}, design {=str} ({=u64:016x}), reset by {}",
+        "fingertip {=str}, design {=str} ({=u64:016x}), reset by {=str}",
         env!("CARGO_PKG_VERSION"),
         NAME,
         constants.hash,
-        defmt::Display2Format(&reset_cause)
+        reset_cause.word()
     );
     let clock = board.clock;
     let waiting = OUTBOX.init_with(|| Waiting {
@@ -298,7 +299,17 @@ impl Log {
         let status = report.status();
         if self.status != Some(status) {
             self.status = Some(status);
-            defmt::info!("{=u64} us: {}", report.time.0, defmt::Display2Format(&status));
+            let time = report.time.0;
+            // Not by `Display`, whose machinery takes 1.8 kB.
+            match status {
+                Status::Ok => defmt::info!("{=u64} us: ok", time),
+                Status::Fault(fault) => defmt::info!("{=u64} us: fault: {=str}", time, fault.reason()),
+                Status::Warning(warnings) => {
+                    for reason in warnings.reasons() {
+                        defmt::info!("{=u64} us: warning: {=str}", time, reason);
+                    }
+                }
+            }
         }
         self.reports += 1;
         if self.reports < LOGGED {

@@ -6,7 +6,7 @@ use crate::status::Warnings;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// What the tables say of a rise.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Contact {
     /// Force on the fingertip.
     pub force: Micronewtons,
@@ -58,6 +58,7 @@ mod tests {
     use super::*;
     use crate::signal::design::Parameters;
     use crate::signal::test_design::{FORCE_END, INDENTATION_END, Linear, RISE_END, TRANSDUCERS};
+    use crate::signal::wall::Elastic;
     use model_tables::table::Reading;
     use proptest::prelude::*;
 
@@ -75,6 +76,8 @@ mod tests {
     struct Shallow(Linear);
 
     impl Design for Shallow {
+        type Wall = Elastic;
+
         fn parameters(&self) -> &Parameters {
             self.0.parameters()
         }

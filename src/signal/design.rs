@@ -6,20 +6,30 @@ use crate::signal::fluid::Fall;
 use crate::signal::scale::Scale;
 use crate::signal::touch::Thresholds;
 use crate::signal::uncertainty::Uncertainty;
+use crate::signal::wall::{Memory, Wall};
 use crate::signal::zero::limits::Limits;
-use crate::transducer;
 use model_tables::block::BlockError;
 use model_tables::block::read::TipBlock;
 use model_tables::block::section::SectionKind;
 use model_tables::constants::DesignConstants;
+use model_tables::material::relaxation::MAX_TERMS;
+use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
 use model_tables::table::loaded::LoadedTables;
 use model_tables::units::PressureRise;
 
 /// A design with its tables.
 pub trait Design {
+    /// What its wall remembers.
+    type Wall: Wall;
+
     /// What the signal path needs of the design beside its tables.
     fn parameters(&self) -> &Parameters;
+
+    /// The wall in time; nothing of an elastic one.
+    fn series(&self) -> Option<&WallSeries> {
+        None
+    }
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     fn lookup(&self, rise: PressureRise) -> Reading;
@@ -36,6 +46,8 @@ pub struct Parameters {
     pub last_rise: PressureRise,
     /// Below this rise a reading is flagged.
     pub lowest_rest: PressureRise,
+    /// A pressure below the transducer's range, millipascals, may be lower than it is read.
+    pub lowest_read: i32,
     /// From one sample to the next, microseconds.
     pub period: u32,
     /// Of the transducer's pressure.
@@ -58,12 +70,13 @@ impl Parameters {
     /// # Panics
     /// For more than 16 fraction bits: at compile time for an image; loaded tables have no more.
     pub const fn of(constants: DesignConstants, fraction_bits: u32, last_rise: PressureRise) -> Self {
-        let period = transducer::period(&constants.transducer.kind);
+        let period = constants.transducer.kind.period();
         let limits = Limits::of(&constants, fraction_bits);
         Self {
             pressure_fraction_bits: fraction_bits,
             last_rise,
             lowest_rest: constants.transducer.lowest_rest(fraction_bits),
+            lowest_read: constants.transducer.range[0].saturating_mul(1000),
             period,
             scale: Scale::of(fraction_bits),
             limits,
@@ -86,6 +99,7 @@ impl Parameters {
 pub struct LoadedDesign<'a> {
     parameters: Parameters,
     tables: LoadedTables<'a>,
+    relaxation: Option<WallSeries>,
 }
 
 impl<'a> LoadedDesign<'a> {
@@ -107,12 +121,19 @@ impl<'a> LoadedDesign<'a> {
         let design = Self {
             parameters: Parameters::of(tip.constants, layout.pressure_fraction_bits, end),
             tables: tip.tables,
+            relaxation: tip.relaxation,
         };
         Ok((design, calibration))
     }
 }
 
 impl Design for LoadedDesign<'_> {
+    type Wall = Memory<MAX_TERMS>;
+
+    fn series(&self) -> Option<&WallSeries> {
+        self.relaxation.as_ref()
+    }
+
     fn parameters(&self) -> &Parameters {
         &self.parameters
     }

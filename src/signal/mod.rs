@@ -1,6 +1,6 @@
 //! From a sample to a report, in the order of the data: [`stuck`] -> [`scale`] -> [`temperature`] -> [`zero`] -> [`fluid`] ->
-//! [`filter`] -> [`touch`] -> [`contact`] -> [`uncertainty`] -> [`report`]. The [`pipeline`] calls them. Integers
-//! only; time and samples are arguments.
+//! [`filter`] -> [`touch`] -> [`uncertainty`] -> [`wall`] ([`contact`], or [`relaxation`] where the wall has a memory) -> [`report`].
+//! The [`pipeline`] calls them. Integers only; time and samples are arguments.
 
 pub mod calibration;
 pub mod contact;
@@ -17,4 +17,5 @@ pub mod temperature;
 pub(crate) mod test_design;
 pub mod touch;
 pub mod uncertainty;
+pub mod wall;
 pub mod zero;

@@ -1,7 +1,6 @@
 //! The stages, called in order.
 
 use crate::signal::calibration::{Calibration, Gain};
-use crate::signal::contact::{contact, through_tables};
 use crate::signal::design::{Design, Parameters};
 use crate::signal::filter::{Filter, GROUP_DELAY};
 use crate::signal::fluid::Fluid;
@@ -9,6 +8,7 @@ use crate::signal::report::{Measurement, Report};
 use crate::signal::stuck::StuckDetector;
 use crate::signal::temperature::Temperature;
 use crate::signal::touch::TouchDetector;
+use crate::signal::wall::{Rise, Wall};
 use crate::signal::zero::estimator::{Estimator, TareRefusal};
 use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, Touch, Warnings};
@@ -18,7 +18,7 @@ use model_tables::units::{Nanometres, PressureRise};
 
 /// The signal path of one fingertip.
 #[derive(Clone, Debug)]
-pub struct Pipeline<D> {
+pub struct Pipeline<D: Design> {
     design: D,
     calibration: Calibration,
     /// What qualifies every reading since start-up.
@@ -33,6 +33,7 @@ pub struct Pipeline<D> {
     detector: TouchDetector,
     touch: Touch,
     fluid: Fluid,
+    wall: D::Wall,
     /// When the last sample was measured, and how long after the one before it.
     measured: Microseconds,
     spacing: u64,
@@ -63,6 +64,7 @@ impl<D: Design> Pipeline<D> {
             detector: TouchDetector::new(parameters.thresholds),
             touch: Touch::Unknown,
             fluid: Fluid::new(parameters.fall),
+            wall: D::Wall::NEW,
             measured: Microseconds(0),
             spacing: 0,
             design,
@@ -86,7 +88,7 @@ impl<D: Design> Pipeline<D> {
                 if spacing == 0 || spacing > self.parameters().gap() {
                     self.interrupt(measured);
                 }
-                self.measure(measured, sample, uneven <= u64::from(period) / 4)
+                self.measure([before, measured], sample, uneven <= u64::from(period) / 4)
             }
             Err(fault) => {
                 self.interrupt(measured);
@@ -103,8 +105,14 @@ impl<D: Design> Pipeline<D> {
         }
     }
 
+    /// The measurement of the first of two times, from a sample of the second one.
     #[inline]
-    fn measure(&mut self, time: Microseconds, sample: Sample, even: bool) -> Result<Measurement, Fault> {
+    fn measure(
+        &mut self,
+        [at, time]: [Microseconds; 2],
+        sample: Sample,
+        even: bool,
+    ) -> Result<Measurement, Fault> {
         if sample.temperature.is_some() {
             self.celsius = sample.temperature;
             self.temperature.step(sample.temperature, self.touch);
@@ -112,6 +120,9 @@ impl<D: Design> Pipeline<D> {
         let Pressure(pressure) = self.parameters().scale.pressure(sample.pressure);
         let pressure = Pressure(pressure.saturating_sub(self.temperature.correction()));
         let before = self.zero.zero();
+        if self.wall.lowers_the_pressure() {
+            self.zero.disregard();
+        }
         if let Some(level) = self.zero.step(time, pressure) {
             self.look(time, level, before);
         }
@@ -121,31 +132,46 @@ impl<D: Design> Pipeline<D> {
         }
         let rise = self.gain.apply_to(rise);
         let (rise, warnings) = self.filter.step(rise, zero.and(sample.warnings()), even)?;
+        if sample.pressure.0 < self.parameters().lowest_read {
+            self.wall.lose_track();
+        }
         let verified = !warnings.contains(Warnings::ZERO_UNVERIFIED);
         let missed = self.temperature.missed();
         let (bound, above) = (self.zero.bound(), self.zero.above());
         let touch = self.detector.step(rise, above.saturating_add(missed), verified);
-        self.touch = touch;
+        let parameters = self.design.parameters();
+        let (contact, sigma) = self.wall.read(
+            &self.design,
+            Rise {
+                time: at,
+                rise,
+                sigma: parameters.uncertainty.rise(bound, missed),
+                warnings,
+            },
+        );
+        let lowered = self.wall.lowers_the_pressure();
+        // Below its rest a wall may be touched again, and not show it.
+        self.touch = match touch {
+            Touch::Untouched if lowered => Touch::Unknown,
+            touch => touch,
+        };
 
-        let parameters = self.parameters();
         let doubtful =
             missed != 0 && self.zero.is_ok() && bound.saturating_add(missed) > parameters.limits.bound;
         // What a window will tell at its end is not read as ok until then.
-        let fallen = verified && rise.0 < -parameters.limits.bound;
-        let warnings = warnings
-            .and(Warnings::ZERO_AGED.when(fallen))
-            .and(self.standing)
-            .and(self.fluid.suspicions())
-            .and(Warnings::TEMPERATURE.when(doubtful));
-        let contact = contact(&self.design, rise, warnings);
-        let sigma = parameters.uncertainty.rise(bound, missed);
+        let fallen = verified && !lowered && rise.0 < -parameters.limits.bound;
         Ok(Measurement {
             pressure_rise: rise,
             force: contact.force,
             indentation: contact.indentation,
-            sigma: through_tables(&self.design, rise, &contact, sigma),
-            touch,
-            warnings: contact.warnings,
+            sigma,
+            touch: self.touch,
+            warnings: contact
+                .warnings
+                .and(Warnings::ZERO_AGED.when(fallen))
+                .and(self.standing)
+                .and(self.fluid.suspicions())
+                .and(Warnings::TEMPERATURE.when(doubtful)),
         })
     }
 
@@ -154,7 +180,9 @@ impl<D: Design> Pipeline<D> {
     fn look(&mut self, time: Microseconds, level: Pressure, before: Option<Zero>) {
         if let (Some(before), Some(now)) = (before, self.zero()) {
             let shift = PressureRise(before.pressure.0.saturating_sub(now.pressure.0));
-            self.filter.shift(self.gain.apply_to(shift).0);
+            let shift = self.gain.apply_to(shift);
+            self.filter.shift(shift.0);
+            self.wall.shift(&self.design, shift);
         }
         let lowest = self.zero.lowest().0;
         self.fluid.look(time, level.0.saturating_sub(lowest));
@@ -179,6 +207,7 @@ impl<D: Design> Pipeline<D> {
         self.detector.forget();
         self.touch = Touch::Unknown;
         self.filter.interrupt();
+        self.wall = D::Wall::NEW;
     }
 
     /// Someone says that nothing presses: takes a new zero if it may be one. What came of it is asked with
@@ -187,6 +216,10 @@ impl<D: Design> Pipeline<D> {
     /// # Errors
     /// [`TareRefusal`] when that is plain at once.
     pub fn tare(&mut self) -> Result<(), TareRefusal> {
+        if self.wall.lowers_the_pressure() {
+            // It may be touched again, and not show it.
+            return Err(TareRefusal::Touched);
+        }
         self.zero.command()
     }
 

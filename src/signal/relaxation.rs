@@ -3,198 +3,292 @@
 //! A wall that relaxes as `g(t) = 1 + sum g_i exp(-t / tau_i)` answers an indentation with `P = g * P_e`, the convolution of its series with the
 //! changes of the pressure `P_e` that the settled wall has at that indentation. Each step of time inverts it exactly:
 //!
-//! `q_i -= k_i q_i; d = (P - P_e - sum q_i) / (1 + sum c_i); P_e += d; q_i += c_i d`
+//! `q_i -= k_i q_i; d = P - P_e - sum q_i; P_e += d / (1 + sum c); q_i += d c_i / (1 + sum c)`
 //!
 //! with `k_i = 1 - exp(-dt / tau_i)` and `c_i = g_i tau_i / dt k_i`. Afterwards `P = P_e + sum q_i` again, so that nothing drifts. The tables
 //! lead from `P_e` to the indentation and to the settled force `F_e`.
 //!
-//! The contact's area goes with `P_e` and the stress with `P`, so the force is between a convolution of `F_e` and `A P` with `A = F_e / P_e`.
-//! Pressed and held, `F = w (y + sum r_i)` with `y = F_e / w` and `w = sqrt(A)` is nearest to finite elements; released and pressed
-//! again, `A P`. The one goes over into the other as `P_e` falls from its peak.
+//! The contact's area goes with `P_e` and the stress with `P`. On the first press the force is half way between the convolution `g * F_e`, which is
+//! too high where the contact grows fast, and `A P` with the area `A = F_e / P_e`, which is too low. From the first release on it is `A P`: what the
+//! wall remembers acts through the shape of now.
 //!
-//! All states are 64-bit integers and saturate.
+//! A plate cannot pull. Where `P < 0`, and `P` or `P_e` are not above what they were when this was so before, the wall is free, and `P_c = P_e` and
+//! `P_0 = P` are noted: no force. Where it is touched again, stress grows from `P_0` on a wall that is softer than its shape:
+//!
+//! `F = rho A (P - P_0), rho = 1 - (1 - 0.63) exp(-(P_e / P_c - 1) / 0.3)`
+//!
+//! All states are 64-bit integers. A change of pressure, of at most 2^57, is shared, and nothing that the terms hold grows beyond it.
 
+use crate::signal::contact::Contact;
 use crate::signal::design::Design;
 use crate::status::Warnings;
+use model_tables::material::series::{Factor, SeriesStep};
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// Pressures are counted in `1 / 2^32` pascal here: the term of 10 000 s still moves by less than 0.01 Pa at 1 kHz.
 pub const FRACTION_BITS: u32 = 32;
 /// Largest pressure, pascals either way: of the states' word a hundredth, as terms may add.
 const LARGEST: i64 = 1 << 24;
+const LARGEST_STATE: i64 = LARGEST << FRACTION_BITS;
 /// Part of the tables' range, `1 / 2^8`, below which the area counts as constant.
 const AREA_SHIFT: u32 = 8;
 /// The fall of `P_e` from its peak, `1 / 2^5` of it, over which the force goes over to `A P`.
 const FALL_SHIFT: u32 = 5;
-/// Bits of `y` below the square root of a micronewton times a count.
-const ROOT_BITS: u32 = 24;
-
-/// A factor >= 0: `mantissa / 2^shift`.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub struct Factor {
-    /// 32 bits.
-    pub mantissa: u32,
-    /// 0 to 95.
-    pub shift: u32,
-}
-
-impl Factor {
-    /// The nearest product; saturates.
-    fn of(self, x: i64) -> i64 {
-        // Below 2^63 * 2^32 = 2^95.
-        let product = i128::from(x) * i128::from(self.mantissa);
-        let half = (1_i128 << self.shift) >> 1;
-        let rounded = (product + half) >> self.shift;
-        rounded.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
-    }
-}
-
-/// What a term does in a step of time.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub struct TermStep {
-    /// `k`: what is lost of it.
-    pub lost: Factor,
-    /// `c`: what it takes of a change.
-    pub taken: Factor,
-}
-
-/// A series over a step of time.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct SeriesStep<const TERMS: usize> {
-    /// Its terms, the slowest last.
-    pub terms: [TermStep; TERMS],
-    /// `1 / (1 + sum c_i)`.
-    pub inverse: Factor,
-}
+/// Bits of forces below a micronewton, and of the place between two counts.
+const FORCE_BITS: u32 = 16;
+/// One as a share.
+const WHOLE: u32 = 1 << 16;
+/// `1 - rho` at the first touch of a wall that recovers, as a share: 0.37.
+const SOFTER: u32 = WHOLE / 100 * 37;
 
 /// What a relaxing wall's pressure says.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct RelaxedReading {
-    /// The settled wall's pressure rise at the same indentation.
+    /// The settled wall's pressure rise at the same indentation, rounded down.
     pub elastic: PressureRise,
-    /// Force on the fingertip.
-    pub force: Micronewtons,
-    /// Indentation of its pole; an upper bound while recovering.
-    pub indentation: Nanometres,
-    /// What qualifies both.
-    pub warnings: Warnings,
+    /// Its force.
+    pub settled: Micronewtons,
+    /// The wall's memory of a deeper press lowers the pressure by more than a quiet window leaves open: it says nothing of the zero.
+    pub lowered: bool,
+    /// Force, and indentation, which is an upper bound while recovering.
+    pub contact: Contact,
 }
 
 /// A wall's memory, from untouched rest on.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Relaxing<const TERMS: usize> {
+    /// `P_e`.
     elastic: i64,
     /// `q_i`.
     held: [i64; TERMS],
-    /// `y` and `r_i`.
-    root: i64,
-    roots: [i64; TERMS],
-    /// The largest `P_e`, forgotten with the slowest term.
+    /// `F_e`, and what `q_i` is to `P_e` over `1 + sum c`.
+    settled: i64,
+    forces: [i64; TERMS],
+    /// The largest `P_e` and the largest force, forgotten with the slowest term.
     peak: i64,
+    peak_force: i64,
+    /// How far `P_e` has fallen from its peak, of what the force goes over to `A P` in: a share.
+    fallen: u32,
+    /// `P_c` and `P_0` of a wall that is free, or was, counts: 0 where it was not since it had last recovered.
+    touched: i32,
+    from: i32,
 }
 
-impl<const TERMS: usize> Default for Relaxing<TERMS> {
-    fn default() -> Self {
+/// What the tables have at an elastic pressure, between two counts.
+struct Lookup {
+    elastic: PressureRise,
+    /// With [`FORCE_BITS`].
+    force: i64,
+    indentation: i32,
+    saturated: bool,
+}
+
+impl Lookup {
+    #[inline(never)]
+    fn at(design: &impl Design, elastic: i64) -> Self {
+        let below_count = FRACTION_BITS - design.parameters().pressure_fraction_bits;
+        let part = (elastic >> (below_count - FORCE_BITS)) & i64::from(WHOLE - 1);
+        // The states' words have room for a hundred times a largest pressure of 2^24 Pa, which has 41 bits here.
+        let counts = (elastic >> below_count).clamp(i64::from(-i32::MAX), i64::from(i32::MAX - 1)) as i32;
+        let [below, above] = [counts, counts + 1].map(|count| design.lookup(PressureRise(count)));
+        // Outputs are below 2^31.
+        let between =
+            |below: i32, above: i32| (i64::from(below) << FORCE_BITS) + i64::from(above - below) * part;
         Self {
-            elastic: 0,
-            held: [0; TERMS],
-            root: 0,
-            roots: [0; TERMS],
-            peak: 0,
+            elastic: PressureRise(counts),
+            force: between(below.force.0, above.force.0),
+            indentation: (between(below.indentation.0, above.indentation.0) >> FORCE_BITS) as i32,
+            saturated: below.saturated,
         }
     }
 }
 
 impl<const TERMS: usize> Relaxing<TERMS> {
+    /// At untouched rest for ever.
+    pub const NEW: Self = Self {
+        elastic: 0,
+        held: [0; TERMS],
+        settled: 0,
+        forces: [0; TERMS],
+        peak: 0,
+        peak_force: 0,
+        fallen: 0,
+        touched: 0,
+        from: 0,
+    };
+
+    /// It has been at a pressure for ever.
+    pub fn settle(&mut self, design: &impl Design, rise: PressureRise) {
+        *self = Self::NEW;
+        self.elastic = pressure(design, rise);
+        self.settled = Lookup::at(design, self.elastic).force;
+        self.peak = self.elastic.max(0);
+    }
+
     /// Goes on by a step of time to a pressure rise.
-    pub fn step(
+    pub fn step(&mut self, design: &impl Design, step: &SeriesStep, rise: PressureRise) -> RelaxedReading {
+        let parameters = design.parameters();
+        let pressure = pressure(design, rise);
+        let stress = pressure - self.elastic - decay(step, &mut self.held);
+        take(step, &mut self.held, stress);
+        self.elastic += step.settled.of(stress);
+        let at = Lookup::at(design, self.elastic);
+        let convolved = self.convolved(step, at.force);
+        let pressed_before = at.elastic.0 > parameters.limits.level;
+        let by_area = self.by_area(design, &at, rise, pressed_before);
+        self.note_fall(step, pressed_before);
+        let excess = share(WHOLE - self.fallen).of(convolved - by_area) >> 1;
+        let force = ((by_area + excess) >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
+        self.peak_force = self.peak_force.max(i64::from(force) << FORCE_BITS);
+
+        let recovering = pressed_before && force == 0 && rise.0 < 0;
+        let below = !pressed_before && rise < parameters.lowest_rest;
+        RelaxedReading {
+            elastic: at.elastic,
+            settled: Micronewtons((at.force >> FORCE_BITS) as i32),
+            lowered: pressed_before && rise.0 < at.elastic.0.saturating_sub(parameters.limits.level),
+            contact: Contact {
+                force: Micronewtons(force),
+                indentation: Nanometres(at.indentation),
+                warnings: Warnings::SATURATED
+                    .when(at.saturated)
+                    .and(Warnings::RECOVERING.when(recovering))
+                    .and(Warnings::BELOW_ZERO.when(below)),
+            },
+        }
+    }
+
+    /// `g * F_e` where the settled force becomes another one. The terms are kept over the stiffness: below 2^62 with it.
+    fn convolved(&mut self, step: &SeriesStep, settled: i64) -> i64 {
+        let change = settled - core::mem::replace(&mut self.settled, settled);
+        let left = decay(step, &mut self.forces);
+        take(step, &mut self.forces, change);
+        let sum = (left + change - step.settled.of(change)) >> SeriesStep::STIFFNESS_BITS;
+        settled + sum.clamp(-(1 << 33), 1 << 33) * i64::from(step.stiffness)
+    }
+
+    /// `A P`, or `rho A (P - P_0)`.
+    fn by_area(
         &mut self,
         design: &impl Design,
-        step: &SeriesStep<TERMS>,
+        at: &Lookup,
         rise: PressureRise,
-    ) -> RelaxedReading {
-        let bits = design.parameters().pressure_fraction_bits;
-        let largest = LARGEST << FRACTION_BITS;
-        let pressure = (i64::from(rise.0) << (FRACTION_BITS - bits)).clamp(-largest, largest);
-        self.invert(step, pressure);
-        let counts = self.elastic >> (FRACTION_BITS - bits);
-        let elastic = PressureRise(counts.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32);
-        let reading = design.lookup(elastic);
-
-        let last = design.parameters().last_rise.0;
-        // Force, and the square root of force times pressure, where the area is taken.
-        let place = elastic.0.clamp((last >> AREA_SHIFT).max(1), last);
-        let of_area = design.lookup(PressureRise(place)).force.0;
-        let root = root(reading.force.0, elastic.0.clamp(0, last));
-        let change = root.saturating_sub(self.root);
-        self.root = root;
-        let mut sum = root;
-        for (state, term) in self.roots.iter_mut().zip(&step.terms) {
-            *state = state
-                .saturating_sub(term.lost.of(*state))
-                .saturating_add(term.taken.of(change));
-            sum = sum.saturating_add(*state);
+        pressed_before: bool,
+    ) -> i64 {
+        let parameters = design.parameters();
+        let below_count = FRACTION_BITS - parameters.pressure_fraction_bits;
+        let last = i64::from(parameters.last_rise.0) << below_count;
+        let place = self.elastic.clamp(last >> AREA_SHIFT, last);
+        let force = if place == self.elastic {
+            at.force
+        } else {
+            Lookup::at(design, place).force
+        };
+        // `force / place` to 2^-15 of itself: 32 bits over 16, each shifted to the top of its word.
+        let (force, place) = (force.max(1) as u64, place.max(1) as u64);
+        let (up, down) = (force.leading_zeros(), place.leading_zeros());
+        let ratio = ((force << up) >> 32) as u32 / ((place << down) >> 48) as u32;
+        // 16 or 17 bits. From a pressure with 32 bits below a pascal to a force with 16 below a micronewton: an area is below 32 768 mm2.
+        let area = Factor {
+            mantissa: ratio << 15,
+            shift: up.saturating_sub(down + 1).min(Factor::MOST_SHIFT),
+        };
+        let left = self.touched == 0 || at.elastic.0 <= self.touched || rise.0 <= self.from;
+        if !pressed_before {
+            self.touched = 0;
+        } else if rise.0 < 0 && left {
+            self.touched = at.elastic.0;
+            self.from = rise.0;
         }
-        let convolved = scaled(of_area, sum, self::root(of_area, place));
-        let by_area = scaled(of_area, i64::from(rise.0), i64::from(place));
-        let force = self
-            .between(step, convolved, by_area)
-            .clamp(0, i64::from(i32::MAX)) as i32;
-        let recovering = force == 0 && rise.0 < 0;
-        RelaxedReading {
-            elastic,
-            force: Micronewtons(force),
-            indentation: reading.indentation,
-            warnings: Warnings::SATURATED
-                .when(reading.saturated)
-                .and(Warnings::RECOVERING.when(recovering)),
+        if self.touched == 0 {
+            return area.of(pressure(design, rise));
         }
+        let grown = PressureRise(rise.0.saturating_sub(self.from));
+        // Noise around a wall that nothing touches.
+        if grown < parameters.thresholds.release {
+            return 0;
+        }
+        // `(1 - x / 8)^8` stands for `exp(-x)`; eight times 0.3 is 12/5.
+        let stiff_again = self.touched / 5 * 12;
+        let mut softer = WHOLE - part(at.elastic.0 - self.touched, stiff_again);
+        for _ in 0..3 {
+            let share = softer.min(WHOLE - 1);
+            softer = (share * share) >> 16;
+        }
+        let softer = (softer * SOFTER) >> 16;
+        share(WHOLE - softer).of(area.of(pressure(design, grown)))
     }
 
-    /// The elastic pressure at a pressure.
-    fn invert(&mut self, step: &SeriesStep<TERMS>, pressure: i64) {
-        let mut rest = pressure.saturating_sub(self.elastic);
-        for (state, term) in self.held.iter_mut().zip(&step.terms) {
-            *state = state.saturating_sub(term.lost.of(*state));
-            rest = rest.saturating_sub(*state);
-        }
-        let change = step.inverse.of(rest);
-        self.elastic = self.elastic.saturating_add(change);
-        for (state, term) in self.held.iter_mut().zip(&step.terms) {
-            *state = state.saturating_add(term.taken.of(change));
-        }
-    }
-
-    /// From the convolved force to that by the area as the elastic pressure falls from its peak.
-    fn between(&mut self, step: &SeriesStep<TERMS>, convolved: i64, by_area: i64) -> i64 {
-        if let Some(slowest) = step.terms.last() {
-            self.peak = self.peak.saturating_sub(slowest.lost.of(self.peak));
+    /// How far the elastic pressure has fallen from its peak since the wall had last recovered. Peaks are forgotten with the slowest term.
+    fn note_fall(&mut self, step: &SeriesStep, pressed_before: bool) {
+        if let Some(slowest) = step.terms().last() {
+            self.peak -= slowest.lost.of(self.peak);
+            self.peak_force -= slowest.lost.of(self.peak_force);
         }
         self.peak = self.peak.max(self.elastic);
-        let whole = (self.peak >> FALL_SHIFT).max(1);
-        let fall = self.peak.saturating_sub(self.elastic).min(whole);
-        let part = i128::from(by_area.saturating_sub(convolved)) * i128::from(fall) / i128::from(whole);
-        convolved.saturating_add(part as i64)
+        // 2^24 Pa in 1 / 2^6: below 2^31.
+        let [peak, now] = [self.peak, self.elastic].map(|elastic| (elastic >> (FRACTION_BITS - 6)) as i32);
+        let fallen = part(peak.saturating_sub(now), peak >> FALL_SHIFT);
+        self.fallen = if pressed_before {
+            self.fallen.max(fallen)
+        } else {
+            0
+        };
+    }
+
+    /// The largest force so far, forgotten with the slowest term.
+    pub fn peak_force(&self) -> Micronewtons {
+        Micronewtons((self.peak_force >> FORCE_BITS) as i32)
+    }
+
+    /// The zero moved, and with it every pressure: by so many counts.
+    pub fn shift(&mut self, design: &impl Design, by: PressureRise) {
+        self.elastic = (self.elastic + pressure(design, by)).clamp(-LARGEST_STATE, LARGEST_STATE);
     }
 }
 
-/// `sqrt(force * pressure)`, with [`ROOT_BITS`] below one; both >= 0.
-fn root(force: i32, pressure: i32) -> i64 {
-    // Below 2^62.
-    let product = u64::from(force.max(0).unsigned_abs()) * u64::from(pressure.max(0).unsigned_abs());
-    if product == 0 {
-        return 0;
+/// What is left of the terms after a step, and their sum.
+#[inline(never)]
+fn decay(step: &SeriesStep, terms: &mut [i64]) -> i64 {
+    let mut sum = 0;
+    for (state, term) in terms.iter_mut().zip(step.terms()) {
+        *state -= term.lost.of(*state);
+        sum += *state;
     }
-    // All bits of the word give a root of 32.
-    let shift = product.leading_zeros() & !1;
-    let root = (product << shift).isqrt();
-    ((root << ROOT_BITS) >> (shift / 2)) as i64
+    sum
 }
 
-/// `force * part / whole`, of a whole > 0; saturates.
-fn scaled(force: i32, part: i64, whole: i64) -> i64 {
-    let quotient = i128::from(force) * i128::from(part) / i128::from(whole.max(1));
-    quotient.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
+/// The terms take their shares of a change.
+#[inline(never)]
+fn take(step: &SeriesStep, terms: &mut [i64], change: i64) {
+    for (state, term) in terms.iter_mut().zip(step.terms()) {
+        *state += term.share.of(change);
+    }
+}
+
+/// A part of a whole, as a share: at least nothing and at most all of it.
+fn part(of: i32, whole: i32) -> u32 {
+    let (of, whole) = (of.max(0) as u32, whole.max(1) as u32);
+    if of >= whole {
+        return WHOLE;
+    }
+    // As many of 16 bits as the word has room for come before the division.
+    let up = whole.leading_zeros().min(16);
+    ((of << up) / (whole >> (16 - up))).min(WHOLE)
+}
+
+/// A share as a factor; one is the largest there is.
+fn share(share: u32) -> Factor {
+    Factor {
+        mantissa: (share << 15).saturating_mul(2),
+        shift: 0,
+    }
+}
+
+/// A pressure as the wall's memory counts it.
+fn pressure(design: &impl Design, rise: PressureRise) -> i64 {
+    let below_count = FRACTION_BITS - design.parameters().pressure_fraction_bits;
+    (i64::from(rise.0) << below_count).clamp(-LARGEST_STATE, LARGEST_STATE)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Fingertips with straight lines for tables, so that tests can expect by hand.
 
 use crate::signal::design::{Design, Parameters};
+use crate::signal::wall::Elastic;
 use model_tables::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
 use model_tables::table::Reading;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
@@ -60,6 +61,8 @@ impl Linear {
 }
 
 impl Design for Linear {
+    type Wall = Elastic;
+
     fn parameters(&self) -> &Parameters {
         &self.0
     }

@@ -56,7 +56,7 @@ pub const fn averaged(kind: &TransducerKind) -> u32 {
 
 /// `sqrt(a^2 + b^2)` to 3 %, for `a, b >= 0`: the larger one, or 7/8 of it and half the other.
 #[inline]
-fn hypotenuse(a: i32, b: i32) -> i32 {
+pub(super) fn hypotenuse(a: i32, b: i32) -> i32 {
     let (small, large) = if a < b { (a, b) } else { (b, a) };
     large.max((large - (large >> 3)).saturating_add(small >> 1))
 }

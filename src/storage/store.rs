@@ -83,9 +83,9 @@ enum Place {
 struct Log {
     /// Places up to the last one that is not blank.
     used: u32,
-    /// The last record.
-    latest: Option<Record>,
-    /// Spoilt places behind it.
+    /// Whether there is a record.
+    holds: bool,
+    /// Spoilt places behind the last one.
     hidden: u32,
     /// The largest count of erasures in a record.
     erasures: u32,
@@ -94,13 +94,13 @@ struct Log {
 impl<F: NorFlash> Store<F> {
     const PLACE: u32 = LENGTH as u32;
 
-    /// Reads both slots, the first two of `slot` bytes in `flash`.
+    /// The first two slots of `slot` bytes in `flash`, to be read by [`Store::load`].
     ///
     /// # Panics
     /// At compile time, for a memory whose write unit a record is not a multiple of.
-    pub async fn open(flash: F, slot: u32, identity: Identity) -> (Self, Stored) {
+    pub const fn new(flash: F, slot: u32, identity: Identity) -> Self {
         const { assert!(LENGTH.is_multiple_of(F::WRITE_SIZE)) };
-        let mut store = Self {
+        Self {
             flash,
             identity,
             slot,
@@ -111,34 +111,46 @@ impl<F: NorFlash> Store<F> {
             erasures: 0,
             hidden: 0,
             refused: false,
-        };
-        let logs = [store.scan(0).await, store.scan(1).await];
-        let sequence = |log: &Log| log.latest.map_or(0, |record| record.sequence);
-        let home = usize::from(sequence(&logs[1]) > sequence(&logs[0]));
-        let (serves, other) = (&logs[home], &logs[1 - home]);
-        // Saves leave a slot when it is full, so behind a slot that is not full there is no newer one; and the records
-        // of a slot are older than the first of the next.
-        let turned_over = serves.latest.is_none() || serves.used == store.places();
-        store.hidden = serves.hidden;
-        if turned_over && other.latest.is_none() {
-            store.hidden += other.hidden;
         }
-        store.latest = serves.latest;
-        store.home = home as u32;
-        store.current = store.home;
-        store.next = serves.used;
-        store.erasures = serves.erasures.max(other.erasures);
-        let state = match store.latest {
-            Some(_) if store.hidden > 0 => Stored::Unreadable,
-            Some(latest) => store.state_of(&latest),
-            None if store.refused => Stored::Unreadable,
-            None if serves.used + other.used > 0 => Stored::Damaged,
-            None => Stored::None,
-        };
+    }
+
+    /// [`Store::new`] and [`Store::load`].
+    pub async fn open(flash: F, slot: u32, identity: Identity) -> (Self, Stored) {
+        let mut store = Self::new(flash, slot, identity);
+        let state = store.load().await;
         (store, state)
     }
 
-    /// Reads one slot, each place once. All of it: a place that cannot be read now may read as blank at another start,
+    /// Reads both slots.
+    // In place, and the latest record into its own: moved from one future to another they take a `memmove`, 1.6 kB of flash.
+    pub async fn load(&mut self) -> Stored {
+        let logs = [self.scan(0).await, self.scan(1).await];
+        let [first, second] = &logs;
+        let (serves, other) = if self.home == 0 {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        // Saves leave a slot when it is full, so behind a slot that is not full there is no newer one; and the records
+        // of a slot are older than the first of the next.
+        let turned_over = !serves.holds || serves.used == self.places();
+        self.hidden = serves.hidden;
+        if turned_over && !other.holds {
+            self.hidden += other.hidden;
+        }
+        self.current = self.home;
+        self.next = serves.used;
+        self.erasures = serves.erasures.max(other.erasures);
+        match &self.latest {
+            Some(_) if self.hidden > 0 => Stored::Unreadable,
+            Some(latest) => self.state_of(latest),
+            None if self.refused => Stored::Unreadable,
+            None if serves.used + other.used > 0 => Stored::Damaged,
+            None => Stored::None,
+        }
+    }
+
+    /// Reads one slot, each place once, and keeps its last record where that is newer than the other slot's. All of it: a place that cannot be read now may read as blank at another start,
     /// so blanks may lie before a record.
     async fn scan(&mut self, which: u32) -> Log {
         let mut log = Log::default();
@@ -148,7 +160,11 @@ impl<F: NorFlash> Store<F> {
                 // A slot is written from its first place on: the last record is the newest.
                 Place::Record(record) => {
                     log.erasures = log.erasures.max(record.erasures);
-                    log.latest = Some(record);
+                    log.holds = true;
+                    if self.home == which || record.sequence > self.sequence() {
+                        self.latest = Some(record);
+                        self.home = which;
+                    }
                     log.hidden = 0;
                 }
                 Place::Cut => {}
@@ -206,7 +222,7 @@ impl<F: NorFlash> Store<F> {
         // Each spoilt place may hold one.
         let passed = self.sequence().checked_add(self.hidden);
         let sequence = passed.and_then(|passed| passed.checked_add(1));
-        let record = Record {
+        let mut record = Record {
             sequence: sequence.ok_or(StoreError::WornOut)?,
             design_hash,
             table_version,
@@ -224,19 +240,20 @@ impl<F: NorFlash> Store<F> {
         if self.hidden == 0 && self.latest.as_ref().is_some_and(same) {
             return Ok(());
         }
-        if self.append(record).await {
+        record.erasures = self.erasures;
+        if self.append(&record).await {
             return Ok(());
         }
         self.turn_over().await?;
-        if self.append(record).await {
+        record.erasures = self.erasures;
+        if self.append(&record).await {
             return Ok(());
         }
         Err(StoreError::Failed)
     }
 
     /// Writes into the next places of the current slot; whether one took it.
-    async fn append(&mut self, mut record: Record) -> bool {
-        record.erasures = self.erasures;
+    async fn append(&mut self, record: &Record) -> bool {
         // The first place that is blank after all is the next one still.
         let mut blank = None;
         for place in self.next..self.places().min(self.next + TRIES) {
@@ -244,12 +261,12 @@ impl<F: NorFlash> Store<F> {
             if self.read(self.current, place).await != Place::Blank {
                 continue;
             }
-            let bytes = record::encode(&record);
+            let bytes = record::encode(record);
             // What is read back is what the next start will read, whatever the memory says of the write.
             let _ = self.flash.write(self.offset(self.current, place), &bytes).await;
             match self.read(self.current, place).await {
-                Place::Record(found) if found == record => {
-                    self.latest = Some(record);
+                Place::Record(found) if found == *record => {
+                    self.latest = Some(found);
                     self.hidden = 0;
                     self.home = self.current;
                     self.next = place + 1;

@@ -9,10 +9,10 @@ use crate::transducer::driver::{Driver, Sample};
 use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
 use model_tables::constants;
-use model_tables::constants::TransducerKind;
+use model_tables::constants::{TransducerKind, period};
 
 /// From one sample to the next, microseconds: the part measures about 200 times a second.
-pub const PERIOD: u32 = 8_000;
+pub const PERIOD: u32 = period::ABP2;
 
 const MEASURE: [u8; 3] = [0xAA, 0x00, 0x00];
 /// The status byte: powered, not busy, memory sound, arithmetic not at its end.

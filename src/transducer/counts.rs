@@ -8,7 +8,7 @@
 
 use crate::status::Fault;
 use core::sync::atomic::{AtomicU32, Ordering};
-use model_tables::constants::TransducerKind;
+use model_tables::constants::{TransducerKind, period};
 
 /// Highest code of the 12-bit converter, at its reference.
 pub const FULL_SCALE: u16 = 4095;
@@ -17,7 +17,7 @@ pub const FULL_SCALE: u16 = 4095;
 pub const BLOCK_LENGTH: usize = 100;
 
 /// From one block to the next, microseconds.
-pub const PERIOD: u32 = 1000;
+pub const PERIOD: u32 = period::CONVERTER;
 
 /// A block as DMA writes it: the earlier code of two in the lower half of a word, 12 bits each. Atomic, because the DMA may write
 /// while it is read; then [`Ring::still_holds`] says so.

@@ -14,9 +14,10 @@ use crate::transducer::bus::{self, Bus};
 use crate::transducer::driver::{Driver, Sample, recognise};
 use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
+use model_tables::constants::period;
 
 /// From one sample to the next, microseconds.
-pub const PERIOD: u32 = 14_000;
+pub const PERIOD: u32 = period::DPS310;
 
 /// Registers (section 7, table 15).
 const PRS_B2: u8 = 0x00;

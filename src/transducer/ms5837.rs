@@ -12,9 +12,10 @@ use crate::transducer::bus::{self, Bus};
 use crate::transducer::driver::{Driver, Sample, recognise};
 use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
+use model_tables::constants::period;
 
 /// From one sample to the next, microseconds.
-pub const PERIOD: u32 = 7_000;
+pub const PERIOD: u32 = period::MS5837;
 
 /// Commands (datasheet, "Commands"). The conversions' low bits choose the oversampling.
 const RESET: u8 = 0x1E;

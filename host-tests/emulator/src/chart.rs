@@ -383,7 +383,7 @@ mod tests {
 
     fn caption(full_scale: Contact) -> Caption {
         Caption {
-            title: "press-hold-release on index-fingertip".to_owned(),
+            title: "press-hold-release on index-fingertip-elastic".to_owned(),
             subtitle: "median error: force 0.1 %, indentation 0.1 %".to_owned(),
             full_scale,
             target_percent: 0.5,
@@ -404,7 +404,7 @@ mod tests {
             "reported by the firmware",
             "fault: no values",
             "warning",
-            "press-hold-release on index-fingertip",
+            "press-hold-release on index-fingertip-elastic",
         ] {
             assert!(svg.contains(words), "{words}");
         }

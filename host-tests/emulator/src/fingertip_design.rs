@@ -78,7 +78,7 @@ pub fn workspace() -> PathBuf {
 /// workspace, or the index fingertip.
 pub fn default_path() -> PathBuf {
     let asked = std::env::var_os("FINGERTIP_DESIGN");
-    workspace().join(asked.unwrap_or_else(|| "model-tables/designs/index-fingertip.toml".into()))
+    workspace().join(asked.unwrap_or_else(|| "model-tables/designs/index-fingertip-elastic.toml".into()))
 }
 
 impl FingertipDesign {

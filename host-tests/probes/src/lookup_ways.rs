@@ -19,7 +19,7 @@ pub const WAYS: [(&str, bool); 15] = [
     ("rational_f32", false),
     ("power_libm", false),
     ("power_micromath", false),
-    ("index_fingertip_tables", false),
+    ("index_fingertip_elastic_tables", false),
     ("paper_prestretched_tables", false),
     ("skin_analogue_tables", false),
     ("skin_light_touch_tables", false),

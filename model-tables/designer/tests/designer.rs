@@ -123,7 +123,7 @@ fn profile_is_the_state_that_solve_gives() {
 fn actuator_has_the_values_worked_by_hand() {
     let (header, rows) = header_and_rows(&[
         "actuator",
-        &shipped("index-fingertip"),
+        &shipped("index-fingertip-elastic"),
         "--pressure-kpa",
         "0,17.9,17.935",
     ]);
@@ -142,7 +142,7 @@ fn actuator_has_the_values_worked_by_hand() {
 fn actuator_takes_its_diameter_from_the_design() {
     let folder = scratch("actuator");
     let file = folder.join("wide.toml");
-    let text = fs::read_to_string(shipped("index-fingertip")).expect("the design");
+    let text = fs::read_to_string(shipped("index-fingertip-elastic")).expect("the design");
     fs::write(&file, text + "\n[actuator]\ndiameter_mm = 18.0\n").expect("written");
     let (_, rows) = header_and_rows(&[
         "actuator",
@@ -220,7 +220,7 @@ fn numbers_have_twelve_significant_digits() {
 
 #[test]
 fn estimate_agrees_with_the_model_and_flags_both_ends() {
-    let design = shipped("index-fingertip");
+    let design = shipped("index-fingertip-elastic");
     let (_, solved) = header_and_rows(&["solve", &design, "--indentation-mm", "0.3,1.0,2.4"]);
     let rises: Vec<f64> = solved
         .iter()

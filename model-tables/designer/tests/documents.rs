@@ -374,7 +374,7 @@ fn a_design_is_known_by_its_content_and_not_by_its_date() {
 fn what_names_no_design_is_refused_in_a_line() {
     // To cargo, a variable that is not UTF-8 is as good as none: nothing would have changed.
     let default = tables_of(None, &[]).expect("it builds");
-    assert!(default.contains("\"index-fingertip\""), "{default}");
+    assert!(default.contains("\"index-fingertip-elastic\""), "{default}");
     for (asked, refusal) in [
         (
             &b"designs/\xff.toml"[..],

@@ -229,7 +229,7 @@ fn a_page_of_a_solid_leaves_out_what_has_no_meaning() {
 fn a_design_without_tables_gives_a_reason_and_no_page() {
     let folder = scratch("refused");
     let file = folder.join("narrow.toml");
-    let text = fs::read_to_string(shipped("index-fingertip")).expect("shipped");
+    let text = fs::read_to_string(shipped("index-fingertip-elastic")).expect("shipped");
     fs::write(
         &file,
         text.replace("range_kpa = [0.0, 100.0]", "range_kpa = [0.0, 10.0]"),

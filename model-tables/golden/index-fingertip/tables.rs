@@ -5,13 +5,13 @@ pub const NAME: &str = "index-fingertip";
 
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
-    hash: 0x57e21f1b2d57bec1,
+    hash: 0x2a86bd08600d07db,
     table_version: 5,
-    certificate: 0xcd1a1a0be5c2f91e,
+    certificate: 0x67e753815d324c60,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {
-        range: [0, 100000],
+        range: [-10000, 100000],
         resolution: 10000,
         noise: 10000,
         quantity: model_tables::constants::Quantity::Gauge,
@@ -46,4 +46,24 @@ pub const TABLES: DesignTables = model_tables::table::Tables {
         [4522086, 18940411, -8847401, 17235838],
         [1048640, 7274836, 88, 64895],
     ],
+};
+
+/// The wall in time: only a wall that relaxes has it.
+pub const RELAXATION: model_tables::material::series::WallSeries = model_tables::material::series::WallSeries {
+    remaining_permille: 30,
+    step: model_tables::material::series::SeriesStep {
+        count: 7,
+        stiffness: 104743,
+        settled: model_tables::material::series::Factor { mantissa: 2687298560, shift: 8 },
+        terms: [
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2714937127, shift: 0 }, share: model_tables::material::series::Factor { mantissa: 2924943324, shift: 0 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 3269761419, shift: 3 }, share: model_tables::material::series::Factor { mantissa: 2187692539, shift: 1 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2735080873, shift: 6 }, share: model_tables::material::series::Factor { mantissa: 3138498040, shift: 4 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2197924110, shift: 9 }, share: model_tables::material::series::Factor { mantissa: 2994168735, shift: 6 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 3518261293, shift: 13 }, share: model_tables::material::series::Factor { mantissa: 4165104509, shift: 8 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2814735693, shift: 16 }, share: model_tables::material::series::Factor { mantissa: 2150903013, shift: 9 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2251798688, shift: 19 }, share: model_tables::material::series::Factor { mantissa: 2323974632, shift: 10 } },
+            model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 0, shift: 0 }, share: model_tables::material::series::Factor { mantissa: 0, shift: 0 } },
+        ],
+    },
 };

@@ -2,6 +2,7 @@
 //! once, in order, to a [`Visit`]: the reader, the writer, and whoever prints them.
 
 use crate::constants::{Quantity, TransducerKind};
+use crate::material::series::{Factor, TermStep};
 use crate::table::{Constant, Powers};
 #[cfg(feature = "std")]
 use std::fmt::{self, Write};
@@ -91,6 +92,55 @@ impl<T: Field> Field for [T; 2] {
         out.push_str(", ");
         second.spell(out)?;
         out.push(']');
+        Ok(())
+    }
+}
+
+/// Mantissa and shift.
+impl Field for Factor {
+    const LENGTH: usize = <[u32; 2]>::LENGTH;
+
+    fn get(bytes: &[u8]) -> Option<Self> {
+        let [mantissa, shift] = <[u32; 2]>::get(bytes)?;
+        (shift <= Self::MOST_SHIFT).then_some(Self { mantissa, shift })
+    }
+
+    #[cfg(feature = "std")]
+    fn put(&self, out: &mut Vec<u8>) {
+        [self.mantissa, self.shift].put(out);
+    }
+
+    #[cfg(feature = "std")]
+    fn spell(&self, out: &mut String) -> fmt::Result {
+        write!(out, "model_tables::material::series::{self:?}")
+    }
+}
+
+/// What is lost, and its share.
+impl Field for TermStep {
+    const LENGTH: usize = 2 * Factor::LENGTH;
+
+    fn get(bytes: &[u8]) -> Option<Self> {
+        let (lost, share) = bytes.split_at_checked(Factor::LENGTH)?;
+        Some(Self {
+            lost: Factor::get(lost)?,
+            share: Factor::get(share)?,
+        })
+    }
+
+    #[cfg(feature = "std")]
+    fn put(&self, out: &mut Vec<u8>) {
+        self.lost.put(out);
+        self.share.put(out);
+    }
+
+    #[cfg(feature = "std")]
+    fn spell(&self, out: &mut String) -> fmt::Result {
+        out.push_str("model_tables::material::series::TermStep { lost: ");
+        self.lost.spell(out)?;
+        out.push_str(", share: ");
+        self.share.spell(out)?;
+        out.push_str(" }");
         Ok(())
     }
 }

@@ -7,6 +7,7 @@ use super::{
     BlockError, ENTRY, HEAD, LAYOUT_VERSION, LONGEST_NAME, MAGIC, StoredCalibration, aligned, check,
 };
 use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
+use crate::material::series::{SeriesStep, WallSeries};
 use crate::table::loaded::LoadedTables;
 use crate::table::{Constant, Layout, Powers};
 
@@ -24,6 +25,8 @@ pub struct TipBlock<'a> {
     pub name: &'a str,
     /// What is known of this one fingertip, if anything.
     pub calibration: Option<StoredCalibration>,
+    /// The wall in time, if it relaxes.
+    pub relaxation: Option<WallSeries>,
 }
 
 impl<'a> TipBlock<'a> {
@@ -69,6 +72,10 @@ impl<'a> TipBlock<'a> {
             own.end()?;
             calibration = Some(found);
         }
+        let relaxation = match sections.of_kind(SectionKind::Relaxation) {
+            Some(own) => Some(relaxation(own)?),
+            None => None,
+        };
         // Last, because it takes the most work.
         let tables = LoadedTables::new(layout, words)?;
         Ok(Self {
@@ -76,8 +83,36 @@ impl<'a> TipBlock<'a> {
             tables,
             name,
             calibration,
+            relaxation,
         })
     }
+}
+
+/// The wall in time: at least one term, and as many as the section has bytes for.
+fn relaxation(mut own: Cursor<'_>) -> Result<WallSeries, BlockError> {
+    let mut wall = WallSeries::default();
+    section::relaxation(&mut wall, &mut own)?;
+    let value = |field| BlockError::Value(SectionKind::Relaxation, field);
+    if wall.remaining_permille > 1000 {
+        return Err(value("remaining_permille"));
+    }
+    if !(1 << SeriesStep::STIFFNESS_BITS..=SeriesStep::MOST_STIFFNESS).contains(&wall.step.stiffness) {
+        return Err(value("stiffness"));
+    }
+    for term in &mut wall.step.terms {
+        if !own.bytes.is_empty() {
+            own.field("term", term)?;
+            wall.step.count += 1;
+        }
+    }
+    own.end()?;
+    if wall.step.count == 0 {
+        return Err(BlockError::SectionLength(SectionKind::Relaxation));
+    }
+    if !wall.step.is_passive() {
+        return Err(value("term"));
+    }
+    Ok(wall)
 }
 
 /// The bytes of a block that is of this layout, complete and unchanged, and its head from the identity on.

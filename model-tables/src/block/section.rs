@@ -3,6 +3,7 @@
 use super::StoredCalibration;
 use super::field::Visit;
 use crate::constants::{DesignConstants, Transducer};
+use crate::material::series::WallSeries;
 use crate::table::Layout;
 
 /// The kinds of sections, by their number.
@@ -16,15 +17,23 @@ pub enum SectionKind {
     Calibration = 3,
     /// The design's name.
     Name = 4,
+    /// The wall in time.
+    Relaxation = 5,
 }
 
-/// Numbers that later layouts give to the wall's relaxation, other objects than a plate, and the feedback membrane. A block with
-/// one of these is for newer firmware: without them its readings would be wrong.
-pub const RESERVED: [u16; 3] = [5, 6, 7];
+/// Numbers that later layouts give to other objects than a plate, and the feedback membrane. A block with one of these is for newer
+/// firmware: without them its readings would be wrong.
+pub const RESERVED: [u16; 2] = [6, 7];
 
 impl SectionKind {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Constants, Self::Tables, Self::Calibration, Self::Name];
+    pub const ALL: [Self; 5] = [
+        Self::Constants,
+        Self::Tables,
+        Self::Calibration,
+        Self::Name,
+        Self::Relaxation,
+    ];
 
     /// The only version of it so far.
     pub const VERSION: u16 = 1;
@@ -41,6 +50,7 @@ impl SectionKind {
             Self::Tables => "tables",
             Self::Calibration => "calibration",
             Self::Name => "name",
+            Self::Relaxation => "relaxation",
         }
     }
 }
@@ -102,4 +112,14 @@ pub fn calibration<V: Visit>(value: &mut StoredCalibration, visit: &mut V) -> Re
     visit.field("temperature", &mut value.temperature)?;
     visit.field("coefficient", &mut value.coefficient)?;
     visit.field("gain", &mut value.gain)
+}
+
+/// The first part of the wall in time; its terms follow.
+///
+/// # Errors
+/// The visitor's.
+pub fn relaxation<V: Visit>(value: &mut WallSeries, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("remaining_permille", &mut value.remaining_permille)?;
+    visit.field("stiffness", &mut value.step.stiffness)?;
+    visit.field("settled", &mut value.step.settled)
 }

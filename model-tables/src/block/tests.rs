@@ -4,6 +4,7 @@ use super::section::{self, SectionKind};
 use super::write::{TipData, sign};
 use super::*;
 use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
+use crate::material::series::{Factor, SeriesStep, TermStep, WallSeries};
 use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
 use std::collections::BTreeSet;
@@ -66,7 +67,73 @@ const DATA: TipData<'_> = TipData {
     words: &WORDS,
     name: "a-tip_1",
     calibration: Some(CALIBRATION),
+    relaxation: None,
 };
+
+/// A half of a term is lost, and it takes a tenth of a change.
+fn wall(terms: usize) -> WallSeries {
+    let mut step = SeriesStep {
+        settled: Factor::nearest(0.1),
+        stiffness: 10 << SeriesStep::STIFFNESS_BITS,
+        count: terms,
+        ..SeriesStep::default()
+    };
+    for term in &mut step.terms[..terms] {
+        *term = TermStep {
+            lost: Factor::nearest(0.5),
+            share: Factor::nearest(0.1),
+        };
+    }
+    WallSeries {
+        step,
+        remaining_permille: 30,
+    }
+}
+
+#[test]
+fn a_wall_in_time_is_written_and_read() {
+    for terms in [1, 7, 8] {
+        let relaxation = Some(wall(terms));
+        let block = TipData { relaxation, ..DATA }.write();
+        assert_eq!(
+            TipBlock::read(&block).expect("it is whole").relaxation,
+            relaxation
+        );
+    }
+    let elastic = DATA.write();
+    assert_eq!(TipBlock::read(&elastic).expect("it is whole").relaxation, None);
+}
+
+#[test]
+fn a_wall_in_time_that_cannot_be_is_refused() {
+    let refused = |relaxation: WallSeries| {
+        let relaxation = Some(relaxation);
+        error(&TipData { relaxation, ..DATA }.write())
+    };
+    let value = |field| BlockError::Value(SectionKind::Relaxation, field);
+    assert_eq!(
+        refused(wall(0)),
+        BlockError::SectionLength(SectionKind::Relaxation)
+    );
+    let mut odd = wall(2);
+    odd.remaining_permille = 1001;
+    assert_eq!(refused(odd), value("remaining_permille"));
+    let mut odd = wall(2);
+    for stiffness in [255, (1 << 28) + 1] {
+        odd.step.stiffness = stiffness;
+        assert_eq!(refused(odd), value("stiffness"));
+    }
+    let mut odd = wall(2);
+    odd.step.settled.shift = 32;
+    assert_eq!(refused(odd), value("settled"));
+    let mut odd = wall(2);
+    odd.step.terms[1].share.shift = 32;
+    assert_eq!(refused(odd), value("term"));
+    // More than the whole of a change.
+    let mut odd = wall(2);
+    odd.step.terms[1].share = Factor::nearest(0.9);
+    assert_eq!(refused(odd), value("term"));
+}
 
 fn error(block: &[u8]) -> BlockError {
     TipBlock::read(block).expect_err("it is refused")
@@ -230,6 +297,8 @@ fn the_page_lists_every_field_where_it_lies() {
     let Ok(()) = section::layout(&mut layout, &mut rows);
     let mut rows = Rows(0);
     let Ok(()) = section::calibration(&mut calibration, &mut rows);
+    let mut rows = Rows(0);
+    let Ok(()) = section::relaxation(&mut wall(1), &mut rows);
     let numbers: BTreeSet<String> = SectionKind::ALL
         .iter()
         .map(|&kind| format!("| {} | {} |", kind as u16, kind.word()))

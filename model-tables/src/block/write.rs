@@ -4,6 +4,7 @@ use super::field::{Field, Visit};
 use super::section::{self, SectionKind};
 use super::{CHECK_AT, ENTRY, HEAD, LAYOUT_VERSION, MAGIC, StoredCalibration, aligned, check};
 use crate::constants::DesignConstants;
+use crate::material::series::WallSeries;
 use crate::table::Layout;
 use core::convert::Infallible;
 
@@ -20,6 +21,8 @@ pub struct TipData<'a> {
     pub name: &'a str,
     /// What is known of this one fingertip, if anything.
     pub calibration: Option<StoredCalibration>,
+    /// The wall in time, if it relaxes.
+    pub relaxation: Option<WallSeries>,
 }
 
 /// Adds the bytes of each field.
@@ -48,6 +51,7 @@ impl TipData<'_> {
             mut constants,
             mut layout,
             mut calibration,
+            mut relaxation,
             ..
         } = *self;
         let identity = described(|visit| section::identity(&mut constants, visit));
@@ -74,6 +78,14 @@ impl TipData<'_> {
             sections.push((SectionKind::Calibration, bytes));
         }
         sections.push((SectionKind::Name, self.name.as_bytes().to_vec()));
+        if let Some(wall) = &mut relaxation {
+            let bytes = described(|visit| {
+                section::relaxation(wall, visit)?;
+                let mut terms = wall.step.terms().iter();
+                terms.try_for_each(|&term| visit.field("term", &mut { term }))
+            });
+            sections.push((SectionKind::Relaxation, bytes));
+        }
         block(&identity, &sections)
     }
 }

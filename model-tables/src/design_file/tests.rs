@@ -833,7 +833,7 @@ fn reports_a_file_that_cannot_be_read() {
 
 #[test]
 fn the_shipped_designs_are_complete() {
-    for name in ["index-fingertip", "paper-prestretched", "skin-analogue"] {
+    for name in ["index-fingertip-elastic", "paper-prestretched", "skin-analogue"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("designs")
             .join(name)

@@ -10,9 +10,17 @@ use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::block::write::TipData;
 use crate::constants::DesignConstants;
+use crate::material::series::{SeriesStep, WallSeries};
 use crate::model::own_error::OwnError;
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
+
+/// Force that a relaxing wall may still bear where the chip reads none, permille of the peak before: finite elements of presses
+/// and releases, of walls of a ninth of the radius, and of thinner ones than [`THIN`].
+const REMAINING: u32 = 30;
+const REMAINING_THIN: u32 = 50;
+/// Thickness over radius.
+const THIN: f64 = 0.1;
 
 const NEVER: &str = "writing to a string does not fail";
 
@@ -43,8 +51,21 @@ impl Generated {
             words: &tables.words,
             name: &self.design.name,
             calibration: None,
+            relaxation: self.wall(),
         }
         .write()
+    }
+
+    /// Its wall in time as the chip knows it, if it relaxes.
+    pub fn wall(&self) -> Option<WallSeries> {
+        let relaxation = self.design.relaxation.as_ref()?;
+        let membrane = &self.design.design().membrane;
+        let thin = membrane.thickness <= THIN * membrane.radial_semi_axis;
+        let period = 1e-6 * f64::from(self.transducer().kind.period());
+        Some(WallSeries {
+            step: SeriesStep::over(relaxation, period),
+            remaining_permille: if thin { REMAINING_THIN } else { REMAINING },
+        })
     }
 
     /// The tables as CSV: one row a word.
@@ -112,7 +133,34 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     for index in 0..tables.segments() {
         writeln!(out, "        {:?},", tables.segment(index))?;
     }
-    writeln!(out, "    ],\n}};")
+    writeln!(out, "    ],\n}};")?;
+    match generated.wall() {
+        Some(wall) => write_wall(wall, out),
+        None => Ok(()),
+    }
+}
+
+fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
+    const OF: &str = "model_tables::material::series";
+    writeln!(
+        out,
+        "\n/// The wall in time: only a wall that relaxes has it.\n\
+         pub const RELAXATION: {OF}::WallSeries = {OF}::WallSeries {{\n\
+         \x20   remaining_permille: {},\n\
+         \x20   step: {OF}::SeriesStep {{\n\
+         \x20       count: {},\n\
+         \x20       stiffness: {},",
+        wall.remaining_permille, wall.step.count, wall.step.stiffness
+    )?;
+    let mut source = Source { out, indent: 8 };
+    source.field("settled", &mut wall.step.settled)?;
+    writeln!(out, "        terms: [")?;
+    for term in &wall.step.terms {
+        write!(out, "            ")?;
+        term.spell(out)?;
+        writeln!(out, ",")?;
+    }
+    writeln!(out, "        ],\n    }},\n}};")
 }
 
 /// A line of Rust source for each field.

@@ -7,6 +7,7 @@
 
 pub mod preset;
 pub mod relaxation;
+pub mod series;
 pub mod stability;
 
 /// First and second derivatives of the strain energy with respect to the principal stretches, in pascals.

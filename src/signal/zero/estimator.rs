@@ -207,6 +207,12 @@ impl Estimator {
         ))
     }
 
+    /// This pressure says nothing of the zero: the window is no evidence.
+    #[inline]
+    pub fn disregard(&mut self) {
+        self.window.disturb();
+    }
+
     /// A gap in the samples: a window has no gaps. Patience runs on.
     pub fn interrupt(&mut self, time: Microseconds) {
         self.window = Window::EMPTY;

@@ -45,6 +45,13 @@ impl Window {
         full.then(|| self.end())
     }
 
+    /// What it sees is no level of the zero: it will not have been quiet.
+    #[inline]
+    pub(super) fn disturb(&mut self) {
+        self.lowest = Pressure(i32::MIN);
+        self.highest = Pressure(i32::MAX);
+    }
+
     #[cold]
     fn end(&mut self) -> Seen {
         let samples = i64::from(self.samples.max(1));

@@ -78,10 +78,12 @@ fn design_with(shipped: &str, from: &str, to: &str) -> FingertipDesign {
 /// The same for the smaller board: nothing emulates it, but it has a size.
 fn small_board() -> &'static Image {
     static IMAGE: OnceLock<Image> = OnceLock::new();
-    IMAGE.get_or_init(|| {
-        let design = design().path;
-        Image::build_for("firmware", Some(&design), Some("board-nucleo-l432kc")).expect("the firmware builds")
-    })
+    IMAGE.get_or_init(|| small_board_for(&design()))
+}
+
+fn small_board_for(design: &FingertipDesign) -> Image {
+    Image::build_for("firmware", Some(&design.path), Some("board-nucleo-l432kc"))
+        .expect("the firmware builds")
 }
 
 fn design() -> FingertipDesign {

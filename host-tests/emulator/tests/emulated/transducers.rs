@@ -61,7 +61,7 @@ fn kinds() -> Vec<(&'static str, FingertipDesign)> {
     vec![
         (
             "ratiometric",
-            FingertipDesign::read(&host_tests::design("index-fingertip")).expect("it is shipped"),
+            FingertipDesign::read(&host_tests::design("index-fingertip-elastic")).expect("it is shipped"),
         ),
         (
             "ratiometric, supply measured",
@@ -73,7 +73,7 @@ fn kinds() -> Vec<(&'static str, FingertipDesign)> {
         ),
         (
             "ratiometric, absolute",
-            design_with("index-fingertip", GAUGE_BRIDGE, MPX4250A),
+            design_with("index-fingertip-elastic", GAUGE_BRIDGE, MPX4250A),
         ),
         ("abp2", light("abp2")),
         ("ms5837-02ba", light("ms5837-02ba")),
@@ -406,18 +406,18 @@ const MISFITS: [(&str, &str, &str); 11] = [
         "range_kpa",
     ),
     (
-        "index-fingertip",
+        "index-fingertip-elastic",
         "kind = \"dps310\"\nrange_kpa = [0.0, 100.0]",
         "range_kpa",
     ),
     (
-        "index-fingertip",
+        "index-fingertip-elastic",
         "kind = \"ms5837-02ba\"\nrange_kpa = [0.0, 100.0]",
         "range_kpa",
     ),
     // What it measures there is not enough for the press, ...
     (
-        "index-fingertip",
+        "index-fingertip-elastic",
         "kind = \"dps310\"\nrange_kpa = [0.0, 12.0]",
         "transducer.range_kpa",
     ),
@@ -449,7 +449,7 @@ const MISFITS: [(&str, &str, &str); 11] = [
     ),
     // An absolute part that does not reach the air, and one that is none.
     (
-        "index-fingertip",
+        "index-fingertip-elastic",
         "kind = \"ratiometric\"\nquantity = \"absolute\"\nrange_kpa = [0.0, 100.0]",
         "range_kpa",
     ),

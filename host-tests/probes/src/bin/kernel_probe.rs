@@ -182,7 +182,7 @@ mod probe {
     }
 
     shipped! {
-        index_fingertip index_fingertip_tables "index-fingertip"
+        index_fingertip_elastic index_fingertip_elastic_tables "index-fingertip-elastic"
         paper_prestretched paper_prestretched_tables "paper-prestretched"
         skin_analogue skin_analogue_tables "skin-analogue"
         skin_light_touch skin_light_touch_tables "skin-light-touch"

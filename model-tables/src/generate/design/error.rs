@@ -19,6 +19,8 @@ pub enum GenerateError {
     },
     /// `object.unknown` is set: tables are of one object.
     UnknownObject,
+    /// The wall relaxes, and the design is none that its convolution holds for: the key, and the remedy.
+    NotConvolved(&'static str),
     /// The model gives no answer, or ends before `max_indentation_mm`.
     Model(ModelError),
     /// Pressure or force do not grow throughout.
@@ -88,6 +90,7 @@ impl fmt::Display for GenerateError {
                 f,
                 "`object.unknown` is true, and tables are of one object: give object.radius_mm, or leave [object] out for a plate"
             ),
+            Self::NotConvolved(reason) => f.write_str(reason),
             Self::MissingSection { section } => {
                 write!(f, "`[{section}]` is missing: tables cannot be made without it")
             }

@@ -9,7 +9,10 @@ pub use limit::Limit;
 use super::{Certified, NoTables, tables};
 use crate::constants::{BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
-use crate::design_file::{DataCurve, DesignFile, Supply, TransducerKindSection, TransducerSection, Transfer};
+use crate::design_file::{
+    DataCurve, DesignFile, ModelSection, RestSection, Supply, TransducerKindSection, TransducerSection,
+    Transfer,
+};
 use crate::model::own_error::{Comparison, OwnError};
 use crate::model::{Fingertip, Kind};
 use sha2::{Digest as _, Sha256};
@@ -89,6 +92,7 @@ pub fn from_design_or_worse(design: DesignFile) -> Result<Generated, GenerateErr
 
 fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
+    is_convolved(&design)?;
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
     let Solved {
         transducer,
@@ -169,6 +173,23 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         end,
         rung,
     })
+}
+
+/// Refuses a wall that relaxes in a design that the convolution does not hold for.
+fn is_convolved(design: &DesignFile) -> Result<(), GenerateError> {
+    if design.relaxation.is_none() {
+        return Ok(());
+    }
+    let reason = if design.model == ModelSection::Membrane {
+        "model.kind is \"membrane\": with [material.relaxation] set it to \"solid\" or \"auto\""
+    } else if design.rest != RestSection::Unstretched || design.calibration.pole_stretch.is_some() {
+        "[rest] is given: with [material.relaxation] a wall rests unstretched, leave it out"
+    } else if design.design().compliance > 0.0 {
+        "fluid.compliance_mm3_per_kpa is above 0: with [material.relaxation] the circuit is rigid, set it to 0"
+    } else {
+        return Ok(());
+    };
+    Err(GenerateError::NotConvolved(reason))
 }
 
 /// Refuses a model that is further off than `accuracy.model_percent` allows.

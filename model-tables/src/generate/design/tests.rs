@@ -19,7 +19,7 @@ fn shipped(name: &str) -> DesignFile {
 /// Fresh full-model states, not the curve that the tables were made from, at indentations of their own.
 #[test]
 fn tables_of_the_shipped_designs_agree_with_fresh_states_of_the_model() {
-    for name in ["index-fingertip", "paper-prestretched", "skin-analogue"] {
+    for name in ["index-fingertip-elastic", "paper-prestretched", "skin-analogue"] {
         let generated = from_design(shipped(name)).expect("tables");
         let certificate = &generated.certified.certificate;
         assert!(certificate.holds());
@@ -100,7 +100,7 @@ fn a_thick_wall_is_no_membrane() {
 #[test]
 fn a_mesh_that_is_too_coarse_is_refused() {
     let of = |through: u32, along: u32| {
-        let mut design = shipped("index-fingertip");
+        let mut design = shipped("index-fingertip-elastic");
         design.model = crate::design_file::ModelSection::Solid { through, along };
         design.accuracy.as_mut().expect("the section").model_percent = 2.0;
         from_design(design)
@@ -112,7 +112,7 @@ fn a_mesh_that_is_too_coarse_is_refused() {
 
 /// The default design against an object.
 fn against(object: &str) -> DesignFile {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("designs/index-fingertip.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("designs/index-fingertip-elastic.toml");
     let text = std::fs::read_to_string(path).expect("a shipped design");
     DesignFile::parse(&format!("{text}\n[object]\n{object}\n"), "object.toml").expect("a design")
 }
@@ -350,14 +350,14 @@ fn writes_what_the_chip_includes() {
 
 #[test]
 fn a_coarse_accuracy_is_met_with_less() {
-    let mut design = shipped("index-fingertip");
+    let mut design = shipped("index-fingertip-elastic");
     let accuracy = design.accuracy.as_mut().expect("there");
     accuracy.force_percent_of_reading = 1.0;
     accuracy.indentation_percent_of_reading = 1.0;
     let coarse = from_design(design).expect("tables");
     let mut press = Fingertip::new(&coarse.design).expect("rest");
     let curve = press.curve(2.5e-3).expect("curve");
-    let fine = shipped("index-fingertip").accuracy.expect("there");
+    let fine = shipped("index-fingertip-elastic").accuracy.expect("there");
     let fine = make_tables(&curve, curve.end(), &fine, 10.0).expect("tables");
     assert!(coarse.certified.tables.bytes() < fine.tables.bytes());
 }
@@ -389,7 +389,7 @@ fn the_curve_is_far_finer_than_the_tables() {
 /// within few elements, all of it.
 #[test]
 fn the_curve_of_a_solid_is_finer_than_the_tables() {
-    let mut press = Fingertip::new(&shipped("index-fingertip")).expect("the rest state");
+    let mut press = Fingertip::new(&shipped("index-fingertip-elastic")).expect("the rest state");
     let curve = press.curve(2.5e-3).expect("a curve");
     let end = curve.end();
     for pair in curve

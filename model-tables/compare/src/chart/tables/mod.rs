@@ -20,11 +20,11 @@ const INSTRUCTIONS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/..
 /// The designs of the chart, by name, with the way that the counts have for their tables.
 const DESIGNS: [(&str, &str, &str); 3] = [
     (
-        "index-fingertip",
-        "index_fingertip_tables",
+        "index-fingertip-elastic",
+        "index_fingertip_elastic_tables",
         include_str!(concat!(
             env!("CARGO_MANIFEST_DIR"),
-            "/../designs/index-fingertip.toml"
+            "/../designs/index-fingertip-elastic.toml"
         )),
     ),
     (

@@ -262,7 +262,7 @@ fn mistaken(solid: &Solid) -> String {
         "### What the firmware would read off the solid's pressure\n\
          \n\
          It knows only the pressure rise. *Membrane* would be tables of the stretched membrane above, *shipped* are those of \
-         `designs/index-fingertip.toml`, whose model is this crate's own solid (both end at {} mm):\n\
+         `designs/index-fingertip-elastic.toml`, whose model is this crate's own solid (both end at {} mm):\n\
          \n\
          {}",
         published(solid.deepest * 1e3),

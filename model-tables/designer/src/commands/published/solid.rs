@@ -94,10 +94,10 @@ impl Solid {
     /// Solves both membranes at the solid's indentations.
     pub(super) fn solve() -> Result<Self, Refusal> {
         let file = shipped(
-            "index-fingertip.toml",
+            "index-fingertip-elastic.toml",
             include_str!(concat!(
                 env!("CARGO_MANIFEST_DIR"),
-                "/../designs/index-fingertip.toml"
+                "/../designs/index-fingertip-elastic.toml"
             )),
         )?;
         let membrane = |stretch| Design {

@@ -1,0 +1,172 @@
+//! The shipped fingertip that relaxes: pressures of a solid in time, through the whole signal path, against the solid's force and
+//! indentation.
+
+use fingertip::link::command::{Command, Outcome};
+use fingertip::link::telemetry::Message;
+use fingertip::signal::contact::contact;
+use fingertip::signal::design::{Design, LoadedDesign};
+use fingertip::signal::report::{Measurement, Report};
+use fingertip::status::{Status, Touch, Warnings};
+use host_tests::design;
+use host_tests::world::{World, Xorshift, sample};
+use model_tables::design_file::DesignFile;
+use model_tables::generate::{self, Generated};
+use model_tables::solid::history::{Drive, History, Instant};
+use model_tables::solid::mesh::Elements;
+use model_tables::units::PressureRise;
+use std::sync::OnceLock;
+
+/// Pressed to 5 N in 1 s, held, let go in a quarter of a second, and after 10 s pressed and held again: seconds and newtons. Between 4.25 s and
+/// 14 s nothing touches.
+const GRASP: [[f64; 2]; 7] = [
+    [0.0, 0.0],
+    [1.0, 5.0],
+    [4.0, 5.0],
+    [4.25, 0.0],
+    [14.25, 0.0],
+    [15.25, 5.0],
+    [18.0, 5.0],
+];
+/// Of the truth, seconds.
+const STEP: f64 = 0.01;
+
+fn generated() -> &'static Generated {
+    static GENERATED: OnceLock<Generated> = OnceLock::new();
+    GENERATED.get_or_init(|| generate::from_design_file(&design("index-fingertip")).expect("it is shipped"))
+}
+
+/// The solid at every step of the grasp.
+fn truth() -> &'static [Instant] {
+    static TRUTH: OnceLock<Vec<Instant>> = OnceLock::new();
+    TRUTH.get_or_init(|| {
+        let file = DesignFile::read(&design("index-fingertip")).expect("it is shipped");
+        let series = file.relaxation.expect("it relaxes");
+        let elements = Elements {
+            through: 1,
+            along: 24,
+        };
+        let mut history = History::new(&file.design(), &series, elements, 0.0, 0.0).expect("at rest");
+        let mut instants = vec![history.now()];
+        for pair in GRASP.windows(2) {
+            let steps = ((pair[1][0] - pair[0][0]) / STEP).round();
+            for i in 1..=steps as u32 {
+                let share = f64::from(i) / steps;
+                let at = |axis: usize| pair[0][axis] + share * (pair[1][axis] - pair[0][axis]);
+                instants.push(history.advance(at(0), Drive::Force(at(1))).expect("a press"));
+            }
+        }
+        instants
+    })
+}
+
+/// The truth between two steps: pascals, newtons, metres.
+fn between(seconds: f64) -> [f64; 3] {
+    let instants = truth();
+    let place = (seconds / STEP).min((instants.len() - 1) as f64);
+    let index = (place as usize).min(instants.len() - 2);
+    let share = place - index as f64;
+    let values = |instant: &Instant| [instant.pressure_rise, instant.force, instant.indentation];
+    let (before, after) = (values(&instants[index]), values(&instants[index + 1]));
+    [0, 1, 2].map(|i| before[i] + share * (after[i] - before[i]))
+}
+
+/// The reports of the grasp with the transducer's noise, each with its time in seconds since the press began.
+fn played<D: Design + Copy>(design: D) -> (Vec<(f64, Report)>, World<D>) {
+    let mut random = Xorshift::new(5);
+    let mut world = World::zeroed(design, 0.0);
+    let begin = world.now;
+    let mut reports = Vec::new();
+    for millisecond in 1..=18_000 {
+        let [pascals, ..] = between(1e-3 * f64::from(millisecond));
+        // 10 Pa a conversion, a hundred of them.
+        let report = world.step(1000, Ok(sample(&design, pascals + random.deviate())));
+        // A sample of half a millisecond before.
+        let seconds = 1e-6 * (report.time.0 as f64 - begin as f64) + 0.5e-3;
+        reports.push((seconds, report));
+    }
+    (reports, world)
+}
+
+fn readings(reports: &[(f64, Report)], from: f64, until: f64) -> impl Iterator<Item = (f64, Measurement)> {
+    reports
+        .iter()
+        .filter(move |(seconds, _)| (from..until).contains(seconds))
+        .map(|(seconds, report)| (*seconds, report.outcome.expect("a reading")))
+}
+
+/// Largest errors of force and indentation over what they are on the first press.
+fn errors(reports: &[(f64, Report)], from: f64, until: f64) -> [f64; 2] {
+    let depth = between(4.0)[2];
+    readings(reports, from, until).fold([0.0; 2], |most, (seconds, reading)| {
+        let [_, force, indentation] = between(seconds);
+        [
+            most[0].max((reading.force.newtons() - force).abs() / 5.0),
+            most[1].max((reading.indentation.metres() - indentation).abs() / depth),
+        ]
+    })
+}
+
+#[test]
+fn a_grasp_its_release_and_the_next_grasp_are_read_as_they_are() {
+    let block = generated().binary();
+    let (design, _) = LoadedDesign::read(&block).expect("it was just written");
+    let (reports, world) = played(design);
+    let pressed = errors(&reports, 0.01, 4.0);
+    let again = errors(&reports, 15.2, 18.0);
+    println!("pressed and held: {pressed:.4?}, again at the end of the ramp and held: {again:.4?}");
+    assert!(pressed[0] < 0.04 && pressed[1] < 0.02, "{pressed:?}");
+    assert!(again[0] < 0.1 && again[1] < 0.02, "{again:?}");
+
+    // What the same pressure is to tables alone.
+    let bits = design.parameters().pressure_fraction_bits;
+    let [pascals, ..] = between(1.0);
+    let still = contact(&design, PressureRise::from_pascals(pascals, bits), Warnings::NONE);
+    println!("tables alone at 5 N: {:.2} N", still.force.newtons());
+    assert!(still.force.newtons() > 7.5);
+
+    // Let go: no force, within 3 % of the 5 N, and neither a zero that follows the wall nor a touch that it may hide.
+    let mut recovering = 0;
+    for (seconds, reading) in readings(&reports, 4.5, 14.2) {
+        assert_eq!(reading.warnings, Warnings::RECOVERING, "{seconds} s");
+        assert_eq!(
+            (reading.force.0, reading.touch),
+            (0, Touch::Unknown),
+            "{seconds} s"
+        );
+        let share = reading.sigma.force.newtons() / 5.0;
+        assert!((0.025..0.045).contains(&share), "{seconds} s: {share}");
+        recovering += 1;
+    }
+    assert!(recovering > 9_000);
+    let zero = world.zero().expect("taken");
+    assert!(zero.abs() < 5.0, "{zero} Pa");
+    // Touched the status is ok.
+    for (seconds, reading) in readings(&reports, 0.1, 4.0) {
+        assert_eq!(reading.warnings, Warnings::NONE, "{seconds} s");
+    }
+}
+
+#[test]
+fn no_tare_is_taken_of_a_wall_that_recovers() {
+    let block = generated().binary();
+    let (design, _) = LoadedDesign::read(&block).expect("it was just written");
+    let mut world = World::zeroed(design, 0.0);
+    for millisecond in 1..=10_000 {
+        let [pascals, ..] = between(1e-3 * f64::from(millisecond));
+        let report = world.step(1000, Ok(sample(&design, pascals)));
+        if millisecond == 6_000 {
+            assert!(matches!(report.status(), Status::Warning(warnings) if warnings == Warnings::RECOVERING));
+            world.ask(Command::Tare);
+        }
+    }
+    let answers: Vec<Outcome> = world.said.iter().filter_map(outcome).collect();
+    assert_eq!(answers, [Outcome::Touched]);
+    assert!(world.zero().is_some_and(|zero| zero.abs() < 1.0));
+}
+
+fn outcome(message: &Message) -> Option<Outcome> {
+    match message {
+        Message::Answer(answer) => Some(answer.outcome),
+        _ => None,
+    }
+}

@@ -1,0 +1,157 @@
+//! The series of a relaxing wall over a step of time, in the integers that the chip computes with.
+
+use super::relaxation::{MAX_TERMS, Relaxation, Term};
+
+/// A factor from 0 to below 1: `mantissa / 2^(32 + shift)`.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Factor {
+    /// 32 bits.
+    pub mantissa: u32,
+    /// 0 to [`Factor::MOST_SHIFT`].
+    pub shift: u32,
+}
+
+impl Factor {
+    /// Largest shift.
+    pub const MOST_SHIFT: u32 = 31;
+
+    /// The nearest factor to a value from 0 to 1; one too small for the word is 0.
+    pub fn nearest(value: f64) -> Self {
+        let (fraction, exponent) = libm::frexp(value);
+        // From 2^31 to 2^32, which is one too many.
+        let mantissa = libm::round(libm::ldexp(fraction, 32)) as u32;
+        match u32::try_from(-exponent) {
+            Ok(shift @ 0..=Self::MOST_SHIFT) if value > 0.0 => Self { mantissa, shift },
+            // One.
+            Err(_) if value > 0.0 => Self {
+                mantissa: u32::MAX,
+                shift: 0,
+            },
+            _ => Self::default(),
+        }
+    }
+
+    /// Its product with a number, at most one unit below.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // a dozen instructions
+    pub const fn of(self, x: i64) -> i64 {
+        // The product over 2^32, rounded down: less than the number.
+        let high = (x >> 32) * self.mantissa as i64;
+        let low = ((x as u32 as u64) * self.mantissa as u64) >> 32;
+        // No wider shift, which the compiler then knows.
+        (high + low as i64) >> (self.shift & Self::MOST_SHIFT)
+    }
+}
+
+/// What a term does in a step of time.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct TermStep {
+    /// `k = 1 - exp(-dt / tau)`: what is lost of it.
+    pub lost: Factor,
+    /// `c / (1 + sum c)` with `c = g tau / dt k`: its share of a change of stress.
+    pub share: Factor,
+}
+
+/// A series over a step of time.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct SeriesStep {
+    /// `1 / (1 + sum c)`: the settled wall's share of a change of stress.
+    pub settled: Factor,
+    /// `1 + sum c`, in `1 / 2^`[`SeriesStep::STIFFNESS_BITS`]: the stress of a change over the settled wall's.
+    pub stiffness: u32,
+    /// How many terms it has.
+    pub count: usize,
+    /// The terms, the slowest last; those beyond the count are 0.
+    pub terms: [TermStep; MAX_TERMS],
+}
+
+impl SeriesStep {
+    /// Bits below one of the stiffness.
+    pub const STIFFNESS_BITS: u32 = 8;
+    /// The largest stiffness: eight terms of 100 000, and more than one.
+    pub const MOST_STIFFNESS: u32 = 1 << (20 + Self::STIFFNESS_BITS);
+
+    /// A series over a step of so many seconds, > 0.
+    pub fn over(relaxation: &Relaxation, seconds: f64) -> Self {
+        let taken = |term: &Term| term.over(seconds).taken;
+        let stiffness = relaxation.terms().iter().fold(1.0, |sum, term| sum + taken(term));
+        let scaled = libm::ldexp(stiffness, Self::STIFFNESS_BITS as i32);
+        let mut step = Self {
+            settled: Factor::nearest(1.0 / stiffness),
+            stiffness: libm::round(scaled) as u32,
+            count: relaxation.terms().len(),
+            ..Self::default()
+        };
+        for (step, term) in step.terms.iter_mut().zip(relaxation.terms()) {
+            *step = TermStep {
+                lost: Factor::nearest(-libm::expm1(-seconds / term.time)),
+                share: Factor::nearest(taken(term) / stiffness),
+            };
+        }
+        step
+    }
+
+    /// Whether the settled wall and the terms share no more than the whole of a change: then nothing that they hold grows beyond
+    /// what they are given.
+    pub(crate) fn is_passive(&self) -> bool {
+        let part = |factor: Factor| u64::from(factor.mantissa) >> (factor.shift & Factor::MOST_SHIFT);
+        let shares = self
+            .terms()
+            .iter()
+            .fold(part(self.settled), |sum, term| sum + part(term.share));
+        shares <= 1 << 32
+    }
+
+    /// Its terms.
+    pub fn terms(&self) -> &[TermStep] {
+        self.terms.get(..self.count).unwrap_or(&self.terms)
+    }
+}
+
+/// A wall in time, as the chip knows it.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct WallSeries {
+    /// Its series over the time from one report to the next, at its own temperature.
+    pub step: SeriesStep,
+    /// Force that the wall may still bear where none is read, permille of the peak before.
+    pub remaining_permille: u32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::relaxation::AGILUS30_RELAXATION;
+
+    #[test]
+    fn a_product_is_rounded_down() {
+        let x = 1_234_567_890_123_456_789_i64;
+        for value in [1e-7, 0.25, 0.632, 1.0 - 1e-12, 1.0] {
+            for x in [x, -x, i64::MAX, i64::MIN] {
+                let (found, exact) = (Factor::nearest(value).of(x) as f64, x as f64 * value);
+                // The mantissa is within 2^-32 of the value.
+                assert!(
+                    (found - exact).abs() <= exact.abs() * 3e-10 + 1.0,
+                    "{value}: {found} for {exact}"
+                );
+            }
+        }
+        assert_eq!(Factor::nearest(0.0).of(i64::MAX), 0);
+        assert_eq!(
+            (Factor::nearest(0.25).of(6), Factor::nearest(0.25).of(-6)),
+            (1, -2)
+        );
+    }
+
+    /// Nothing of a change of stress is lost, and each term's share is of its stiffness.
+    #[test]
+    fn shares_are_of_the_whole() {
+        let step = SeriesStep::over(&AGILUS30_RELAXATION, 1e-3);
+        let change = 1_i64 << 60;
+        let shares = step.terms().iter().map(|term| term.share.of(change)).sum::<i64>();
+        let whole = shares + step.settled.of(change);
+        assert!(step.is_passive());
+        assert!((whole - change).abs() < change >> 29, "{whole}");
+        let unit = (step.settled.of(change) as f64 * f64::from(step.stiffness)) / 256.0;
+        assert!((unit / change as f64 - 1.0).abs() < 1e-4, "{unit}");
+    }
+}

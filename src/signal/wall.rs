@@ -1,0 +1,217 @@
+//! Pressure rise -> force and indentation with their 1-sigma: of an elastic wall by the tables, of a relaxing one by what it has been
+//! through.
+//!
+//! A relaxing wall's past is not known at the start, after a gap in the samples, or where the transducer was at its lower end. Two states
+//! then bracket it: one goes on as if no time had passed (at the start: as if just pressed), the other is that of a wall that has settled at
+//! this pressure. Values are the middle of both, half of what they are apart is in the 1-sigma, until they have come together.
+
+use crate::signal::contact::{Contact, contact, through_tables};
+use crate::signal::design::Design;
+use crate::signal::relaxation::{RelaxedReading, Relaxing};
+use crate::signal::report::Sigma;
+use crate::signal::uncertainty::hypotenuse;
+use crate::status::Warnings;
+use crate::units::Microseconds;
+use model_tables::material::series::WallSeries;
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
+
+/// What two states differ by, over the 1-sigma, where they count as one: as a divisor.
+const TOGETHER: i32 = 4;
+
+/// A pressure rise to be read.
+#[derive(Clone, Copy, Debug)]
+pub struct Rise {
+    /// When it was.
+    pub time: Microseconds,
+    /// The rise.
+    pub rise: PressureRise,
+    /// Its 1-sigma.
+    pub sigma: PressureRise,
+    /// What qualifies it.
+    pub warnings: Warnings,
+}
+
+/// What a wall remembers of its past.
+pub trait Wall: Clone + core::fmt::Debug {
+    /// A wall of whose past nothing is known.
+    const NEW: Self;
+
+    /// Force and indentation at a rise, with their 1-sigma.
+    fn read(&mut self, design: &impl Design, rise: Rise) -> (Contact, Sigma);
+
+    /// Whether its memory lowers the pressure so that this says nothing of the zero.
+    fn lowers_the_pressure(&self) -> bool;
+
+    /// The zero moved, and with it every rise so far, by so many counts.
+    fn shift(&mut self, design: &impl Design, by: PressureRise);
+
+    /// What happened since the last reading is not known.
+    fn lose_track(&mut self);
+}
+
+/// A wall without a memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Elastic;
+
+impl Wall for Elastic {
+    const NEW: Self = Self;
+
+    #[inline]
+    fn read(&mut self, design: &impl Design, rise: Rise) -> (Contact, Sigma) {
+        let at = contact(design, rise.rise, rise.warnings);
+        let sigma = through_tables(design, rise.rise, &at, rise.sigma);
+        (at, sigma)
+    }
+
+    #[inline]
+    fn lowers_the_pressure(&self) -> bool {
+        false
+    }
+
+    #[inline]
+    fn shift(&mut self, _: &impl Design, _: PressureRise) {}
+
+    #[inline]
+    fn lose_track(&mut self) {}
+}
+
+/// The memory of a wall that relaxes in up to so many terms.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Memory<const TERMS: usize> {
+    wall: Relaxing<TERMS>,
+    /// The other end of the bracket, while that is open.
+    settled: Relaxing<TERMS>,
+    open: bool,
+    /// Whether nothing is missing since the last reading, and where that was.
+    tracked: bool,
+    time: Microseconds,
+    rise: PressureRise,
+    lowered: bool,
+}
+
+impl<const TERMS: usize> Wall for Memory<TERMS> {
+    const NEW: Self = Self {
+        wall: Relaxing::NEW,
+        settled: Relaxing::NEW,
+        open: false,
+        tracked: false,
+        time: Microseconds(0),
+        rise: PressureRise(0),
+        lowered: false,
+    };
+
+    fn read(&mut self, design: &impl Design, rise: Rise) -> (Contact, Sigma) {
+        let Some(series) = design.series() else {
+            return Elastic.read(design, rise);
+        };
+        let steps = self.steps(design, &rise);
+        let from = i64::from(self.rise.0);
+        let change = i64::from(rise.rise.0) - from;
+        let mut readings = [RelaxedReading::default(); 2];
+        for i in 1..=i64::from(steps) {
+            let between = PressureRise((from + change * i / i64::from(steps)) as i32);
+            readings[0] = self.wall.step(design, &series.step, between);
+            if self.open {
+                readings[1] = self.settled.step(design, &series.step, between);
+            }
+        }
+        self.rise = rise.rise;
+        let [first, second] = readings;
+        self.lowered = first.lowered;
+        let mut values = first.contact;
+        let mut sigma = sigma_of(design, series, &self.wall, &first, rise.sigma);
+        if self.open {
+            let other = second.contact;
+            let force = middle(values.force.0, other.force.0, sigma.force.0);
+            let indentation = middle(values.indentation.0, other.indentation.0, sigma.indentation.0);
+            values.force = Micronewtons(force.value);
+            values.indentation = Nanometres(indentation.value);
+            sigma.force = Micronewtons(force.sigma);
+            sigma.indentation = Nanometres(indentation.sigma);
+            let doubtful = force.doubtful || indentation.doubtful;
+            values.warnings = values
+                .warnings
+                .and(other.warnings)
+                .and(Warnings::PAST_UNKNOWN.when(doubtful));
+            self.open = force.open || indentation.open;
+        }
+        values.warnings = values.warnings.and(rise.warnings);
+        (values, sigma)
+    }
+
+    fn lowers_the_pressure(&self) -> bool {
+        self.lowered
+    }
+
+    fn shift(&mut self, design: &impl Design, by: PressureRise) {
+        self.wall.shift(design, by);
+        self.settled.shift(design, by);
+        self.rise.0 = self.rise.0.saturating_add(by.0);
+    }
+
+    fn lose_track(&mut self) {
+        self.tracked = false;
+    }
+}
+
+impl<const TERMS: usize> Memory<TERMS> {
+    /// How many reports after the last one this one is; one where that is not known, and then the bracket opens.
+    fn steps(&mut self, design: &impl Design, to: &Rise) -> u32 {
+        let parameters = design.parameters();
+        let passed = to.time.0.saturating_sub(self.time.0);
+        self.time = to.time;
+        if core::mem::replace(&mut self.tracked, true) && passed <= parameters.gap() {
+            // At most 20.
+            return ((passed as u32 + parameters.period / 2) / parameters.period).max(1);
+        }
+        // At rest there is nothing to be settled or not.
+        self.open = to.rise.0.saturating_abs() > parameters.thresholds.release.0;
+        if self.open {
+            self.settled.settle(design, to.rise);
+        }
+        1
+    }
+}
+
+/// The middle of two values of which one is known to this 1-sigma.
+struct Middle {
+    value: i32,
+    sigma: i32,
+    /// Half of what they are apart is more than the 1-sigma, or counts beside it.
+    doubtful: bool,
+    open: bool,
+}
+
+#[inline(never)]
+fn middle(one: i32, other: i32, sigma: i32) -> Middle {
+    let apart = (one.abs_diff(other) / 2) as i32;
+    Middle {
+        value: i32::midpoint(one, other),
+        sigma: hypotenuse(sigma, apart),
+        doubtful: apart > sigma,
+        open: apart > sigma / TOGETHER,
+    }
+}
+
+/// What the rise leaves open through the tables at the elastic pressure, and what a wall that recovers may still bear.
+fn sigma_of<const TERMS: usize>(
+    design: &impl Design,
+    series: &WallSeries,
+    wall: &Relaxing<TERMS>,
+    at: &RelaxedReading,
+    rise: PressureRise,
+) -> Sigma {
+    let settled = Contact {
+        force: at.settled,
+        ..at.contact
+    };
+    let mut sigma = through_tables(design, at.elastic, &settled, rise);
+    if at.contact.warnings.contains(Warnings::RECOVERING) {
+        let remaining = i64::from(wall.peak_force().0) * i64::from(series.remaining_permille) / 1000;
+        sigma.force = Micronewtons(hypotenuse(sigma.force.0, remaining as i32));
+    }
+    sigma
+}
+
+#[cfg(test)]
+mod tests;
