@@ -61,7 +61,7 @@ pub struct Relaxing<const TERMS: usize> {
     elastic: i64,
     /// `q_i`.
     held: [i64; TERMS],
-    /// `F_e`, and what `q_i` is to `P_e` over `1 + sum c`.
+    /// `F_e`, and to it what `q_i` is to `P_e`.
     settled: i64,
     forces: [i64; TERMS],
     /// The largest `P_e` and the largest force, forgotten with the slowest term.
@@ -158,13 +158,14 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         }
     }
 
-    /// `g * F_e` where the settled force becomes another one. The terms are kept over the stiffness: below 2^62 with it.
+    /// `g * F_e` where the settled force becomes another one. A force has 44 bits, and 60 stiffened.
     fn convolved(&mut self, step: &SeriesStep, settled: i64) -> i64 {
         let change = settled - core::mem::replace(&mut self.settled, settled);
         let left = decay(step, &mut self.forces);
-        take(step, &mut self.forces, change);
-        let sum = (left + change - step.settled.of(change)) >> SeriesStep::STIFFNESS_BITS;
-        settled + sum.clamp(-(1 << 33), 1 << 33) * i64::from(step.stiffness)
+        let stress = step.stiffened(change);
+        take(step, &mut self.forces, stress);
+        // The terms took all but the settled wall's share.
+        settled + left + stress - change
     }
 
     /// `A P`, or `rho A (P - P_0)`.

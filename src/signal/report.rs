@@ -11,6 +11,8 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 /// | ok | all hold, within their 1-sigma |
 /// | warning: saturated | force and indentation are lower bounds, and so is the rise beyond the transducer's range |
 /// | warning: below zero | force and indentation are 0; a touch may be hidden |
+/// | warning: recovering | force is 0 within its 1-sigma, indentation an upper bound; touch is unknown |
+/// | warning: past unknown | all hold within their 1-sigma, which narrows |
 /// | warning: zero unverified | all may be offset by an unknown rise, which the 1-sigma allows for; never "untouched" |
 /// | warning: leak suspected, bubble suspected | rise and touch hold; force and indentation are for more liquid than there is |
 /// | warning: calibration refused, zero aged, temperature | all hold within their 1-sigma, which is wider than it need be |

@@ -53,7 +53,7 @@ pub const RELAXATION: model_tables::material::series::WallSeries = model_tables:
     remaining_permille: 30,
     step: model_tables::material::series::SeriesStep {
         count: 7,
-        stiffness: 104743,
+        stiffness: 26814138,
         settled: model_tables::material::series::Factor { mantissa: 2687298560, shift: 8 },
         terms: [
             model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2714937127, shift: 0 }, share: model_tables::material::series::Factor { mantissa: 2924943324, shift: 0 } },

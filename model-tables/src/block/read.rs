@@ -96,7 +96,7 @@ fn relaxation(mut own: Cursor<'_>) -> Result<WallSeries, BlockError> {
     if wall.remaining_permille > 1000 {
         return Err(value("remaining_permille"));
     }
-    if !(1 << SeriesStep::STIFFNESS_BITS..=SeriesStep::MOST_STIFFNESS).contains(&wall.step.stiffness) {
+    if wall.step.stiffness < 1 << SeriesStep::STIFFNESS_BITS {
         return Err(value("stiffness"));
     }
     for term in &mut wall.step.terms {

@@ -66,10 +66,8 @@ pub struct SeriesStep {
 }
 
 impl SeriesStep {
-    /// Bits below one of the stiffness.
-    pub const STIFFNESS_BITS: u32 = 8;
-    /// The largest stiffness: eight terms of 100 000, and more than one.
-    pub const MOST_STIFFNESS: u32 = 1 << (20 + Self::STIFFNESS_BITS);
+    /// Bits below one of the stiffness, which is below 2^16.
+    pub const STIFFNESS_BITS: u32 = 16;
 
     /// A series over a step of so many seconds, > 0.
     pub fn over(relaxation: &Relaxation, seconds: f64) -> Self {
@@ -78,6 +76,7 @@ impl SeriesStep {
         let scaled = libm::ldexp(stiffness, Self::STIFFNESS_BITS as i32);
         let mut step = Self {
             settled: Factor::nearest(1.0 / stiffness),
+            // The end of the word stands for more: no design of that has tables.
             stiffness: libm::round(scaled) as u32,
             count: relaxation.terms().len(),
             ..Self::default()
@@ -100,6 +99,15 @@ impl SeriesStep {
             .iter()
             .fold(part(self.settled), |sum, term| sum + part(term.share));
         shares <= 1 << 32
+    }
+
+    /// A change of the settled wall's stress as the whole wall's, for a number below 2^46.
+    pub const fn stiffened(&self, change: i64) -> i64 {
+        let stiffness = Factor {
+            mantissa: self.stiffness,
+            shift: 0,
+        };
+        stiffness.of(change << Self::STIFFNESS_BITS)
     }
 
     /// Its terms.
@@ -151,7 +159,7 @@ mod tests {
         let whole = shares + step.settled.of(change);
         assert!(step.is_passive());
         assert!((whole - change).abs() < change >> 29, "{whole}");
-        let unit = (step.settled.of(change) as f64 * f64::from(step.stiffness)) / 256.0;
+        let unit = (step.settled.of(change) as f64 * f64::from(step.stiffness)) / 65_536.0;
         assert!((unit / change as f64 - 1.0).abs() < 1e-4, "{unit}");
     }
 }

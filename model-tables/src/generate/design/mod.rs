@@ -25,6 +25,9 @@ const CHECKED_SOLID: usize = 6;
 /// fewer instructions: the pressure, which grows faster than the indentation, then goes on by as much at least.
 const BEYOND: f64 = 1.0 + 1.0 / 64.0;
 
+/// A relaxing wall's stress of a change in no time over the settled one: less than this.
+const MOST_STIFFENED: f64 = 65_535.0;
+
 /// How often the accuracy is doubled at most where worse is allowed: a thousand times what was asked.
 const MOST_DOUBLINGS: u32 = 10;
 
@@ -177,10 +180,12 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
 
 /// Refuses a wall that relaxes in a design that the convolution does not hold for.
 fn is_convolved(design: &DesignFile) -> Result<(), GenerateError> {
-    if design.relaxation.is_none() {
+    let Some(relaxation) = &design.relaxation else {
         return Ok(());
-    }
-    let reason = if design.model == ModelSection::Membrane {
+    };
+    let reason = if relaxation.instantaneous() >= MOST_STIFFENED {
+        "material.relaxation.g adds up to 65 535 or more, which the chip does not compute with: give less"
+    } else if design.model == ModelSection::Membrane {
         "model.kind is \"membrane\": with [material.relaxation] set it to \"solid\" or \"auto\""
     } else if design.rest != RestSection::Unstretched || design.calibration.pole_stretch.is_some() {
         "[rest] is given: with [material.relaxation] a wall rests unstretched, leave it out"
