@@ -1,6 +1,8 @@
 //! The design this image is built for: what the build script solved and wrote.
 
 use crate::signal::design::{Design, Parameters};
+use crate::signal::zero::limits::Limits;
+use crate::signal::zero::surroundings::Surroundings;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;
@@ -29,9 +31,16 @@ impl ImageDesign {
 }
 
 impl Design for ImageDesign {
+    type Around = [Surroundings; Self::PARAMETERS.rates.places()];
+
     #[inline]
     fn parameters(&self) -> &Parameters {
         const { &Self::PARAMETERS }
+    }
+
+    #[inline]
+    fn limits(&self) -> Limits {
+        const { Self::PARAMETERS.limits }
     }
 
     #[inline]

@@ -18,9 +18,10 @@ FAULTS = {1: "sensor open", 2: "sensor short", 3: "zeroing", 4: "settling", 5: "
           19: "sensor calibration", 20: "sensor busy", 21: "sensor memory", 22: "sensor saturated",
           23: "sensor reset", 24: "sensor implausible"}
 TOUCH = ["unknown", "untouched", "touched"]
-COMMANDS = {"tare": 0x81, "undo": 0x82, "save": 0x83, "info": 0x84, "self-test": 0x85, "rate": 0x86, "forget": 0x87}
+COMMANDS = {"tare": 0x81, "undo": 0x82, "save": 0x83, "info": 0x84, "self-test": 0x85, "rate": 0x86, "forget": 0x87,
+            "air": 0x8A}
 OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy", "nothing to undo", "zero unverified",
-            "memory failed"]
+            "memory failed"] + [None] * 5 + ["not in this image"]
 CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
 STORED = ["none", "serves", "another design's", "damaged", "unreadable"]
 LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang", "non-maskable interrupt"]

@@ -8,6 +8,7 @@ use fingertip::link::telemetry::Message;
 use fingertip::signal::calibration::Calibration;
 use fingertip::signal::design::{Design, Parameters};
 use fingertip::signal::report::Report;
+use fingertip::signal::zero::surroundings::Surroundings;
 use fingertip::status::{Fault, ResetCause, Stored};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::{Microseconds, Millipascals};
@@ -31,6 +32,8 @@ impl WithAbsolutePart {
 }
 
 impl Design for WithAbsolutePart {
+    type Around = [Surroundings; 1];
+
     fn parameters(&self) -> &Parameters {
         const { &Self::PARAMETERS }
     }
@@ -76,7 +79,7 @@ impl Xorshift {
 
 /// One fingertip and the firmware that reads it.
 #[derive(Debug)]
-pub struct World<D> {
+pub struct World<D: Design> {
     design: D,
     station: Station<D>,
     /// Microseconds since reset.

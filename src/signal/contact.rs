@@ -58,6 +58,7 @@ mod tests {
     use super::*;
     use crate::signal::design::Parameters;
     use crate::signal::test_design::{FORCE_END, INDENTATION_END, Linear, RISE_END, TRANSDUCERS};
+    use crate::signal::zero::surroundings::Surroundings;
     use model_tables::table::Reading;
     use proptest::prelude::*;
 
@@ -75,6 +76,8 @@ mod tests {
     struct Shallow(Linear);
 
     impl Design for Shallow {
+        type Around = [Surroundings; 1];
+
         fn parameters(&self) -> &Parameters {
             self.0.parameters()
         }

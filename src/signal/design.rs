@@ -6,7 +6,8 @@ use crate::signal::fluid::Fall;
 use crate::signal::scale::Scale;
 use crate::signal::touch::Thresholds;
 use crate::signal::uncertainty::Uncertainty;
-use crate::signal::zero::limits::Limits;
+use crate::signal::zero::limits::{Limits, Rates};
+use crate::signal::zero::surroundings::{Around, Surroundings};
 use crate::transducer;
 use model_tables::block::BlockError;
 use model_tables::block::read::TipBlock;
@@ -18,8 +19,16 @@ use model_tables::units::PressureRise;
 
 /// A design with its tables.
 pub trait Design {
+    /// Room for what is measured around the fingertip and moves its zero.
+    type Around: Around;
+
     /// What the signal path needs of the design beside its tables.
     fn parameters(&self) -> &Parameters;
+
+    /// The limits of a zero among them: a copy, which in an image leaves nothing of the others.
+    fn limits(&self) -> Limits {
+        self.parameters().limits
+    }
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     fn lookup(&self, rise: PressureRise) -> Reading;
@@ -42,6 +51,8 @@ pub struct Parameters {
     pub scale: Scale,
     /// Of a zero, without a stored calibration.
     pub limits: Limits,
+    /// Of what is measured around the fingertip and moves a zero.
+    pub rates: Rates,
     /// Of the filter.
     pub leaps: Leaps,
     /// Of a touch.
@@ -67,6 +78,7 @@ impl Parameters {
             period,
             scale: Scale::of(fraction_bits),
             limits,
+            rates: Rates::of(&constants, fraction_bits),
             leaps: Leaps::of(&constants, fraction_bits, period),
             thresholds: Thresholds::of(&constants, fraction_bits),
             fall: Fall::of(&constants, fraction_bits, &limits),
@@ -113,6 +125,8 @@ impl<'a> LoadedDesign<'a> {
 }
 
 impl Design for LoadedDesign<'_> {
+    type Around = [Surroundings; 1];
+
     fn parameters(&self) -> &Parameters {
         &self.parameters
     }

@@ -10,15 +10,17 @@ use crate::signal::stuck::StuckDetector;
 use crate::signal::temperature::Temperature;
 use crate::signal::touch::TouchDetector;
 use crate::signal::zero::estimator::{Estimator, TareRefusal};
+use crate::signal::zero::surroundings::{AirRefusal, Around as _};
 use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, Touch, Warnings};
 use crate::transducer::driver::Sample;
 use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
+use model_tables::constants::AIR;
 use model_tables::units::{Nanometres, PressureRise};
 
 /// The signal path of one fingertip.
 #[derive(Clone, Debug)]
-pub struct Pipeline<D> {
+pub struct Pipeline<D: Design> {
     design: D,
     calibration: Calibration,
     /// What qualifies every reading since start-up.
@@ -28,6 +30,7 @@ pub struct Pipeline<D> {
     /// The last one measured.
     celsius: Option<Centidegrees>,
     zero: Estimator,
+    around: D::Around,
     gain: Gain,
     filter: Filter,
     detector: TouchDetector,
@@ -44,8 +47,8 @@ impl<D: Design> Pipeline<D> {
     pub fn new(design: D, start_up: StartUp, calibration: Calibration, standing: Warnings) -> Self {
         let parameters = design.parameters();
         let limits = match calibration.zero_counts(parameters.scale) {
-            Some(zero) => parameters.limits.with_stored(zero),
-            None => parameters.limits,
+            Some(zero) => design.limits().with_stored(zero),
+            None => design.limits(),
         };
         Self {
             calibration,
@@ -58,6 +61,7 @@ impl<D: Design> Pipeline<D> {
             ),
             celsius: None,
             zero: Estimator::new(limits, start_up),
+            around: D::Around::NEW,
             gain: Gain::new(calibration.gain),
             filter: Filter::new(parameters.leaps),
             detector: TouchDetector::new(parameters.thresholds),
@@ -123,7 +127,14 @@ impl<D: Design> Pipeline<D> {
         let (rise, warnings) = self.filter.step(rise, zero.and(sample.warnings()), even)?;
         let verified = !warnings.contains(Warnings::ZERO_UNVERIFIED);
         let missed = self.temperature.missed();
-        let (bound, above) = (self.zero.bound(), self.zero.above());
+        if let Some(around) = self.around.as_mut().first_mut() {
+            around.warm(sample.temperature);
+        }
+        let moved = self.moved_around();
+        let (bound, above) = (
+            self.zero.bound().saturating_add(moved),
+            self.zero.above().saturating_add(moved),
+        );
         let touch = self.detector.step(rise, above.saturating_add(missed), verified);
         self.touch = touch;
 
@@ -132,8 +143,9 @@ impl<D: Design> Pipeline<D> {
             missed != 0 && self.zero.is_ok() && bound.saturating_add(missed) > parameters.limits.bound;
         // What a window will tell at its end is not read as ok until then.
         let fallen = verified && rise.0 < -parameters.limits.bound;
+        let moved = moved != 0 && verified && bound > parameters.limits.bound;
         let warnings = warnings
-            .and(Warnings::ZERO_AGED.when(fallen))
+            .and(Warnings::ZERO_AGED.when(fallen || moved))
             .and(self.standing)
             .and(self.fluid.suspicions())
             .and(Warnings::TEMPERATURE.when(doubtful));
@@ -173,9 +185,56 @@ impl<D: Design> Pipeline<D> {
         self.filter.interrupt();
     }
 
+    /// What is measured around the fingertip may have moved the zero by so many counts, >= 0.
+    #[inline]
+    fn moved_around(&self) -> i32 {
+        let rates = &self.parameters().rates;
+        let around = self.around.as_ref().first();
+        around.map_or(0, |around| around.moved(rates, self.measured))
+    }
+
+    /// What it has moved the zero by so far stays in the bound: another zero is asked for.
+    #[inline]
+    fn fold_surroundings(&mut self) {
+        let (moved, now) = (self.moved_around(), self.measured);
+        if let Some(around) = self.around.as_mut().first_mut() {
+            around.begin(now);
+            self.zero.widen(moved);
+        }
+    }
+
+    /// A host tells the air around an absolute part, whose zero moves with it.
+    ///
+    /// # Errors
+    /// [`AirRefusal`].
+    pub fn air(&mut self, now: Microseconds, pascals: i32) -> Result<(), AirRefusal> {
+        let Parameters {
+            pressure_fraction_bits: bits,
+            ref rates,
+            ..
+        } = *self.design.parameters();
+        let around = self.around.as_mut().first_mut();
+        let around = around
+            .filter(|_| rates.weather > 0)
+            .ok_or(AirRefusal::NotInDesign)?;
+        if !(AIR[0]..=AIR[1]).contains(&pascals) {
+            return Err(AirRefusal::OutOfBounds);
+        }
+        let moved = around.tell(rates, Pressure::from_pascals(pascals, bits), now);
+        self.zero.widen(moved.widen);
+        self.zero.shift(moved.shift);
+        let shift = PressureRise(moved.shift.saturating_neg());
+        self.filter.shift(self.gain.apply_to(shift).0);
+        Ok(())
+    }
+
     /// What was measured over the old zero is void.
     #[cold]
     fn zero_moved(&mut self) {
+        let now = self.measured;
+        if let Some(around) = self.around.as_mut().first_mut() {
+            around.begin(now);
+        }
         self.detector.forget();
         self.touch = Touch::Unknown;
         self.filter.interrupt();
@@ -187,6 +246,7 @@ impl<D: Design> Pipeline<D> {
     /// # Errors
     /// [`TareRefusal`] when that is plain at once.
     pub fn tare(&mut self) -> Result<(), TareRefusal> {
+        self.fold_surroundings();
         self.zero.command()
     }
 
@@ -195,6 +255,7 @@ impl<D: Design> Pipeline<D> {
     /// # Errors
     /// [`TareRefusal::NothingToUndo`], [`TareRefusal::Busy`].
     pub fn undo_tare(&mut self) -> Result<(), TareRefusal> {
+        self.fold_surroundings();
         self.zero.undo()
     }
 
@@ -205,15 +266,23 @@ impl<D: Design> Pipeline<D> {
 
     /// The zero of now, drift included: what survives a reset that nobody saw coming.
     pub fn zero(&self) -> Option<Zero> {
-        self.zero.zero()
+        let moved = self.moved_around();
+        self.zero.zero().map(|zero| Zero {
+            bound: zero.bound.saturating_add(moved),
+            ..zero
+        })
     }
 
     /// The calibration with the zero of now, to be stored; nothing while that zero is neither ok nor commanded.
     pub fn calibration_to_store(&self) -> Option<Calibration> {
         let zero = self.zero.to_store()?;
+        let parameters = self.parameters();
+        let moved = self.moved_around();
+        if moved > 0 && zero.verified && zero.bound.saturating_add(moved) > parameters.limits.bound {
+            return None;
+        }
         let counts = i64::from(zero.pressure.0) + i64::from(self.temperature.correction());
         // 2^33 * 1000.
-        let parameters = self.parameters();
         let millipascals = (counts * 1000) >> parameters.pressure_fraction_bits;
         let zero = Millipascals(i32::try_from(millipascals).ok()?);
         let quantity = parameters.constants.transducer.quantity;
@@ -227,8 +296,8 @@ impl<D: Design> Pipeline<D> {
         self.fluid.clear();
         // What was stored is the zero of now. Temperature goes on being compensated as since start-up.
         let limits = match (calibration, self.zero()) {
-            (Some(_), Some(zero)) => self.parameters().limits.with_stored(zero.pressure),
-            _ => self.parameters().limits,
+            (Some(_), Some(zero)) => self.design.limits().with_stored(zero.pressure),
+            _ => self.design.limits(),
         };
         self.zero.refer_to(limits);
         self.calibration = calibration.unwrap_or_default();

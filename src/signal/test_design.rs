@@ -1,7 +1,8 @@
 //! Fingertips with straight lines for tables, so that tests can expect by hand.
 
 use crate::signal::design::{Design, Parameters};
-use model_tables::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
+use crate::signal::zero::surroundings::Surroundings;
+use model_tables::constants::{DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions};
 use model_tables::table::Reading;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
@@ -34,6 +35,7 @@ impl Linear {
                 supply_measured: false,
             },
         },
+        zero: ZeroAssumptions::NONE,
     };
 
     /// A count is 1/256 Pa.
@@ -48,7 +50,13 @@ impl Linear {
 
     /// Rests at 1 kPa and is pressed up to 10 kPa over that, with this transducer.
     pub(crate) const fn with(transducer: Transducer) -> Self {
+        Self::stating(transducer, ZeroAssumptions::NONE)
+    }
+
+    /// The same, with what the design states of its zero.
+    pub(crate) const fn stating(transducer: Transducer, zero: ZeroAssumptions) -> Self {
         let constants = DesignConstants {
+            zero,
             rest_pressure: 1_000,
             maximum_pressure: 11_000,
             transducer,
@@ -60,6 +68,8 @@ impl Linear {
 }
 
 impl Design for Linear {
+    type Around = [Surroundings; 1];
+
     fn parameters(&self) -> &Parameters {
         &self.0
     }

@@ -22,6 +22,7 @@
 pub mod estimator;
 mod interval;
 pub mod limits;
+pub mod surroundings;
 mod window;
 
 use crate::status::ResetCause;

@@ -2,7 +2,7 @@
 
 use super::StoredCalibration;
 use super::field::Visit;
-use crate::constants::{DesignConstants, Transducer};
+use crate::constants::{DesignConstants, Transducer, ZeroAssumptions};
 use crate::table::Layout;
 
 /// The kinds of sections, by their number.
@@ -16,6 +16,8 @@ pub enum SectionKind {
     Calibration = 3,
     /// The design's name.
     Name = 4,
+    /// What the design states of its zero, if anything.
+    Zero = 8,
 }
 
 /// Numbers that later layouts give to the wall's relaxation, other objects than a plate, and the feedback membrane. A block with
@@ -24,7 +26,16 @@ pub const RESERVED: [u16; 3] = [5, 6, 7];
 
 impl SectionKind {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Constants, Self::Tables, Self::Calibration, Self::Name];
+    pub const ALL: [Self; 5] = [
+        Self::Constants,
+        Self::Tables,
+        Self::Calibration,
+        Self::Name,
+        Self::Zero,
+    ];
+
+    /// The highest number.
+    pub const HIGHEST: usize = Self::Zero as usize;
 
     /// The only version of it so far.
     pub const VERSION: u16 = 1;
@@ -41,6 +52,7 @@ impl SectionKind {
             Self::Tables => "tables",
             Self::Calibration => "calibration",
             Self::Name => "name",
+            Self::Zero => "zero",
         }
     }
 }
@@ -74,6 +86,20 @@ pub fn transducer<V: Visit>(value: &mut Transducer, visit: &mut V) -> Result<(),
     visit.field("noise", &mut value.noise)?;
     visit.field("quantity", &mut value.quantity)?;
     visit.field("kind", &mut value.kind)
+}
+
+/// What the design states of its zero.
+///
+/// # Errors
+/// The visitor's.
+pub fn zero<V: Visit>(value: &mut ZeroAssumptions, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("drift", &mut value.drift)?;
+    visit.field("per_kelvin", &mut value.per_kelvin)?;
+    visit.field("fluid_head", &mut value.fluid_head)?;
+    visit.field("hysteresis", &mut value.hysteresis)?;
+    visit.field("creep", &mut value.creep)?;
+    visit.field("bound", &mut value.bound)?;
+    visit.field("air", &mut value.air)
 }
 
 /// The first part of the tables; the words of the segments follow.

@@ -3,7 +3,7 @@
 use super::field::{Field, Visit};
 use super::section::{self, SectionKind};
 use super::{CHECK_AT, ENTRY, HEAD, LAYOUT_VERSION, MAGIC, StoredCalibration, aligned, check};
-use crate::constants::DesignConstants;
+use crate::constants::{DesignConstants, ZeroAssumptions};
 use crate::table::Layout;
 use core::convert::Infallible;
 
@@ -74,6 +74,10 @@ impl TipData<'_> {
             sections.push((SectionKind::Calibration, bytes));
         }
         sections.push((SectionKind::Name, self.name.as_bytes().to_vec()));
+        if constants.zero != ZeroAssumptions::NONE {
+            let bytes = described(|visit| section::zero(&mut constants.zero, visit));
+            sections.push((SectionKind::Zero, bytes));
+        }
         block(&identity, &sections)
     }
 }

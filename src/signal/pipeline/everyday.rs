@@ -39,7 +39,10 @@ struct World {
 
 impl World {
     fn new(transducer: usize, start_up: StartUp, calibration: Calibration) -> Self {
-        let design = Linear::with(TRANSDUCERS[transducer]);
+        Self::of(Linear::with(TRANSDUCERS[transducer]), start_up, calibration)
+    }
+
+    fn of(design: Linear, start_up: StartUp, calibration: Calibration) -> Self {
         Self {
             spacing: u64::from(design.parameters().period),
             pipeline: Pipeline::new(design, start_up, calibration, Warnings::NONE),
@@ -56,7 +59,11 @@ impl World {
 
     /// Switched on untouched, nothing stored, and told that nothing presses.
     fn tared(transducer: usize) -> Self {
-        let mut world = Self::new(transducer, StartUp::Measured, Calibration::default());
+        Self::tared_of(Linear::with(TRANSDUCERS[transducer]))
+    }
+
+    fn tared_of(design: Linear) -> Self {
+        let mut world = Self::of(design, StartUp::Measured, Calibration::default());
         world.run(1.0, |_| (0.0, 0.0));
         assert_eq!(world.tare(0.0, 0.0), Ok(()));
         world.run(0.5, |_| (0.0, 0.0));
@@ -365,3 +372,6 @@ fn creep_back_is_no_leak_and_a_gap_is_no_time_below() {
     }
     assert!(!leaks(&world));
 }
+
+/// What the design states of its zero, and the air that a host tells.
+mod stated;

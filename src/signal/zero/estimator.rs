@@ -105,10 +105,10 @@ impl Estimator {
         let interval = match start_up {
             StartUp::Kept(zero) if zero.verified => Interval::kept(zero),
             StartUp::Kept(Zero { pressure, .. }) => {
-                Interval::unverified(pressure, pressure.0.saturating_add(limits.level), &limits)
+                Interval::unverified(pressure, pressure.0.saturating_add(limits.margin), &limits)
             }
             StartUp::Measured | StartUp::Stored => {
-                Interval::unverified(reference, known.saturating_add(limits.level), &limits)
+                Interval::unverified(reference, known.saturating_add(limits.margin), &limits)
             }
         };
         let zeroed = !(measured || limits.absolute && start_up == StartUp::Stored);
@@ -260,6 +260,25 @@ impl Estimator {
         Ok(())
     }
 
+    /// What moved the zero in a way that is not taken back stays in its bound: counts, >= 0.
+    pub fn widen(&mut self, by: i32) {
+        self.interval.widen(by);
+        if let Some(replaced) = &mut self.replaced {
+            replaced.before.widen(by);
+        }
+        self.judge_bound();
+    }
+
+    /// The air moved by so many counts, somebody says who measures it, and the zero with it.
+    pub fn shift(&mut self, by: i32) {
+        self.window.shift(by);
+        self.interval.shift(by);
+        if let Some(replaced) = &mut self.replaced {
+            replaced.before.shift(by);
+            replaced.by.shift(by);
+        }
+    }
+
     /// Whether another zero was taken since the last call.
     #[inline]
     pub fn take_moved(&mut self) -> bool {
@@ -360,7 +379,7 @@ impl Estimator {
             self.measuring = Some(overdue);
         } else {
             let reference = self.limits.expected[0];
-            let highest = reference.0.saturating_add(self.limits.level);
+            let highest = reference.0.saturating_add(self.limits.margin);
             self.interval = Interval::unverified(reference, highest, &self.limits);
             self.begin();
         }

@@ -55,7 +55,7 @@ impl Interval {
         let value = level(value.0);
         Self {
             value,
-            low: value - level(limits.level),
+            low: value - level(limits.margin),
             high: level(high),
             witnessed: value,
             looked: value,
@@ -89,14 +89,33 @@ impl Interval {
         let up = self.high - self.value;
         let down = self.value - self.low;
         let risen = self.looked - self.witnessed;
-        let moved = (risen + level(limits.level)).max(self.fallen);
+        let moved = (risen + level(limits.margin - limits.wander)).max(self.fallen);
         counts_above(up.max(down).max(moved)).max(0)
     }
 
-    /// How far the true zero may be above the value, beyond what a quiet window leaves open: counts, >= 0.
+    /// How far the true zero may be above the value, beyond the level of a quiet window: counts, >= 0.
     pub(super) fn above(&self, limits: &Limits) -> i32 {
-        let open = self.value + level(limits.level);
-        counts(self.high - open).max(0)
+        let open = self.value + level(limits.margin);
+        counts(self.high - open).max(0).saturating_add(limits.wander)
+    }
+
+    /// Both ends move apart by so many counts.
+    pub(super) fn widen(&mut self, by: i32) {
+        self.low -= level(by);
+        self.high += level(by);
+    }
+
+    /// All of it moves by so many counts: somebody else saw the air do so.
+    pub(super) fn shift(&mut self, by: i32) {
+        for moved in [
+            &mut self.value,
+            &mut self.low,
+            &mut self.high,
+            &mut self.witnessed,
+            &mut self.looked,
+        ] {
+            *moved += level(by);
+        }
     }
 
     /// Time passes: what is not seen drifts.
@@ -108,7 +127,7 @@ impl Interval {
 
     /// A quiet window at this pressure, so long after the one before.
     pub(super) fn look(&mut self, limits: &Limits, pressure: Pressure, passed: u64) {
-        let (seen, margin, touch) = (level(pressure.0), level(limits.level), level(limits.bound));
+        let (seen, margin, touch) = (level(pressure.0), level(limits.margin), level(limits.bound));
         let over = seen - self.high;
         if seen < self.low - margin {
             self.fallen = self.fallen.max(self.witnessed - seen);
@@ -143,7 +162,7 @@ impl Interval {
     /// The zero that this level makes when someone says that nothing presses. What lies over all that is known stays in the
     /// bound.
     pub(super) fn taken(&self, limits: &Limits, pressure: Pressure) -> Self {
-        let (seen, margin) = (level(pressure.0), level(limits.level));
+        let (seen, margin) = (level(pressure.0), level(limits.margin));
         let known = seen.min(self.high - margin);
         let mut taken = Self {
             value: seen,
@@ -162,7 +181,7 @@ impl Interval {
     pub(super) fn vouched(&self, limits: &Limits) -> Self {
         let seen = self.value();
         Self {
-            high: self.value + level(limits.level),
+            high: self.value + level(limits.margin),
             ..*self
         }
         .taken(limits, seen)

@@ -45,6 +45,15 @@ impl Window {
         full.then(|| self.end())
     }
 
+    /// The air, which is in all of its samples, moved by so many counts.
+    pub(super) fn shift(&mut self, by: i32) {
+        self.sum = self.sum.saturating_add(i64::from(by) * i64::from(self.samples));
+        if self.samples > 0 {
+            self.lowest = Pressure(self.lowest.0.saturating_add(by));
+            self.highest = Pressure(self.highest.0.saturating_add(by));
+        }
+    }
+
     #[cold]
     fn end(&mut self) -> Seen {
         let samples = i64::from(self.samples.max(1));

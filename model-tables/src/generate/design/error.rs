@@ -19,6 +19,8 @@ pub enum GenerateError {
     },
     /// `object.unknown` is set: tables are of one object.
     UnknownObject,
+    /// `air.reference` is `"part"`: no board has a second transducer.
+    SecondTransducer,
     /// The model gives no answer, or ends before `max_indentation_mm`.
     Model(ModelError),
     /// Pressure or force do not grow throughout.
@@ -87,6 +89,11 @@ impl fmt::Display for GenerateError {
             Self::UnknownObject => write!(
                 f,
                 "`object.unknown` is true, and tables are of one object: give object.radius_mm, or leave [object] out for a plate"
+            ),
+            Self::SecondTransducer => write!(
+                f,
+                "`air.reference` is \"part\", and no board reads a second transducer: give \"host\" and send the air with the \
+                 command `air`, or \"none\""
             ),
             Self::MissingSection { section } => {
                 write!(f, "`[{section}]` is missing: tables cannot be made without it")
