@@ -136,8 +136,12 @@ impl Warnings {
     /// The wall recovers from a press that it has left: the pressure is below the zero, the force 0 and the indentation an upper bound.
     pub const RECOVERING: Self = Self(512);
 
+    /// The pressure swings to and fro by more than six noise floors allow, faster than a hand: hum of the mains, a motor, a
+    /// vibration. The 1-sigma allows for it.
+    pub const NOISY: Self = Self(1 << 14);
+
     /// Every reason with its word, the gravest first.
-    const REASONS: [(Self, &'static str); 10] = [
+    const REASONS: [(Self, &'static str); 11] = [
         (Self::SATURATED, "saturated"),
         (Self::LEAK_SUSPECTED, "leak suspected"),
         (Self::BUBBLE_SUSPECTED, "bubble suspected"),
@@ -146,12 +150,13 @@ impl Warnings {
         (Self::ZERO_UNVERIFIED, "zero unverified"),
         (Self::CALIBRATION_REFUSED, "calibration refused"),
         (Self::ZERO_AGED, "zero aged"),
+        (Self::NOISY, "noisy"),
         (Self::TEMPERATURE, "temperature"),
         (Self::CLOCK, "clock"),
     ];
 
     /// Every warning at once.
-    pub const ALL: Self = Self(1023);
+    pub const ALL: Self = Self(1023 | 1 << 14);
 
     /// The bits, as telemetry carries them.
     pub const fn bits(self) -> u16 {

@@ -142,7 +142,7 @@ impl<D: Design> Pipeline<D> {
         let doubtful =
             missed != 0 && self.zero.is_ok() && bound.saturating_add(missed) > parameters.limits.bound;
         // What a window will tell at its end is not read as ok until then.
-        let fallen = verified && rise.0 < -parameters.limits.bound;
+        let fallen = verified && bound <= parameters.limits.bound && rise.0 < -parameters.limits.bound;
         let moved = moved != 0 && verified && bound > parameters.limits.bound;
         let warnings = warnings
             .and(Warnings::ZERO_AGED.when(fallen || moved))
@@ -285,8 +285,8 @@ impl<D: Design> Pipeline<D> {
         // 2^33 * 1000.
         let millipascals = (counts * 1000) >> parameters.pressure_fraction_bits;
         let zero = Millipascals(i32::try_from(millipascals).ok()?);
-        let quantity = parameters.constants.transducer.quantity;
-        Some(self.calibration.rezeroed(zero, self.celsius, quantity))
+        let transducer = &parameters.constants.transducer;
+        Some(self.calibration.rezeroed(zero, self.celsius, transducer))
     }
 
     /// The calibration was stored, and is what the next zero of a gauge transducer is compared with; nothing: what was

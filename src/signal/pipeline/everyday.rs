@@ -373,5 +373,35 @@ fn creep_back_is_no_leak_and_a_gap_is_no_time_below() {
     assert!(!leaks(&world));
 }
 
+/// Case 11: hum of the mains that comes after the zero was taken. Nothing is wrong but in the first four parts of a window, 64 ms.
+#[test]
+fn hum_is_noisy_and_no_number_with_ok() {
+    let hum = |hertz: f64, since: f64| 100.0 * (core::f64::consts::TAU * hertz * since).sin();
+    for (hertz, rise) in [(50.0, 0.0), (60.0, 0.0), (50.0, 5_000.0), (60.0, 5_000.0)] {
+        let mut world = World::tared(GAUGE);
+        if rise > 0.0 {
+            world.run(0.2, |since| (rise * since / 0.2, 0.0));
+            world.run(1.0, |_| (rise, 0.0));
+        }
+        world.run(0.064, |since| (rise, hum(hertz, since)));
+        world.worst_ok = 0.0;
+        let last = world.run(20.0, |since| (rise, hum(hertz, since + 0.064)));
+        world.assert_never_wrong();
+        let reading = last.outcome.expect("a reading");
+        assert!(reading.warnings.contains(Warnings::NOISY), "{}", last.status());
+        // One deviation allows for the amplitude.
+        assert!(reading.sigma.pressure_rise.pascals(8) > 100.0 / 3.0_f64.sqrt());
+        assert_eq!(touch(&last) == Touch::Touched, rise > 0.0);
+        // A grasp on top of it does not hide it.
+        world.run(0.2, |since| {
+            (rise + 3_000.0 * (since / 0.2).min(1.0), hum(hertz, since))
+        });
+        world.run(1.0, |since| (rise + 3_000.0, hum(hertz, since)));
+        world.assert_never_wrong();
+        let last = world.run(2.0, |_| (rise + 3_000.0, 0.0));
+        assert_eq!(last.status(), Status::Ok, "{hertz} Hz");
+    }
+}
+
 /// What the design states of its zero, and the air that a host tells.
 mod stated;

@@ -10,7 +10,7 @@
 
 use crate::signal::zero::interval::Interval;
 use crate::signal::zero::limits::Limits;
-use crate::signal::zero::window::{self, Seen, Window};
+use crate::signal::zero::window::{self, Part, Seen, Window};
 use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, Warnings};
 use crate::units::{Microseconds, Pressure};
@@ -53,9 +53,12 @@ pub struct Estimator {
     replaced: Option<Replaced>,
     answer: Option<Result<(), TareRefusal>>,
     moved: bool,
-    /// Of the interval, as of the last window.
+    /// How far the pressure swings to either side, faster than any press: counts, >= 0.
+    swing: i32,
+    /// Of interval and swing, as of the last part of a window.
     bound: i32,
     above: i32,
+    warnings: Warnings,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -122,8 +125,10 @@ impl Estimator {
             replaced: None,
             answer: None,
             moved: zeroed,
+            swing: 0,
             bound: 0,
             above: 0,
+            warnings: Warnings::NONE,
         };
         estimator.judge_bound();
         estimator
@@ -182,9 +187,9 @@ impl Estimator {
     /// One pressure later. The level of a quiet window, if one ended.
     #[inline]
     pub fn step(&mut self, time: Microseconds, pressure: Pressure) -> Option<Pressure> {
-        let seen = self.window.add(time, pressure);
-        if seen.is_some() || self.measuring.is_some() {
-            return self.look(time, seen);
+        let part = self.window.add(time, pressure);
+        if part.is_some() || self.measuring.is_some() {
+            return self.look(time, part);
         }
         None
     }
@@ -198,13 +203,8 @@ impl Estimator {
         if !self.zeroed {
             return Err(Fault::Zeroing);
         }
-        let verified = self.interval.verified;
-        Ok((
-            PressureRise(pressure.0.saturating_sub(self.interval.value().0)),
-            Warnings::ZERO_UNVERIFIED
-                .when(!verified)
-                .and(Warnings::ZERO_AGED.when(verified && self.bound > self.limits.bound)),
-        ))
+        let rise = pressure.0.saturating_sub(self.interval.value().0);
+        Ok((PressureRise(rise), self.warnings))
     }
 
     /// A gap in the samples: a window has no gaps. Patience runs on.
@@ -291,7 +291,11 @@ impl Estimator {
     }
 
     #[cold]
-    fn look(&mut self, time: Microseconds, seen: Option<Seen>) -> Option<Pressure> {
+    fn look(&mut self, time: Microseconds, part: Option<Part>) -> Option<Pressure> {
+        if let Some(Part { swing, .. }) = part {
+            self.swing(swing);
+        }
+        let seen = part.and_then(|part| part.window);
         let quiet = seen.filter(|seen| seen.spread <= self.limits.quiet);
         if seen.is_some() && self.zeroed {
             let looked = self.looked.replace(time).unwrap_or(time);
@@ -391,12 +395,37 @@ impl Estimator {
         self.judge_bound();
     }
 
+    /// What swings less than noise may is none. Of a hum a part may miss a fifth of the range. It is forgotten
+    /// slowly, by half in 0.7 s, as a press on top of it hides it for some parts.
+    fn swing(&mut self, width: i32) {
+        let swing = if width > self.limits.swing {
+            (width >> 3).saturating_mul(5)
+        } else {
+            0
+        };
+        let before = self.swing;
+        if before | swing != 0 {
+            self.swing = swing.max(before - (before >> 6) - 1);
+            self.judge_bound();
+        }
+    }
+
     fn judge_bound(&mut self) {
-        self.above = self.interval.above(&self.limits);
-        self.bound = if self.interval.verified {
+        let verified = self.interval.verified;
+        let bound = if verified {
             self.interval.bound(&self.limits)
         } else {
             self.limits.reach()
+        };
+        self.above = self.interval.above(&self.limits).saturating_add(self.swing);
+        self.bound = bound.saturating_add(self.swing);
+        let largest = self.limits.bound;
+        self.warnings = if !verified {
+            Warnings::ZERO_UNVERIFIED
+        } else if bound > largest {
+            Warnings::ZERO_AGED
+        } else {
+            Warnings::NOISY.when(self.bound > largest)
         };
     }
 }

@@ -85,6 +85,8 @@ impl Interval {
     }
 
     /// How far the true zero may be from the value, and how far it may have moved since someone saw it: counts, >= 0.
+    // Once in an image: inlined where it is asked for, each time a window ends, it takes 100 bytes more.
+    #[inline(never)]
     pub(super) fn bound(&self, limits: &Limits) -> i32 {
         let up = self.high - self.value;
         let down = self.value - self.low;

@@ -1,6 +1,7 @@
 //! What a zero is compared with: where it is expected, how far off it may be, and how fast it may move.
 
 use crate::signal::touch::Thresholds;
+use crate::signal::uncertainty::Uncertainty;
 use crate::units::Pressure;
 use model_tables::constants::{
     AIR, AirReference, DesignConstants, Quantity, Transducer, TransducerKind, UNSEEN_KELVINS,
@@ -17,6 +18,11 @@ const FAR_PERMILLE: i64 = 25;
 /// How far apart the lowest and the highest sample of a window may lie, in noise floors. White noise of that size spreads
 /// over 5.6 of them in 256 draws, over more than 9 once in 10^16 windows.
 const QUIET_FLOORS: i64 = 10;
+
+/// How much wider than half a noise floor a swing is, in standard deviations of a reading: white noise spreads over that in a part of
+/// four samples once in 200 times, over the same levels in three of them once in a day. What is left unseen is three of them to
+/// either side, which a reading's own 1-sigma allows for.
+const SWING_DEVIATIONS: i32 = 6;
 
 /// What is left of a gauge bridge's drift after compensation, at a steady temperature, millipascals an hour.
 pub const GAUGE_DRIFT: i64 = 2_000;
@@ -51,6 +57,8 @@ pub struct Limits {
     pub far: i32,
     /// How far a quiet window may spread, >= 0.
     pub quiet: i32,
+    /// What noise may have in common from one part of a window to the next two, >= 0.
+    pub swing: i32,
     /// How well a quiet window tells the zero: half a noise floor, and `wander`.
     pub margin: i32,
     /// What moves the zero back and forth while nothing presses: the fluid's weight, hysteresis, creep, and temperature where the
@@ -110,6 +118,9 @@ impl Limits {
             near: Pressure::from_millipascals(near, fraction_bits).0,
             far: Pressure::from_millipascals(range * FAR_PERMILLE, fraction_bits).0,
             quiet: Pressure::from_millipascals(floor * QUIET_FLOORS, fraction_bits).0,
+            swing: Pressure::from_millipascals(floor / 2, fraction_bits)
+                .0
+                .saturating_add(Uncertainty::of(constants, fraction_bits).noise() * SWING_DEVIATIONS),
             margin: Pressure::from_millipascals(floor / 2 + wander, fraction_bits).0,
             wander: Pressure::from_millipascals(wander, fraction_bits).0,
             bound,
