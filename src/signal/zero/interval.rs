@@ -26,6 +26,8 @@ pub(super) struct Interval {
     looked: i64,
     /// How far below the witnessed zero a quiet level lay that drift does not explain: there the word is void.
     fallen: i64,
+    /// How far the zero of an absolute part may move before the next window ends: a lift goes on as it did.
+    moving: i64,
     /// Someone saw it untouched.
     pub(super) verified: bool,
 }
@@ -60,6 +62,7 @@ impl Interval {
             witnessed: value,
             looked: value,
             fallen: 0,
+            moving: 0,
             verified: false,
         }
     }
@@ -74,6 +77,7 @@ impl Interval {
             witnessed: value,
             looked: value,
             fallen: 0,
+            moving: 0,
             verified: true,
         }
     }
@@ -92,7 +96,8 @@ impl Interval {
         let down = self.value - self.low;
         let risen = self.looked - self.witnessed;
         let moved = (risen + level(limits.margin - limits.wander)).max(self.fallen);
-        counts_above(up.max(down).max(moved)).max(0)
+        let still = up.max(down).max(moved).max(level(limits.margin));
+        counts_above(still + self.moving)
     }
 
     /// How far the true zero may be above the value, beyond the level of a quiet window: counts, >= 0.
@@ -134,8 +139,14 @@ impl Interval {
         if seen < self.low - margin {
             self.fallen = self.fallen.max(self.witnessed - seen);
         }
+        self.moving = 0;
         if over > touch {
             return;
+        }
+        if limits.absolute {
+            // From the middle of the last window to the end of the next one it is one and a half of them.
+            let moved = (seen - self.looked).abs();
+            self.moving = moved + moved / 2;
         }
         self.looked = seen;
         // Nothing presses with less than nothing: the true zero is not higher than what is seen. But the air may rise.
@@ -173,6 +184,7 @@ impl Interval {
             witnessed: known,
             looked: seen,
             fallen: 0,
+            moving: 0,
             verified: true,
         };
         taken.verified = taken.bound(limits) <= limits.bound;

@@ -237,8 +237,8 @@ fn judge_lives(arguments: &LivesArguments) -> bool {
         kinds[life.transducer].add(&tally);
         if tally.wrong > 0 {
             println!(
-                "life {index}: {} wrong, by {:.1} Pa at most: {life:?}",
-                tally.wrong, tally.worst
+                "life {index}: {} wrong, by {:.1} Pa at most: {:?}",
+                tally.wrong, tally.worst, tally.first_wrong
             );
         }
         eprint!("\r{} of {count} lives", index + 1);

@@ -12,6 +12,21 @@ use std::fmt;
 use tip::{TRANSDUCERS, Tip};
 use world::{Motions, World};
 
+/// A reading with status ok that is further off than is allowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrong {
+    /// When, since the life began.
+    pub seconds: f64,
+    /// Pascals.
+    pub error: f64,
+    /// Of the zero, pascals.
+    pub bound: f64,
+    /// One standard deviation, pascals.
+    pub sigma: f64,
+    /// The true rise then, pascals.
+    pub rise: f64,
+}
+
 /// What came of some lives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tally {
@@ -29,6 +44,8 @@ pub struct Tally {
     pub wrong: u64,
     /// By how much at most, pascals.
     pub worst: f64,
+    /// The first of them.
+    pub first_wrong: Option<Wrong>,
     /// Sum of the squares of error over deviation, of readings with status ok.
     squares: f64,
     /// The largest.
@@ -66,6 +83,7 @@ impl Tally {
         self.ok += other.ok;
         self.wrong += other.wrong;
         self.worst = self.worst.max(other.worst);
+        self.first_wrong = self.first_wrong.or(other.first_wrong);
         self.squares += other.squares;
         self.most_deviations = self.most_deviations.max(other.most_deviations);
     }

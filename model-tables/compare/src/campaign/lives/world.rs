@@ -1,7 +1,7 @@
 //! One fingertip with everything that moves its pressure beside a press, sample by sample.
 
-use super::Tally;
 use super::tip::{FRACTION_BITS, REST, Tip};
+use super::{Tally, Wrong};
 use fingertip::signal::calibration::Calibration;
 use fingertip::signal::design::Design as _;
 use fingertip::signal::pipeline::Pipeline;
@@ -211,8 +211,17 @@ impl<'a> World<'a> {
             .pipeline
             .zero()
             .map_or(0.0, |zero| f64::from(zero.bound) / counts);
-        self.tally
-            .judge(error / sigma, (error - noise).abs() - bound - 3.0 * sigma);
+        let beyond = (error - noise).abs() - bound - 3.0 * sigma;
+        self.tally.judge(error / sigma, beyond);
+        if beyond > 0.0 && self.tally.first_wrong.is_none() {
+            self.tally.first_wrong = Some(Wrong {
+                seconds: self.now as f64 / 1e6,
+                error,
+                bound,
+                sigma,
+                rise,
+            });
+        }
     }
 
     /// So many seconds of a rise over the seconds since then.
@@ -255,15 +264,29 @@ impl<'a> World<'a> {
         }
     }
 
-    /// A lift or stairs, by so many pascals at so many a second.
+    /// A lift or stairs, by so many pascals at so many a second at the most, which it gains and loses at 12 Pa/s a second: a tenth
+    /// of the acceleration of gravity.
     pub fn lift(&mut self, pascals: f64, rate: f64) {
+        const GAIN: f64 = 12.0;
+        const STEP: f64 = 0.02;
         let rise = self.truth[0];
-        let steps = (pascals.abs() / rate / 0.1).ceil();
-        for _ in 0..steps as u32 {
-            self.height += pascals / steps;
-            self.tell_the_air();
-            self.run(0.1, |_| rise);
+        let rate = rate.min((pascals.abs() * GAIN).sqrt());
+        let (from, lasts) = (self.height, pascals.abs() / rate + rate / GAIN);
+        let travelled = |since: f64| {
+            let gaining = since.min(rate / GAIN);
+            let losing = (since - lasts + rate / GAIN).max(0.0);
+            0.5 * GAIN * (gaining * gaining - losing * losing) + rate * (since - gaining)
+        };
+        for step in 1..=(lasts / STEP).ceil() as u32 {
+            let since = (f64::from(step) * STEP).min(lasts);
+            self.height = from + pascals.signum() * travelled(since);
+            if step % 5 == 0 {
+                self.tell_the_air();
+            }
+            self.until_slow = 0;
+            self.run(STEP, |_| rise);
         }
+        self.tell_the_air();
     }
 
     /// Drift and weather change.
