@@ -245,16 +245,16 @@ fn judge_lives(arguments: &LivesArguments) -> bool {
     }
     eprintln!();
     println!(
-        "| transducer | lives | resets | samples | ok, % | wrong | error over deviation: RMS | at most |"
+        "| transducer | lives | resets | samples | ok, % | wrong | wrong where a sample was replaced | error over deviation: RMS | at most |"
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     let mut all = lives::Tally::default();
     for ((name, _), tally) in tip::TRANSDUCERS.iter().zip(&kinds) {
         println!("| {name} | {tally}");
         all.add(tally);
     }
     println!("| all | {all}");
-    all.wrong == 0
+    all.wrong == all.replaced
 }
 
 /// Whether no state was wrong.

@@ -42,6 +42,8 @@ pub struct Tally {
     pub ok: u64,
     /// Those further off than the zero's bound and three deviations, their own white noise left out.
     pub wrong: u64,
+    /// Those among them where the filter replaced a corner of a press, with noise of four deviations on it, as a wild sample.
+    pub replaced: u64,
     /// By how much at most, pascals.
     pub worst: f64,
     /// The first of them.
@@ -53,13 +55,15 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// A reading with status ok: its error over its deviation, and how far the error is beyond what is allowed.
-    fn judge(&mut self, deviations: f64, beyond: f64) {
+    /// A reading with status ok: its error over its deviation, how far the error is beyond what is allowed, and whether a sample was
+    /// replaced.
+    fn judge(&mut self, deviations: f64, beyond: f64, replaced: bool) {
         self.ok += 1;
         self.squares += deviations * deviations;
         self.most_deviations = self.most_deviations.max(deviations.abs());
         if beyond > 0.0 {
             self.wrong += 1;
+            self.replaced += u64::from(replaced);
             self.worst = self.worst.max(beyond);
         }
     }
@@ -82,6 +86,7 @@ impl Tally {
         self.no_reading += other.no_reading;
         self.ok += other.ok;
         self.wrong += other.wrong;
+        self.replaced += other.replaced;
         self.worst = self.worst.max(other.worst);
         self.first_wrong = self.first_wrong.or(other.first_wrong);
         self.squares += other.squares;
@@ -94,12 +99,13 @@ impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} | {} | {} | {:.1} | {} | {:.2} | {:.1} |",
+            "{} | {} | {} | {:.1} | {} | {} | {:.2} | {:.1} |",
             self.lives,
             self.resets,
             self.readings + self.no_reading,
             100.0 * self.ok_share(),
-            self.wrong,
+            self.wrong - self.replaced,
+            self.replaced,
             self.rms_deviations(),
             self.most_deviations
         )

@@ -182,7 +182,9 @@ impl<'a> World<'a> {
             temperature: told.then_some(Centidegrees((100.0 * self.celsius).round() as i16)),
             ..Sample::default()
         };
+        let rejected = self.pipeline.rejected();
         let report = self.pipeline.step(Microseconds(self.now), Ok(sample));
+        let replaced = self.pipeline.rejected() > rejected;
         self.truth = [rise, self.truth[0], self.truth[1]];
         self.noise = [noise, self.noise[0], self.noise[1]];
         self.deepest = self.deepest.max(rise);
@@ -197,7 +199,7 @@ impl<'a> World<'a> {
         let counts = f64::from(1_u32 << FRACTION_BITS);
         let read = f64::from(reading.pressure_rise.0) / counts;
         let sigma = f64::from(reading.sigma.pressure_rise.0) / counts;
-        // The reading is of the sample before, or of its mean with its neighbours.
+        // The reading is the mean of the sample before with its neighbours, or that sample alone.
         let mean = |[newest, middle, oldest]: [f64; 3]| 0.25 * (newest + 2.0 * middle + oldest);
         let of_mean = (read - mean(self.truth), mean(self.noise));
         let of_middle = (read - self.truth[1], self.noise[1]);
@@ -212,7 +214,7 @@ impl<'a> World<'a> {
             .zero()
             .map_or(0.0, |zero| f64::from(zero.bound) / counts);
         let beyond = (error - noise).abs() - bound - 3.0 * sigma;
-        self.tally.judge(error / sigma, beyond);
+        self.tally.judge(error / sigma, beyond, replaced);
         if beyond > 0.0 && self.tally.first_wrong.is_none() {
             self.tally.first_wrong = Some(Wrong {
                 seconds: self.now as f64 / 1e6,
