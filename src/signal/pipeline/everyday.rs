@@ -373,6 +373,23 @@ fn creep_back_is_no_leak_and_a_gap_is_no_time_below() {
     assert!(!leaks(&world));
 }
 
+/// A part that fails a few times in each window: no window ends, and the weather goes on.
+#[test]
+fn an_intermittent_part_ages_all_the_same() {
+    let mut world = World::tared(ABSOLUTE);
+    let mut last = None;
+    for minute in 0..60 {
+        for _ in 0..240 {
+            let shift = 100.0 * f64::from(minute) / 60.0;
+            let report = world.run(0.1, |_| (0.0, shift));
+            last = Some(report);
+            world.now += 150_000;
+        }
+    }
+    assert!(aged(&last.expect("it ran")));
+    world.assert_never_wrong();
+}
+
 /// Case 11: hum of the mains that comes after the zero was taken. Nothing is wrong but in the first four parts of a window, 64 ms.
 #[test]
 fn hum_is_noisy_and_no_number_with_ok() {

@@ -210,6 +210,11 @@ impl Estimator {
     /// A gap in the samples: a window has no gaps. Patience runs on.
     pub fn interrupt(&mut self, time: Microseconds) {
         self.window = Window::EMPTY;
+        // Where no window ever ends the zero drifts all the same.
+        if self.zeroed {
+            self.age(time);
+            self.judge_bound();
+        }
         if let Some(measuring) = &mut self.measuring {
             let since = *measuring.since.get_or_insert(time);
             if measuring.commanded && time.0.saturating_sub(since.0) >= PATIENCE {
@@ -298,9 +303,7 @@ impl Estimator {
         let seen = part.and_then(|part| part.window);
         let quiet = seen.filter(|seen| seen.spread <= self.limits.quiet);
         if seen.is_some() && self.zeroed {
-            let looked = self.looked.replace(time).unwrap_or(time);
-            let passed = time.0.saturating_sub(looked.0);
-            self.interval.drift(&self.limits, passed);
+            let passed = self.age(time);
             if let Some(Seen { level, .. }) = quiet {
                 self.interval.look(&self.limits, level, passed);
             }
@@ -323,6 +326,14 @@ impl Estimator {
             }
         }
         quiet.map(|seen| seen.level)
+    }
+
+    /// Drift since the last time that this was asked, microseconds ago.
+    fn age(&mut self, time: Microseconds) -> u64 {
+        let looked = self.looked.replace(time).unwrap_or(time);
+        let passed = time.0.saturating_sub(looked.0);
+        self.interval.drift(&self.limits, passed);
+        passed
     }
 
     /// Whether a window may give the zero.
