@@ -5,6 +5,8 @@ use crate::signal::design::{Design, Parameters};
 use crate::signal::wall::Elastic;
 #[cfg(relaxation)]
 use crate::signal::wall::Memory;
+use crate::signal::zero::limits::Limits;
+use crate::signal::zero::surroundings::Surroundings;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;
@@ -47,10 +49,16 @@ impl Design for ImageDesign {
     fn series(&self) -> Option<&WallSeries> {
         const { Some(&RELAXATION) }
     }
+    type Around = [Surroundings; Self::PARAMETERS.rates.places()];
 
     #[inline]
     fn parameters(&self) -> &Parameters {
         const { &Self::PARAMETERS }
+    }
+
+    #[inline]
+    fn limits(&self) -> Limits {
+        const { Self::PARAMETERS.limits }
     }
 
     #[inline]

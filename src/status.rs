@@ -138,9 +138,12 @@ impl Warnings {
     /// What a relaxing wall went through is not known: after a reset or a gap, or at the transducer's lower end. Half of what that leaves
     /// open is in the 1-sigma.
     pub const PAST_UNKNOWN: Self = Self(1024);
+    /// The pressure swings to and fro by more than six noise floors allow, faster than a hand: hum of the mains, a motor, a
+    /// vibration. The 1-sigma allows for it.
+    pub const NOISY: Self = Self(1 << 14);
 
     /// Every reason with its word, the gravest first.
-    const REASONS: [(Self, &'static str); 11] = [
+    const REASONS: [(Self, &'static str); 12] = [
         (Self::SATURATED, "saturated"),
         (Self::LEAK_SUSPECTED, "leak suspected"),
         (Self::BUBBLE_SUSPECTED, "bubble suspected"),
@@ -150,12 +153,13 @@ impl Warnings {
         (Self::ZERO_UNVERIFIED, "zero unverified"),
         (Self::CALIBRATION_REFUSED, "calibration refused"),
         (Self::ZERO_AGED, "zero aged"),
+        (Self::NOISY, "noisy"),
         (Self::TEMPERATURE, "temperature"),
         (Self::CLOCK, "clock"),
     ];
 
     /// Every warning at once.
-    pub const ALL: Self = Self(2047);
+    pub const ALL: Self = Self(2047 | 1 << 14);
 
     /// The bits, as telemetry carries them.
     pub const fn bits(self) -> u16 {

@@ -13,15 +13,16 @@ import sys
 VERSION = 2
 WARNINGS = ["saturated", "zero unverified", "below zero", "leak suspected", "bubble suspected",
             "calibration refused", "zero aged", "temperature", "clock", "recovering",
-            "past unknown"]
+            "past unknown"] + [None] * 3 + ["noisy"]
 FAULTS = {1: "sensor open", 2: "sensor short", 3: "zeroing", 4: "settling", 5: "samples lost", 6: "converter stalled",
           7: "stuck", 8: "jump", 9: "reset loop", 10: "sensor supply", 16: "sensor absent", 17: "bus fault", 18: "wrong sensor",
           19: "sensor calibration", 20: "sensor busy", 21: "sensor memory", 22: "sensor saturated",
           23: "sensor reset", 24: "sensor implausible"}
 TOUCH = ["unknown", "untouched", "touched"]
-COMMANDS = {"tare": 0x81, "undo": 0x82, "save": 0x83, "info": 0x84, "self-test": 0x85, "rate": 0x86, "forget": 0x87}
+COMMANDS = {"tare": 0x81, "undo": 0x82, "save": 0x83, "info": 0x84, "self-test": 0x85, "rate": 0x86, "forget": 0x87,
+            "air": 0x8A}
 OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy", "nothing to undo", "zero unverified",
-            "memory failed"]
+            "memory failed"] + [None] * 5 + ["not in this image"]
 CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
 STORED = ["none", "serves", "another design's", "damaged", "unreadable"]
 LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang", "non-maskable interrupt"]
@@ -63,7 +64,8 @@ def describe(body):
     head = f"{sequence} {time} us, {dropped} dropped: "
     if kind == 1:
         bits, k, touch, rise, force, indentation, *sigmas = struct.unpack_from("<HBB6i", body, 14)
-        if bits >> len(WARNINGS) or k > 31 or touch >= len(TOUCH):
+        unknown = bits >> len(WARNINGS) or any(bits >> bit & 1 and not word for bit, word in enumerate(WARNINGS))
+        if unknown or k > 31 or touch >= len(TOUCH):
             raise ValueError("field")
         warnings = "; ".join(word for bit, word in enumerate(WARNINGS) if bits >> bit & 1)
         return head + (f"{'warning: ' + warnings if bits else 'ok'}, {TOUCH[touch]}, {rise / 2**k:.3f} Pa, {force} uN, "

@@ -8,6 +8,7 @@ use fingertip::link::telemetry::Message;
 use fingertip::signal::calibration::Calibration;
 use fingertip::signal::design::{Design, Parameters};
 use fingertip::signal::report::Report;
+use fingertip::signal::zero::surroundings::Surroundings;
 use fingertip::status::{Fault, ResetCause, Stored};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::{Microseconds, Millipascals};
@@ -32,6 +33,7 @@ impl WithAbsolutePart {
 
 impl Design for WithAbsolutePart {
     type Wall = <ImageDesign as Design>::Wall;
+    type Around = [Surroundings; 1];
 
     fn parameters(&self) -> &Parameters {
         const { &Self::PARAMETERS }

@@ -8,6 +8,7 @@ use fingertip::signal::contact::contact;
 use fingertip::signal::design::{Design, LoadedDesign, Parameters};
 use fingertip::signal::report::Report;
 use fingertip::signal::wall::Memory;
+use fingertip::signal::zero::surroundings::Surroundings;
 use fingertip::status::{Fault, Warnings};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::Millipascals;
@@ -44,6 +45,7 @@ impl RelaxingImage {
 
 impl Design for RelaxingImage {
     type Wall = Memory<{ golden::RELAXATION.step.count }>;
+    type Around = [Surroundings; 1];
 
     fn parameters(&self) -> &Parameters {
         &Self::PARAMETERS

@@ -17,12 +17,60 @@ pub struct DesignConstants {
     pub maximum_pressure: i32,
     /// The pressure transducer.
     pub transducer: Transducer,
+    /// What may move the zero beside a press.
+    pub zero: ZeroAssumptions,
+}
+
+/// What a design states of its zero, `[zero]` and `[air]`: none is below 0, and 0 is what nothing was stated of.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct ZeroAssumptions {
+    /// Drift of the transducer's offset at a steady temperature, millipascals an hour; 0: what the firmware takes for its kind.
+    pub drift: i32,
+    /// How far a kelvin moves the offset that is left after compensation, millipascals.
+    pub per_kelvin: i32,
+    /// From one attitude of the hand to another, the weight of the fluid column, millipascals.
+    pub fluid_head: i32,
+    /// What a press leaves for good, millipascals.
+    pub hysteresis: i32,
+    /// What a press leaves for a while, until the wall has crept back, millipascals.
+    pub creep: i32,
+    /// Largest bound of the zero of an ok reading, millipascals; 0: six noise floors.
+    pub bound: i32,
+    /// Who measures the air around an absolute transducer.
+    pub air: AirReference,
+}
+
+impl ZeroAssumptions {
+    /// Nothing is stated.
+    pub const NONE: Self = Self {
+        drift: 0,
+        per_kelvin: 0,
+        fluid_head: 0,
+        hysteresis: 0,
+        creep: 0,
+        bound: 0,
+        air: AirReference::None,
+    };
+}
+
+/// Who measures the air around an absolute transducer.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum AirReference {
+    /// Nobody: the weather is in the bound of the zero.
+    None,
+    /// The host, which tells the board with the command `air`.
+    Host,
+    /// A second transducer.
+    Part,
 }
 
 /// The thinnest and the densest air around a hand, pascals absolute. 60 kPa is a little below the standard atmosphere at
 /// 4000 m (61.6 kPa, ISO 2533); 108 kPa is a high at sea level of which there are few a century (the highest on record
 /// below 750 m is 108.4 kPa, WMO World Weather and Climate Extremes Archive).
 pub const AIR: [i32; 2] = [60_000, 108_000];
+
+/// How far a part that does not tell its temperature may warm or cool while its zero is used, kelvins: between a room and a hand.
+pub const UNSEEN_KELVINS: i32 = 10;
 
 /// What a transducer measures against.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

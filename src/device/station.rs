@@ -240,6 +240,10 @@ impl<D: Design> Station<D> {
                 }
             },
             Command::Forget => return self.store(now, pending, None, say),
+            Command::Air { pascals } => self
+                .pipeline
+                .air(now, pascals)
+                .map_or_else(Outcome::from, |()| Outcome::Done),
             Command::Info => {
                 say(&Message::Hello(self.hello(now)));
                 Outcome::Done

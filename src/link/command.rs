@@ -6,6 +6,7 @@
 use crate::link::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, unstuff};
 use crate::signal::calibration::LARGEST_GAIN;
 use crate::signal::zero::estimator::TareRefusal;
+use crate::signal::zero::surroundings::AirRefusal;
 use crate::status::{code_of, named_by};
 
 const HEADER: usize = 4;
@@ -36,6 +37,11 @@ pub enum Command {
     },
     /// Store that nothing is stored: the next zero is a first one.
     Forget,
+    /// The air around an absolute transducer, as the host measures it.
+    Air {
+        /// Pascals absolute.
+        pascals: i32,
+    },
 }
 
 /// Which command, without what goes with it.
@@ -55,11 +61,13 @@ pub enum CommandKind {
     Rate,
     /// [`Command::Forget`].
     Forget,
+    /// [`Command::Air`].
+    Air,
 }
 
 impl CommandKind {
     /// Every kind with its code on the wire.
-    pub const CODES: [(Self, u8); 7] = [
+    pub const CODES: [(Self, u8); 8] = [
         (Self::Tare, 0x81),
         (Self::Undo, 0x82),
         (Self::Save, 0x83),
@@ -67,6 +75,7 @@ impl CommandKind {
         (Self::SelfTest, 0x85),
         (Self::Rate, 0x86),
         (Self::Forget, 0x87),
+        (Self::Air, 0x8A),
     ];
 
     /// Its code.
@@ -91,6 +100,7 @@ impl Command {
             Self::SelfTest { .. } => CommandKind::SelfTest,
             Self::Rate { .. } => CommandKind::Rate,
             Self::Forget => CommandKind::Forget,
+            Self::Air { .. } => CommandKind::Air,
         }
     }
 }
@@ -116,11 +126,13 @@ pub enum Outcome {
     ZeroUnverified,
     /// The memory did not take it; what served before still serves.
     MemoryFailed,
+    /// The design in the image has no use for it.
+    NotInImage,
 }
 
 impl Outcome {
     /// Every outcome with its code on the wire.
-    pub const CODES: [(Self, u8); 9] = [
+    pub const CODES: [(Self, u8); 10] = [
         (Self::Done, 0),
         (Self::Touched, 1),
         (Self::Restless, 2),
@@ -130,7 +142,17 @@ impl Outcome {
         (Self::NothingToUndo, 6),
         (Self::ZeroUnverified, 7),
         (Self::MemoryFailed, 8),
+        (Self::NotInImage, 14),
     ];
+}
+
+impl From<AirRefusal> for Outcome {
+    fn from(refusal: AirRefusal) -> Self {
+        match refusal {
+            AirRefusal::NotInDesign => Self::NotInImage,
+            AirRefusal::OutOfBounds => Self::OutOfBounds,
+        }
+    }
 }
 
 impl From<TareRefusal> for Outcome {
@@ -166,6 +188,7 @@ pub fn encode(request: &Request) -> Encoded {
         Command::Save { gain } => body.put(gain.unwrap_or(i32::MIN).to_le_bytes()),
         Command::SelfTest { indentation } => body.put(indentation.to_le_bytes()),
         Command::Rate { every } => body.put(every.to_le_bytes()),
+        Command::Air { pascals } => body.put(pascals.to_le_bytes()),
     }
     body.finish();
     body
@@ -215,6 +238,9 @@ pub fn read_body(body: &[u8]) -> Result<Request, DecodeError> {
             }
             Command::SelfTest { indentation }
         }
+        CommandKind::Air => Command::Air {
+            pascals: i32::from_le_bytes(fields.take()?),
+        },
         CommandKind::Rate => {
             let every = u16::from_le_bytes(fields.take()?);
             if !(1..=1000).contains(&every) {
@@ -236,7 +262,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// Bodies by the page, CRC by Python's `binascii.crc_hqx(body, 0xFFFF)`, stuffed by hand.
-    const GOLDEN: [(Request, &[u8]); 4] = [
+    const GOLDEN: [(Request, &[u8]); 5] = [
         (
             Request {
                 sequence: 0x0102,
@@ -265,6 +291,13 @@ mod tests {
             },
             GOLDEN_SELF_TEST,
         ),
+        (
+            Request {
+                sequence: 4,
+                command: Command::Air { pascals: 101_325 },
+            },
+            GOLDEN_AIR,
+        ),
     ];
 
     const GOLDEN_TARE: &[u8] = &[0x07, 0x02, 0x81, 0x02, 0x01, 0x81, 0x13, 0x00];
@@ -274,6 +307,10 @@ mod tests {
     ];
     const GOLDEN_SELF_TEST: &[u8] = &[
         0x04, 0x02, 0x85, 0x03, 0x04, 0x90, 0xD0, 0x03, 0x03, 0x7E, 0x54, 0x00,
+    ];
+
+    const GOLDEN_AIR: &[u8] = &[
+        0x04, 0x02, 0x8A, 0x04, 0x04, 0xCD, 0x8B, 0x01, 0x03, 0x36, 0x92, 0x00,
     ];
 
     #[test]
@@ -295,8 +332,7 @@ mod tests {
             (&[2, 0x86, 0, 0, 0, 0], DecodeError::Field(4)),
             (&[2, 0x86, 0, 0, 0xE9, 3], DecodeError::Field(4)),
             (&[2, 0x85, 0, 0, 0, 0, 0, 0x80], DecodeError::Field(4)),
-            // 100 001 parts in a million.
-            (&[2, 0x83, 0, 0, 0xA1, 0x86, 1, 0], DecodeError::Field(4)),
+            (&[2, 0x83, 0, 0, 0xA1, 0x86, 1, 0], DecodeError::Field(4)), // 100 001 parts in a million
         ] {
             assert_eq!(read_body(body), Err(error), "{body:?}");
         }
@@ -305,7 +341,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_request_survives_the_wire(sequence in any::<u16>(), which in 0..7, argument in any::<i32>()) {
+        fn a_request_survives_the_wire(sequence in any::<u16>(), which in 0..8, argument in any::<i32>()) {
             let command = match which {
                 0 => Command::Tare,
                 1 => Command::Undo,
@@ -313,6 +349,7 @@ mod tests {
                 3 => Command::Info,
                 4 => Command::SelfTest { indentation: argument & i32::MAX },
                 5 => Command::Rate { every: (argument.unsigned_abs() % 1000 + 1) as u16 },
+                6 => Command::Air { pascals: argument },
                 _ => Command::Forget,
             };
             let request = Request { sequence, command };
@@ -322,7 +359,7 @@ mod tests {
         }
 
         #[test]
-        fn no_body_makes_the_reader_panic(mut body in prop::collection::vec(any::<u8>(), 0..20), kind in 0x80_u8..0x89) {
+        fn no_body_makes_the_reader_panic(mut body in prop::collection::vec(any::<u8>(), 0..20), kind in 0x80_u8..0x8C) {
             if let Some([a, b]) = body.first_chunk_mut() {
                 *a = PROTOCOL_VERSION;
                 *b = kind;

@@ -4,7 +4,7 @@ use crate::signal::scale::Scale;
 use crate::signal::temperature;
 use crate::units::{Centidegrees, Millipascals, Pressure};
 use model_tables::block::StoredCalibration;
-use model_tables::constants::Quantity;
+use model_tables::constants::{Quantity, Transducer};
 use model_tables::units::PressureRise;
 
 /// Largest gain trim that is believed, parts in a million: 10 %.
@@ -51,12 +51,19 @@ impl Calibration {
     }
 
     /// This with a new zero; where the old one was at another temperature, the two give the coefficient. Not of an absolute
-    /// transducer: between its two zeros the air changed too, and what of the difference is temperature cannot be told.
+    /// transducer: between its two zeros the air changed too, and what of the difference is temperature cannot be told. Nor where
+    /// more is between them than temperature moves the zero of such a part by.
     #[must_use]
-    pub fn rezeroed(self, zero: Millipascals, temperature: Option<Centidegrees>, quantity: Quantity) -> Self {
+    pub fn rezeroed(
+        self,
+        zero: Millipascals,
+        temperature: Option<Centidegrees>,
+        transducer: &Transducer,
+    ) -> Self {
         let coefficient = match (self.zero, self.temperature, temperature) {
-            (Some(before), Some(then), Some(now)) if quantity == Quantity::Gauge => {
-                temperature::coefficient([before, zero], [then, now]).unwrap_or(self.coefficient)
+            (Some(before), Some(then), Some(now)) if matches!(transducer.quantity, Quantity::Gauge) => {
+                temperature::coefficient([before, zero], [then, now], transducer.range)
+                    .unwrap_or(self.coefficient)
             }
             _ => self.coefficient,
         };
@@ -96,6 +103,7 @@ impl Gain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::signal::test_design::TRANSDUCERS;
 
     #[test]
     fn the_gain_is_a_trim_in_parts_per_million() {
@@ -112,7 +120,7 @@ mod tests {
             calibration.rezeroed(
                 Millipascals(zero),
                 Some(Centidegrees(temperature)),
-                Quantity::Gauge,
+                &TRANSDUCERS[0],
             )
         };
         let cold = rezeroed(Calibration::default(), 2_000_000, 2_000);
@@ -126,20 +134,36 @@ mod tests {
         assert_eq!(same.coefficient, 2_000);
     }
 
+    /// A gauge part has no weather in it but where its vent is blocked. 62.5 Pa/K are twice what the worst part of 100 kPa has.
+    #[test]
+    fn what_is_too_much_for_temperature_is_no_coefficient_of_a_gauge_part_either() {
+        let known = Calibration {
+            zero: Some(Millipascals(1_500_000)),
+            temperature: Some(Centidegrees(2_000)),
+            coefficient: 2_000,
+            gain: 0,
+        };
+        for (zero, coefficient) in [(1_000_000, 2_000), (2_000_000, 2_000), (1_740_000, 30_000)] {
+            let warm = known.rezeroed(Millipascals(zero), Some(Centidegrees(2_800)), &TRANSDUCERS[0]);
+            assert_eq!(warm.coefficient, coefficient, "{zero}");
+            assert_eq!(warm.zero, Some(Millipascals(zero)));
+        }
+    }
+
     #[test]
     fn two_zeros_of_an_absolute_transducer_say_nothing_of_temperature() {
         let zeroed = |calibration: Calibration, zero, temperature| {
             calibration.rezeroed(
                 Millipascals(zero),
                 Some(Centidegrees(temperature)),
-                Quantity::Absolute,
+                &TRANSDUCERS[3],
             )
         };
-        // 10 K and 3 hPa of weather apart.
+        // 8 K and 5 hPa of weather apart.
         let cold = zeroed(Calibration::default(), 101_300_000, 2_000);
-        let warm = zeroed(cold, 101_600_000, 3_000);
+        let warm = zeroed(cold, 100_800_000, 2_800);
         assert_eq!(warm.coefficient, 0);
-        assert_eq!(warm.zero, Some(Millipascals(101_600_000)));
+        assert_eq!(warm.zero, Some(Millipascals(100_800_000)));
     }
 
     #[test]

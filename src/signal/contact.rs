@@ -59,6 +59,7 @@ mod tests {
     use crate::signal::design::Parameters;
     use crate::signal::test_design::{FORCE_END, INDENTATION_END, Linear, RISE_END, TRANSDUCERS};
     use crate::signal::wall::Elastic;
+    use crate::signal::zero::surroundings::Surroundings;
     use model_tables::table::Reading;
     use proptest::prelude::*;
 
@@ -77,6 +78,7 @@ mod tests {
 
     impl Design for Shallow {
         type Wall = Elastic;
+        type Around = [Surroundings; 1];
 
         fn parameters(&self) -> &Parameters {
             self.0.parameters()

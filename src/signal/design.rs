@@ -7,7 +7,8 @@ use crate::signal::scale::Scale;
 use crate::signal::touch::Thresholds;
 use crate::signal::uncertainty::Uncertainty;
 use crate::signal::wall::{Memory, Wall};
-use crate::signal::zero::limits::Limits;
+use crate::signal::zero::limits::{Limits, Rates};
+use crate::signal::zero::surroundings::{Around, Surroundings};
 use model_tables::block::BlockError;
 use model_tables::block::read::TipBlock;
 use model_tables::block::section::SectionKind;
@@ -22,6 +23,8 @@ use model_tables::units::PressureRise;
 pub trait Design {
     /// What its wall remembers.
     type Wall: Wall;
+    /// Room for what is measured around the fingertip and moves its zero.
+    type Around: Around;
 
     /// What the signal path needs of the design beside its tables.
     fn parameters(&self) -> &Parameters;
@@ -29,6 +32,11 @@ pub trait Design {
     /// The wall in time; nothing of an elastic one.
     fn series(&self) -> Option<&WallSeries> {
         None
+    }
+
+    /// The limits of a zero among them: a copy, which in an image leaves nothing of the others.
+    fn limits(&self) -> Limits {
+        self.parameters().limits
     }
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
@@ -54,6 +62,8 @@ pub struct Parameters {
     pub scale: Scale,
     /// Of a zero, without a stored calibration.
     pub limits: Limits,
+    /// Of what is measured around the fingertip and moves a zero.
+    pub rates: Rates,
     /// Of the filter.
     pub leaps: Leaps,
     /// Of a touch.
@@ -80,6 +90,7 @@ impl Parameters {
             period,
             scale: Scale::of(fraction_bits),
             limits,
+            rates: Rates::of(&constants, fraction_bits),
             leaps: Leaps::of(&constants, fraction_bits, period),
             thresholds: Thresholds::of(&constants, fraction_bits),
             fall: Fall::of(&constants, fraction_bits, &limits),
@@ -133,6 +144,7 @@ impl Design for LoadedDesign<'_> {
     fn series(&self) -> Option<&WallSeries> {
         self.relaxation.as_ref()
     }
+    type Around = [Surroundings; 1];
 
     fn parameters(&self) -> &Parameters {
         &self.parameters

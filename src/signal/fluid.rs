@@ -44,11 +44,12 @@ impl Fall {
         let share = share as i64 * 1000;
         let least = if share > floors { share } else { floors };
         let leak = Pressure::from_millipascals(least, fraction_bits).0;
+        let wander = limits.wander;
         Self {
             leak: match constants.transducer.quantity {
-                Quantity::Gauge if leak > limits.near => leak,
-                Quantity::Gauge => limits.near,
-                Quantity::Absolute => leak.saturating_add(limits.far),
+                Quantity::Gauge if leak > limits.near => leak.saturating_add(wander),
+                Quantity::Gauge => limits.near.saturating_add(wander),
+                Quantity::Absolute => leak.saturating_add(limits.far).saturating_add(wander),
             },
         }
     }

@@ -10,10 +10,12 @@ use crate::signal::temperature::Temperature;
 use crate::signal::touch::TouchDetector;
 use crate::signal::wall::{Rise, Wall};
 use crate::signal::zero::estimator::{Estimator, TareRefusal};
+use crate::signal::zero::surroundings::{AirRefusal, Around as _};
 use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, Touch, Warnings};
 use crate::transducer::driver::Sample;
 use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
+use model_tables::constants::AIR;
 use model_tables::units::{Nanometres, PressureRise};
 
 /// The signal path of one fingertip.
@@ -28,6 +30,7 @@ pub struct Pipeline<D: Design> {
     /// The last one measured.
     celsius: Option<Centidegrees>,
     zero: Estimator,
+    around: D::Around,
     gain: Gain,
     filter: Filter,
     detector: TouchDetector,
@@ -45,8 +48,8 @@ impl<D: Design> Pipeline<D> {
     pub fn new(design: D, start_up: StartUp, calibration: Calibration, standing: Warnings) -> Self {
         let parameters = design.parameters();
         let limits = match calibration.zero_counts(parameters.scale) {
-            Some(zero) => parameters.limits.with_stored(zero),
-            None => parameters.limits,
+            Some(zero) => design.limits().with_stored(zero),
+            None => design.limits(),
         };
         Self {
             calibration,
@@ -59,6 +62,7 @@ impl<D: Design> Pipeline<D> {
             ),
             celsius: None,
             zero: Estimator::new(limits, start_up),
+            around: D::Around::NEW,
             gain: Gain::new(calibration.gain),
             filter: Filter::new(parameters.leaps),
             detector: TouchDetector::new(parameters.thresholds),
@@ -137,7 +141,14 @@ impl<D: Design> Pipeline<D> {
         }
         let verified = !warnings.contains(Warnings::ZERO_UNVERIFIED);
         let missed = self.temperature.missed();
-        let (bound, above) = (self.zero.bound(), self.zero.above());
+        if let Some(around) = self.around.as_mut().first_mut() {
+            around.warm(sample.temperature);
+        }
+        let moved = self.moved_around();
+        let (bound, above) = (
+            self.zero.bound().saturating_add(moved),
+            self.zero.above().saturating_add(moved),
+        );
         let touch = self.detector.step(rise, above.saturating_add(missed), verified);
         let parameters = self.design.parameters();
         let (contact, sigma) = self.wall.read(
@@ -159,7 +170,9 @@ impl<D: Design> Pipeline<D> {
         let doubtful =
             missed != 0 && self.zero.is_ok() && bound.saturating_add(missed) > parameters.limits.bound;
         // What a window will tell at its end is not read as ok until then.
-        let fallen = verified && !lowered && rise.0 < -parameters.limits.bound;
+        let fallen =
+            verified && !lowered && bound <= parameters.limits.bound && rise.0 < -parameters.limits.bound;
+        let moved = moved != 0 && verified && bound > parameters.limits.bound;
         Ok(Measurement {
             pressure_rise: rise,
             force: contact.force,
@@ -168,7 +181,7 @@ impl<D: Design> Pipeline<D> {
             touch: self.touch,
             warnings: contact
                 .warnings
-                .and(Warnings::ZERO_AGED.when(fallen))
+                .and(Warnings::ZERO_AGED.when(fallen || moved))
                 .and(self.standing)
                 .and(self.fluid.suspicions())
                 .and(Warnings::TEMPERATURE.when(doubtful)),
@@ -201,9 +214,56 @@ impl<D: Design> Pipeline<D> {
         self.filter.interrupt();
     }
 
+    /// What is measured around the fingertip may have moved the zero by so many counts, >= 0.
+    #[inline]
+    fn moved_around(&self) -> i32 {
+        let rates = &self.parameters().rates;
+        let around = self.around.as_ref().first();
+        around.map_or(0, |around| around.moved(rates, self.measured))
+    }
+
+    /// What it has moved the zero by so far stays in the bound: another zero is asked for.
+    #[inline]
+    fn fold_surroundings(&mut self) {
+        let (moved, now) = (self.moved_around(), self.measured);
+        if let Some(around) = self.around.as_mut().first_mut() {
+            around.begin(now);
+            self.zero.widen(moved);
+        }
+    }
+
+    /// A host tells the air around an absolute part, whose zero moves with it.
+    ///
+    /// # Errors
+    /// [`AirRefusal`].
+    pub fn air(&mut self, now: Microseconds, pascals: i32) -> Result<(), AirRefusal> {
+        let Parameters {
+            pressure_fraction_bits: bits,
+            ref rates,
+            ..
+        } = *self.design.parameters();
+        let around = self.around.as_mut().first_mut();
+        let around = around
+            .filter(|_| rates.weather > 0)
+            .ok_or(AirRefusal::NotInDesign)?;
+        if !(AIR[0]..=AIR[1]).contains(&pascals) {
+            return Err(AirRefusal::OutOfBounds);
+        }
+        let moved = around.tell(rates, Pressure::from_pascals(pascals, bits), now);
+        self.zero.widen(moved.widen);
+        self.zero.shift(moved.shift);
+        let shift = PressureRise(moved.shift.saturating_neg());
+        self.filter.shift(self.gain.apply_to(shift).0);
+        Ok(())
+    }
+
     /// What was measured over the old zero is void.
     #[cold]
     fn zero_moved(&mut self) {
+        let now = self.measured;
+        if let Some(around) = self.around.as_mut().first_mut() {
+            around.begin(now);
+        }
         self.detector.forget();
         self.touch = Touch::Unknown;
         self.filter.interrupt();
@@ -220,6 +280,7 @@ impl<D: Design> Pipeline<D> {
             // It may be touched again, and not show it.
             return Err(TareRefusal::Touched);
         }
+        self.fold_surroundings();
         self.zero.command()
     }
 
@@ -228,6 +289,7 @@ impl<D: Design> Pipeline<D> {
     /// # Errors
     /// [`TareRefusal::NothingToUndo`], [`TareRefusal::Busy`].
     pub fn undo_tare(&mut self) -> Result<(), TareRefusal> {
+        self.fold_surroundings();
         self.zero.undo()
     }
 
@@ -238,19 +300,27 @@ impl<D: Design> Pipeline<D> {
 
     /// The zero of now, drift included: what survives a reset that nobody saw coming.
     pub fn zero(&self) -> Option<Zero> {
-        self.zero.zero()
+        let moved = self.moved_around();
+        self.zero.zero().map(|zero| Zero {
+            bound: zero.bound.saturating_add(moved),
+            ..zero
+        })
     }
 
     /// The calibration with the zero of now, to be stored; nothing while that zero is neither ok nor commanded.
     pub fn calibration_to_store(&self) -> Option<Calibration> {
         let zero = self.zero.to_store()?;
+        let parameters = self.parameters();
+        let moved = self.moved_around();
+        if moved > 0 && zero.verified && zero.bound.saturating_add(moved) > parameters.limits.bound {
+            return None;
+        }
         let counts = i64::from(zero.pressure.0) + i64::from(self.temperature.correction());
         // 2^33 * 1000.
-        let parameters = self.parameters();
         let millipascals = (counts * 1000) >> parameters.pressure_fraction_bits;
         let zero = Millipascals(i32::try_from(millipascals).ok()?);
-        let quantity = parameters.constants.transducer.quantity;
-        Some(self.calibration.rezeroed(zero, self.celsius, quantity))
+        let transducer = &parameters.constants.transducer;
+        Some(self.calibration.rezeroed(zero, self.celsius, transducer))
     }
 
     /// The calibration was stored, and is what the next zero of a gauge transducer is compared with; nothing: what was
@@ -260,8 +330,8 @@ impl<D: Design> Pipeline<D> {
         self.fluid.clear();
         // What was stored is the zero of now. Temperature goes on being compensated as since start-up.
         let limits = match (calibration, self.zero()) {
-            (Some(_), Some(zero)) => self.parameters().limits.with_stored(zero.pressure),
-            _ => self.parameters().limits,
+            (Some(_), Some(zero)) => self.design.limits().with_stored(zero.pressure),
+            _ => self.design.limits(),
         };
         self.zero.refer_to(limits);
         self.calibration = calibration.unwrap_or_default();

@@ -134,7 +134,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         self.elastic += step.settled.of(stress);
         let at = Lookup::at(design, self.elastic);
         let convolved = self.convolved(step, at.force);
-        let pressed_before = at.elastic.0 > parameters.limits.level;
+        let pressed_before = at.elastic.0 > parameters.limits.margin;
         let by_area = self.by_area(design, &at, rise, pressed_before);
         self.note_fall(step, pressed_before);
         let excess = share(WHOLE - self.fallen).of(convolved - by_area) >> 1;
@@ -146,7 +146,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         RelaxedReading {
             elastic: at.elastic,
             settled: Micronewtons((at.force >> FORCE_BITS) as i32),
-            lowered: pressed_before && rise.0 < at.elastic.0.saturating_sub(parameters.limits.level),
+            lowered: pressed_before && rise.0 < at.elastic.0.saturating_sub(parameters.limits.margin),
             contact: Contact {
                 force: Micronewtons(force),
                 indentation: Nanometres(at.indentation),

@@ -15,7 +15,7 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 /// | warning: past unknown | all hold within their 1-sigma, which narrows |
 /// | warning: zero unverified | all may be offset by an unknown rise, which the 1-sigma allows for; never "untouched" |
 /// | warning: leak suspected, bubble suspected | rise and touch hold; force and indentation are for more liquid than there is |
-/// | warning: calibration refused, zero aged, temperature | all hold within their 1-sigma, which is wider than it need be |
+/// | warning: calibration refused, zero aged, noisy, temperature | all hold within their 1-sigma, which is wider than it need be |
 /// | warning: clock | all hold; times are a percent off |
 /// | fault | there is no measurement: no field, touch included, says anything |
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]

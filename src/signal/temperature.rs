@@ -10,6 +10,10 @@ use crate::units::{Centidegrees, Millipascals, saturate};
 /// Largest coefficient that is believed, millipascals a kelvin: 0.1 % of 100 kPa.
 pub const LARGEST_COEFFICIENT: i32 = 100_000;
 
+/// Largest coefficient that two zeros give, millionths of the transducer's range a kelvin: the offset of an NXP MPX5100 may move by
+/// 2.5 % of it over 85 K. The weather of a day in a blocked vent is more.
+const LARGEST_SHARE: i64 = 300;
+
 /// Two saved zeros give a coefficient from this difference of temperature on, hundredths of a kelvin.
 const APART: i32 = 500;
 
@@ -73,24 +77,33 @@ impl Temperature {
     }
 }
 
-/// The coefficient that two zeros at two temperatures give, millipascals a kelvin; nothing when they are too close
-/// or it is too large to be temperature alone.
-pub fn coefficient([before, after]: [Millipascals; 2], [then, now]: [Centidegrees; 2]) -> Option<i32> {
+/// The coefficient that two zeros at two temperatures give, millipascals a kelvin; nothing when they are too close, or it is more
+/// than temperature alone gives a transducer of this range in pascals.
+pub fn coefficient(
+    [before, after]: [Millipascals; 2],
+    [then, now]: [Centidegrees; 2],
+    [from, to]: [i32; 2],
+) -> Option<i32> {
     let apart = i64::from(now.0) - i64::from(then.0);
     if apart.abs() < i64::from(APART) {
         return None;
     }
     // 2^32 * 100 over at least 500.
     let coefficient = (i64::from(after.0) - i64::from(before.0)) * 100 / apart;
-    i32::try_from(coefficient)
-        .ok()
-        .filter(|coefficient| coefficient.abs() <= LARGEST_COEFFICIENT)
+    // In thousandths of a pascal, as the share is.
+    let largest = (i64::from(to) - i64::from(from)) * LARGEST_SHARE / 1000;
+    i32::try_from(coefficient).ok().filter(|coefficient| {
+        i64::from(coefficient.abs()) <= largest && coefficient.abs() <= LARGEST_COEFFICIENT
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    /// Pascals.
+    const RANGE: [i32; 2] = [0, 100_000];
 
     #[test]
     fn the_correction_is_the_coefficient_times_the_difference() {
@@ -128,12 +141,16 @@ mod tests {
     fn two_zeros_far_enough_apart_give_the_coefficient() {
         let zeros = [Millipascals(0), Millipascals(10_000)];
         let at = |cold, warm| [Centidegrees(cold), Centidegrees(warm)];
-        assert_eq!(coefficient(zeros, at(2_000, 2_500)), Some(2_000));
-        assert_eq!(coefficient(zeros, at(2_500, 2_000)), Some(-2_000));
-        assert_eq!(coefficient(zeros, at(2_000, 2_499)), None);
+        assert_eq!(coefficient(zeros, at(2_000, 2_500), RANGE), Some(2_000));
+        assert_eq!(coefficient(zeros, at(2_500, 2_000), RANGE), Some(-2_000));
+        assert_eq!(coefficient(zeros, at(2_000, 2_499), RANGE), None);
         // 5 kPa in 5 K is no temperature.
         assert_eq!(
-            coefficient([Millipascals(0), Millipascals(5_000_000)], at(2_000, 2_500)),
+            coefficient(
+                [Millipascals(0), Millipascals(5_000_000)],
+                at(2_000, 2_500),
+                RANGE
+            ),
             None
         );
     }
@@ -146,7 +163,7 @@ mod tests {
             let mut temperature = Temperature::new(coefficient, Some(Centidegrees(a)), bits);
             temperature.step(Some(Centidegrees(b)), Touch::Untouched);
             temperature.step(Some(Centidegrees(a)), Touch::Touched);
-            let _ = super::coefficient(p.map(Millipascals), [Centidegrees(a), Centidegrees(b)]);
+            let _ = super::coefficient(p.map(Millipascals), [Centidegrees(a), Centidegrees(b)], RANGE);
         }
     }
 }

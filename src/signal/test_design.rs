@@ -2,7 +2,8 @@
 
 use crate::signal::design::{Design, Parameters};
 use crate::signal::wall::Elastic;
-use model_tables::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
+use crate::signal::zero::surroundings::Surroundings;
+use model_tables::constants::{DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions};
 use model_tables::table::Reading;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
@@ -35,6 +36,7 @@ impl Linear {
                 supply_measured: false,
             },
         },
+        zero: ZeroAssumptions::NONE,
     };
 
     /// A count is 1/256 Pa.
@@ -49,7 +51,13 @@ impl Linear {
 
     /// Rests at 1 kPa and is pressed up to 10 kPa over that, with this transducer.
     pub(crate) const fn with(transducer: Transducer) -> Self {
+        Self::stating(transducer, ZeroAssumptions::NONE)
+    }
+
+    /// The same, with what the design states of its zero.
+    pub(crate) const fn stating(transducer: Transducer, zero: ZeroAssumptions) -> Self {
         let constants = DesignConstants {
+            zero,
             rest_pressure: 1_000,
             maximum_pressure: 11_000,
             transducer,
@@ -62,6 +70,7 @@ impl Linear {
 
 impl Design for Linear {
     type Wall = Elastic;
+    type Around = [Surroundings; 1];
 
     fn parameters(&self) -> &Parameters {
         &self.0

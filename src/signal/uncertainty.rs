@@ -25,6 +25,11 @@ impl Uncertainty {
         }
     }
 
+    /// Of a reading over a zero that is known exactly, counts.
+    pub const fn noise(&self) -> i32 {
+        self.noise
+    }
+
     /// Of a rise over a zero that lies anywhere within its bound, with what temperature may have added: counts >= 0.
     #[inline]
     pub fn rise(&self, bound: i32, temperature: i32) -> PressureRise {

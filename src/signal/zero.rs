@@ -18,10 +18,15 @@
 //!    level further over all that is known is taken, but stays unverified. An absolute part cannot tell a press from denser
 //!    air; it finds out at the release.
 //! 6. Who saves a tared zero vouches for it.
+//! 7. Hum grows by no more than a noise floor within four parts of a window, 64 ms.
+//!
+//! What a design states beside drift (the weight of the fluid, hysteresis, creep, temperature) moves the zero back and forth: it is in
+//! the margin of everything that is seen. What is measured around the fingertip is in `surroundings`.
 
 pub mod estimator;
 mod interval;
 pub mod limits;
+pub mod surroundings;
 mod window;
 
 use crate::status::ResetCause;

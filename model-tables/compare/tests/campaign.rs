@@ -1,6 +1,6 @@
 //! A small campaign of random designs: no state may be wrong, and every refusal has a reason that holds.
 
-use compare::campaign::{self, Tally, solids};
+use compare::campaign::{self, Tally, lives, solids};
 
 /// Reasons that are physics: the law unstable, a pole that inflation does not stretch so far, a plain membrane that
 /// would have to push where it leaves the plate, a compliance on which a softening dome inflates by itself.
@@ -41,4 +41,18 @@ fn random_solids_give_one_answer_and_state_their_error() {
         assert!(counts.holds(), "{judged:?}");
     }
     assert!(counts.verdicts[&solids::SolidVerdict::Agrees] >= 12, "{counts}");
+}
+
+/// All of it: `cargo campaign lives --lives 5000 --days 50`.
+#[test]
+fn in_random_lives_no_reading_with_ok_is_wrong() {
+    let mut all = lives::Tally::default();
+    for index in 0..20 {
+        let life = lives::Life::draw(2026, index, [60.0, 120.0]);
+        let tally = life.live();
+        assert_eq!(tally.wrong, 0, "life {index}, by {:.1} Pa: {life:?}", tally.worst);
+        all.add(&tally);
+    }
+    assert!(all.readings > 500_000 && all.ok_share() > 0.3, "{all}");
+    assert!(all.most_deviations < 7.0, "{all}");
 }

@@ -17,6 +17,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
         quantity: model_tables::constants::Quantity::Gauge,
         kind: model_tables::constants::TransducerKind::Ratiometric { output: [6554, 58982], supply_measured: false },
     },
+    zero: model_tables::constants::ZeroAssumptions::NONE,
 };
 
 /// The type of [`TABLES`].

@@ -17,6 +17,7 @@ pub const DESIGN: model_tables::constants::DesignConstants = model_tables::const
         quantity: model_tables::constants::Quantity::Absolute,
         kind: model_tables::constants::TransducerKind::Dps310 { address: 119 },
     },
+    zero: model_tables::constants::ZeroAssumptions::NONE,
 };
 
 /// The type of [`TABLES`].

@@ -1,7 +1,7 @@
 //! The values of a section: each has a fixed length in bytes and a spelling in Rust source. A section describes its fields
 //! once, in order, to a [`Visit`]: the reader, the writer, and whoever prints them.
 
-use crate::constants::{Quantity, TransducerKind};
+use crate::constants::{AirReference, Quantity, TransducerKind};
 use crate::material::series::{Factor, TermStep};
 use crate::table::{Constant, Powers};
 #[cfg(feature = "std")]
@@ -177,6 +177,7 @@ macro_rules! choice {
 choice!(Powers, "table::Powers": 2 => Powers::Two, 4 => Powers::Four, 6 => Powers::Six, 8 => Powers::Eight);
 choice!(Constant, "table::Constant": 0 => Constant::Half, 1 => Constant::Whole);
 choice!(Quantity, "constants::Quantity": 0 => Quantity::Gauge, 1 => Quantity::Absolute);
+choice!(AirReference, "constants::AirReference": 0 => AirReference::None, 1 => AirReference::Host, 2 => AirReference::Part);
 
 /// A code, an address, whether the supply is measured, a zero; then two numbers. What a kind has not is 0.
 impl Field for TransducerKind {

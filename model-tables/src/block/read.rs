@@ -6,13 +6,16 @@ use super::section::{self, SectionKind};
 use super::{
     BlockError, ENTRY, HEAD, LAYOUT_VERSION, LONGEST_NAME, MAGIC, StoredCalibration, aligned, check,
 };
-use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
+use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions};
 use crate::material::series::{SeriesStep, WallSeries};
 use crate::table::loaded::LoadedTables;
 use crate::table::{Constant, Layout, Powers};
 
 /// Widest range of a transducer, pascals: in millipascals it fits a word.
 const WIDEST_RANGE: i32 = 2_000_000;
+
+/// Largest value of the section of the zero, millipascals: 100 kPa, so that no sum of them leaves a word.
+pub const LARGEST_STATED: i32 = 100_000_000;
 
 /// The data of one tip, checked; words and name stay in the block.
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +79,11 @@ impl<'a> TipBlock<'a> {
             Some(own) => Some(relaxation(own)?),
             None => None,
         };
+        if let Some(mut own) = sections.of_kind(SectionKind::Zero) {
+            section::zero(&mut constants.zero, &mut own)?;
+            own.end()?;
+            check_zero(&constants.zero)?;
+        }
         // Last, because it takes the most work.
         let tables = LoadedTables::new(layout, words)?;
         Ok(Self {
@@ -148,7 +156,7 @@ fn whole(bytes: &[u8]) -> Result<(&[u8], Cursor<'_>), BlockError> {
 }
 
 /// The directory: sections in the order of their numbers, one after the other without gaps but those that align them.
-struct Sections<'a>([Option<&'a [u8]>; SectionKind::ALL.len()]);
+struct Sections<'a>([Option<&'a [u8]>; SectionKind::HIGHEST]);
 
 impl<'a> Sections<'a> {
     fn of(block: &'a [u8], head: &mut Cursor<'_>) -> Result<Self, BlockError> {
@@ -162,7 +170,7 @@ impl<'a> Sections<'a> {
         if block.get(6..8) != Some(&u16::try_from(end).unwrap_or_default().to_le_bytes()) {
             return Err(BlockError::Directory);
         }
-        let mut sections = [None; SectionKind::ALL.len()];
+        let mut sections = [None; SectionKind::HIGHEST];
         let mut last = 0;
         for entry in directory.as_chunks::<ENTRY>().0 {
             let mut entry = Cursor {
@@ -267,6 +275,26 @@ fn check_constants(constants: &DesignConstants) -> Result<(), BlockError> {
     }
 }
 
+/// Whether they are sizes, and something is stated at all: a block of a design that states nothing has no such section.
+fn check_zero(zero: &ZeroAssumptions) -> Result<(), BlockError> {
+    let fields = [
+        ("drift", zero.drift),
+        ("per_kelvin", zero.per_kelvin),
+        ("fluid_head", zero.fluid_head),
+        ("hysteresis", zero.hysteresis),
+        ("creep", zero.creep),
+        ("bound", zero.bound),
+    ];
+    let wrong = fields
+        .into_iter()
+        .find(|(_, value)| !(0..=LARGEST_STATED).contains(value));
+    match wrong {
+        Some((field, _)) => Err(BlockError::Value(SectionKind::Zero, field)),
+        None if *zero == ZeroAssumptions::NONE => Err(BlockError::Value(SectionKind::Zero, "drift")),
+        None => Ok(()),
+    }
+}
+
 /// To be filled.
 const NO_CONSTANTS: DesignConstants = DesignConstants {
     hash: 0,
@@ -281,6 +309,7 @@ const NO_CONSTANTS: DesignConstants = DesignConstants {
         quantity: Quantity::Gauge,
         kind: TransducerKind::Ms5837 { address: 0 },
     },
+    zero: ZeroAssumptions::NONE,
 };
 
 /// To be filled.

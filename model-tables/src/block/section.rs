@@ -2,7 +2,7 @@
 
 use super::StoredCalibration;
 use super::field::Visit;
-use crate::constants::{DesignConstants, Transducer};
+use crate::constants::{DesignConstants, Transducer, ZeroAssumptions};
 use crate::material::series::WallSeries;
 use crate::table::Layout;
 
@@ -19,6 +19,8 @@ pub enum SectionKind {
     Name = 4,
     /// The wall in time.
     Relaxation = 5,
+    /// What the design states of its zero, if anything.
+    Zero = 8,
 }
 
 /// Numbers that later layouts give to other objects than a plate, and the feedback membrane. A block with one of these is for newer
@@ -27,13 +29,17 @@ pub const RESERVED: [u16; 2] = [6, 7];
 
 impl SectionKind {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Constants,
         Self::Tables,
         Self::Calibration,
         Self::Name,
         Self::Relaxation,
+        Self::Zero,
     ];
+
+    /// The highest number.
+    pub const HIGHEST: usize = Self::Zero as usize;
 
     /// The only version of it so far.
     pub const VERSION: u16 = 1;
@@ -51,6 +57,7 @@ impl SectionKind {
             Self::Calibration => "calibration",
             Self::Name => "name",
             Self::Relaxation => "relaxation",
+            Self::Zero => "zero",
         }
     }
 }
@@ -84,6 +91,20 @@ pub fn transducer<V: Visit>(value: &mut Transducer, visit: &mut V) -> Result<(),
     visit.field("noise", &mut value.noise)?;
     visit.field("quantity", &mut value.quantity)?;
     visit.field("kind", &mut value.kind)
+}
+
+/// What the design states of its zero.
+///
+/// # Errors
+/// The visitor's.
+pub fn zero<V: Visit>(value: &mut ZeroAssumptions, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("drift", &mut value.drift)?;
+    visit.field("per_kelvin", &mut value.per_kelvin)?;
+    visit.field("fluid_head", &mut value.fluid_head)?;
+    visit.field("hysteresis", &mut value.hysteresis)?;
+    visit.field("creep", &mut value.creep)?;
+    visit.field("bound", &mut value.bound)?;
+    visit.field("air", &mut value.air)
 }
 
 /// The first part of the tables; the words of the segments follow.

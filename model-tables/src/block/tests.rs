@@ -3,7 +3,9 @@ use super::read::TipBlock;
 use super::section::{self, SectionKind};
 use super::write::{TipData, sign};
 use super::*;
-use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
+use crate::constants::{
+    AirReference, DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions,
+};
 use crate::material::series::{Factor, SeriesStep, TermStep, WallSeries};
 use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
@@ -26,6 +28,7 @@ const CONSTANTS: DesignConstants = DesignConstants {
             supply_measured: false,
         },
     },
+    zero: ZeroAssumptions::NONE,
 };
 
 /// One segment of two octaves; both outputs are near the rise.
@@ -192,9 +195,45 @@ fn a_block_that_is_cut_off_changed_or_another_ones_is_refused_by_reason() {
 }
 
 #[test]
+fn what_a_design_states_of_its_zero_is_a_section_of_its_own() {
+    let stated = ZeroAssumptions {
+        drift: 5_000,
+        per_kelvin: 1_500,
+        fluid_head: 70_000,
+        hysteresis: 40_000,
+        creep: 30_000,
+        bound: 250_000,
+        air: AirReference::Host,
+    };
+    let with = |zero| {
+        let constants = DesignConstants { zero, ..CONSTANTS };
+        TipData { constants, ..DATA }.write()
+    };
+    let block = with(stated);
+    // An entry of the directory, six words and a code; without it a block is what it was.
+    assert_eq!(block.len(), DATA.write().len().next_multiple_of(4) + ENTRY + 28);
+    let tip = TipBlock::read(&block).expect("it is whole");
+    assert_eq!(tip.constants.zero, stated);
+    assert_eq!(with(ZeroAssumptions::NONE), DATA.write());
+    // Below 0, above 100 kPa, another reference.
+    let at = block.len() - 28;
+    for (offset, value, field) in [
+        (0, -1, "drift"),
+        (12, 100_000_001, "hysteresis"),
+        (20, i32::MIN, "bound"),
+        (24, 3, "air"),
+    ] {
+        let mut block = block.clone();
+        block[at + offset..at + offset + 4].copy_from_slice(&i32::to_le_bytes(value));
+        sign(&mut block);
+        assert_eq!(error(&block), BlockError::Value(SectionKind::Zero, field));
+    }
+}
+
+#[test]
 fn a_section_that_is_not_known_fails_the_whole_block() {
     let entry = |section: usize| HEAD + ENTRY * section;
-    for number in section::RESERVED.into_iter().chain([0, 8, u16::MAX]) {
+    for number in section::RESERVED.into_iter().chain([0, 9, u16::MAX]) {
         let block = changed(entry(3), &number.to_le_bytes());
         assert_eq!(error(&block), BlockError::UnknownSection(number));
     }
@@ -297,6 +336,8 @@ fn the_page_lists_every_field_where_it_lies() {
     let Ok(()) = section::calibration(&mut calibration, &mut rows);
     let mut rows = Rows(0);
     let Ok(()) = section::relaxation(&mut wall(1), &mut rows);
+    let mut rows = Rows(0);
+    let Ok(()) = section::zero(&mut constants.zero, &mut rows);
     let numbers: BTreeSet<String> = SectionKind::ALL
         .iter()
         .map(|&kind| format!("| {} | {} |", kind as u16, kind.word()))

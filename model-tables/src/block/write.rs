@@ -3,7 +3,7 @@
 use super::field::{Field, Visit};
 use super::section::{self, SectionKind};
 use super::{CHECK_AT, ENTRY, HEAD, LAYOUT_VERSION, MAGIC, StoredCalibration, aligned, check};
-use crate::constants::DesignConstants;
+use crate::constants::{DesignConstants, ZeroAssumptions};
 use crate::material::series::WallSeries;
 use crate::table::Layout;
 use core::convert::Infallible;
@@ -85,6 +85,10 @@ impl TipData<'_> {
                 terms.try_for_each(|&term| visit.field("term", &mut { term }))
             });
             sections.push((SectionKind::Relaxation, bytes));
+        }
+        if constants.zero != ZeroAssumptions::NONE {
+            let bytes = described(|visit| section::zero(&mut constants.zero, visit));
+            sections.push((SectionKind::Zero, bytes));
         }
         block(&identity, &sections)
     }

@@ -12,8 +12,9 @@ mod relaxation;
 pub mod section;
 mod sections;
 mod transducer;
+mod zero;
 
-use crate::constants::{AIR, Quantity};
+use crate::constants::{AIR, AirReference, Quantity};
 use crate::design::{Design, Membrane, RestBy};
 use crate::material::Law;
 use crate::material::relaxation::Relaxation;
@@ -24,6 +25,7 @@ use std::path::Path;
 pub use calibration::{Calibration, DataCurve};
 pub use error::{DesignFileError, Problem};
 pub use object::{ObjectSection, ShapeSection};
+pub use zero::ZeroSection;
 
 /// Elements of a solid where a design does not say: through the wall and along it. Enough for a few tenths of a percent.
 pub const DEFAULT_ELEMENTS: [u32; 2] = [2, 60];
@@ -56,6 +58,10 @@ pub struct DesignFile {
     pub max_indentation_mm: Option<f64>,
     /// `[transducer]`.
     pub transducer: Option<TransducerSection>,
+    /// `[zero]`: what may move the zero beside a press.
+    pub zero: ZeroSection,
+    /// `[air] reference`: who measures the air around an absolute transducer.
+    pub air: AirReference,
     /// `[accuracy]`.
     pub accuracy: Option<Accuracy>,
     /// `[actuator] diameter_mm`: free diameter of the feedback membrane, millimetres.

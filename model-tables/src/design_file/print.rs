@@ -2,7 +2,7 @@
 
 use super::{
     Axes, DEFAULT_MODEL_PERCENT, DesignFile, ModelSection, RestSection, Supply, TransducerKindSection,
-    TransducerSection, Transfer, relaxation,
+    TransducerSection, Transfer, relaxation, zero,
 };
 use crate::constants::Quantity;
 use crate::material::Law;
@@ -79,6 +79,8 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
     if let Some(section) = &file.transducer {
         transducer(section, out)?;
     }
+    file.zero.print(out)?;
+    zero::print_air(file.air, out)?;
     if let Some(accuracy) = &file.accuracy {
         writeln!(out, "\n[accuracy]")?;
         let rows = [

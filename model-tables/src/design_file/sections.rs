@@ -5,10 +5,12 @@ use super::error::Problem;
 use super::relaxation;
 use super::section::{Bounds, Fault, Section, line_at};
 use super::transducer::transducer;
+use super::zero::{self, ZeroSection};
 use super::{
     Accuracy, Axes, DEFAULT_ELEMENTS, DEFAULT_MODEL_PERCENT, DesignFile, MembraneSection, ModelSection,
     ObjectSection, RestSection,
 };
+use crate::constants::AirReference;
 use crate::material::Law;
 use crate::material::preset::{PRESETS, Preset};
 use crate::material::relaxation::Relaxation;
@@ -53,6 +55,14 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
     let object = root.sub("object")?.map(ObjectSection::parse).transpose()?;
     let press = root.sub("press")?.map(press).transpose()?;
     let transducer = root.sub("transducer")?.map(transducer).transpose()?;
+    let zero = root
+        .sub("zero")?
+        .map(|section| ZeroSection::parse(section, transducer.as_ref()))
+        .transpose()?;
+    let air = root
+        .sub("air")?
+        .map(|section| zero::air(section, transducer.as_ref()))
+        .transpose()?;
     let accuracy = root.sub("accuracy")?.map(accuracy).transpose()?;
     let actuator = root.sub("actuator")?.map(actuator).transpose()?;
     let calibration = root.sub("calibration")?.map(Calibration::parse).transpose()?;
@@ -80,6 +90,8 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         object,
         max_indentation_mm: press,
         transducer,
+        zero: zero.unwrap_or_default(),
+        air: air.unwrap_or(AirReference::None),
         accuracy,
         actuator_diameter_mm: actuator,
         calibration: calibration.unwrap_or_default(),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::constants::ZeroAssumptions;
 use crate::object::{Friction, Shape};
 
 /// A complete file; the tests break one thing in it at a time.
@@ -482,6 +483,35 @@ const IMPOSSIBLE: &[(&str, &str, &str)] = &[
         "calibration.thickness_factor",
     ),
     (
+        "[press]",
+        "[zero]\ndrift_pa_per_hour = 0\n[press]",
+        "zero.drift_pa_per_hour",
+    ),
+    (
+        "[press]",
+        "[zero]\nper_kelvin_pa = \"small\"\n[press]",
+        "zero.per_kelvin_pa",
+    ),
+    (
+        "[press]",
+        "[zero]\nfluid_head_pa = -70\n[press]",
+        "zero.fluid_head_pa",
+    ),
+    (
+        "[press]",
+        "[zero]\nhysteresis_pa = 1e6\n[press]",
+        "zero.hysteresis_pa",
+    ),
+    ("[press]", "[zero]\ncreep_pa = true\n[press]", "zero.creep_pa"),
+    ("[press]", "[zero]\nbound_pa = 0\n[press]", "zero.bound_pa"),
+    (
+        "[press]",
+        "[zero]\nfluid_head_pa = 70\nbound_pa = 75\n[press]",
+        "zero.bound_pa",
+    ),
+    ("[press]", "[air]\nreference = \"gps\"\n[press]", "air.reference"),
+    ("[press]", "[air]\nreference = \"host\"\n[press]", "air.reference"),
+    (
         "law = \"mooney-rivlin\"\nc1_pa = 160_355.0\nc2_pa = 46559\n",
         "preset = \"rubber\"\n",
         "material.preset",
@@ -501,6 +531,63 @@ fn with_curve(from: &str, to: &str) -> Result<DesignFile, DesignFileError> {
         curve_indentation_mm = [0.2, 0.5, 0.9, 1.3, 1.7, 2.0]\n";
     assert!(CURVE.contains(from), "{from}");
     DesignFile::parse(&(GOOD.to_owned() + &CURVE.replacen(from, to, 1)), "c.toml")
+}
+
+#[test]
+fn what_may_move_the_zero_is_stated_in_its_own_sections() {
+    let unstated = DesignFile::parse(GOOD, "z.toml").expect("a design");
+    assert_eq!(unstated.zero.assumptions(unstated.air), ZeroAssumptions::NONE);
+    assert!(!unstated.canonical().contains("[zero]") && !unstated.canonical().contains("[air]"));
+
+    let zero = "[zero]\ndrift_pa_per_hour = 4\nper_kelvin_pa = 2.5\nfluid_head_pa = 70\nhysteresis_pa = 40\ncreep_pa = 30\n\
+                bound_pa = 250\n[air]\nreference = \"host\"\n";
+    let absolute = GOOD.replacen(
+        "[transducer]\nkind = \"ratiometric\"\nrange_kpa = [0, 400.0]",
+        "[transducer]\nkind = \"dps310\"\nrange_kpa = [0, 12.0]",
+        1,
+    );
+    let file = DesignFile::parse(&(absolute + zero), "z.toml").expect("a design");
+    let stated = ZeroAssumptions {
+        drift: 4_000,
+        per_kelvin: 2_500,
+        fluid_head: 70_000,
+        hysteresis: 40_000,
+        creep: 30_000,
+        bound: 250_000,
+        air: AirReference::Host,
+    };
+    assert_eq!(file.zero.assumptions(file.air), stated);
+    let again = DesignFile::parse(&file.canonical(), "again.toml").expect("it was printed");
+    assert_eq!((again.zero, again.air), (file.zero, file.air));
+    assert_ne!(
+        file.hash(),
+        DesignFile {
+            zero: ZeroSection::default(),
+            ..file
+        }
+        .hash()
+    );
+}
+
+/// 10 Pa of noise: half of it and 70 Pa of head are above the 60 Pa that a bound is by default.
+#[test]
+fn a_zero_of_which_no_reading_is_ever_ok_is_refused_with_the_bound_that_it_needs() {
+    let error = |keys: &str| {
+        DesignFile::parse(&(GOOD.to_owned() + keys), "z.toml")
+            .expect_err("never ok")
+            .to_string()
+    };
+    let head = error("[zero]\nfluid_head_pa = 70\n");
+    assert!(
+        head.contains("`zero.bound_pa` is missing: needs more than 75 Pa") && head.contains("60 Pa"),
+        "{head}"
+    );
+    // This part does not tell its temperature: ten kelvins.
+    let warm = error("[zero]\nper_kelvin_pa = 8\nbound_pa = 80\n");
+    assert!(
+        warm.contains("`zero.bound_pa` is 80: must be more than 85 Pa"),
+        "{warm}"
+    );
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::tally::Errors;
 use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::block::write::TipData;
-use crate::constants::DesignConstants;
+use crate::constants::{DesignConstants, ZeroAssumptions};
 use crate::material::series::{SeriesStep, WallSeries};
 use crate::model::own_error::OwnError;
 use crate::units::PressureRise;
@@ -39,6 +39,7 @@ impl Generated {
             rest_pressure: integer(self.rest_pressure),
             maximum_pressure: integer(self.rest_pressure + self.end.pressure_rise),
             transducer: self.transducer(),
+            zero: self.design.zero.assumptions(self.design.air),
         }
     }
 
@@ -117,7 +118,21 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     )?;
     source.indent = 8;
     section::transducer(&mut constants.transducer, &mut source)?;
-    writeln!(source.out, "    }},\n}};\n")?;
+    writeln!(source.out, "    }},")?;
+    if constants.zero == ZeroAssumptions::NONE {
+        writeln!(
+            source.out,
+            "    zero: model_tables::constants::ZeroAssumptions::NONE,"
+        )?;
+    } else {
+        writeln!(
+            source.out,
+            "    zero: model_tables::constants::ZeroAssumptions {{"
+        )?;
+        section::zero(&mut constants.zero, &mut source)?;
+        writeln!(source.out, "    }},")?;
+    }
+    writeln!(source.out, "}};\n")?;
     writeln!(
         out,
         "/// The type of [`TABLES`].\npub type DesignTables = {shape};\n"

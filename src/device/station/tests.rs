@@ -337,3 +337,52 @@ proptest! {
         prop_assert_eq!(bench.answers().len(), asked);
     }
 }
+
+/// A motor that stalls in a grasp pulls the battery down, again and again.
+#[test]
+fn a_supply_that_sags_in_a_grasp_keeps_the_zero_and_ends_with_a_reason() {
+    let mut bench = Bench::zeroed();
+    let mut zero = bench.station.zero();
+    let mut found = Some(Breadcrumb {
+        design_hash: 1,
+        zero,
+        ..Breadcrumb::default()
+    });
+    for reset in 1..=6 {
+        let start = Breadcrumb::start(found, ResetCause::BrownOut, 1);
+        let gives_up = reset == 6;
+        assert_eq!((start.crumb.resets, start.give_up), (reset, gives_up));
+        bench = Bench::new(&Beginning {
+            reset_cause: ResetCause::BrownOut,
+            start,
+            ..BEGINNING
+        });
+        // 200 Pa over rest would be near enough for a new zero.
+        bench.steps(3, 20_200.0);
+        bench.said.clear();
+        bench.steps(1, 20_200.0);
+        let Some(Message::Report { report, .. }) = bench.said.last() else {
+            panic!("a report each step, and the hello was before")
+        };
+        match report.outcome {
+            Ok(reading) => {
+                assert!((reading.pressure_rise.pascals(8) - 200.0).abs() < 1.0);
+                assert_eq!(report.status(), Status::Ok);
+            }
+            Err(fault) => assert_eq!((fault, gives_up), (Fault::ResetLoop, true)),
+        }
+        zero = bench.station.zero().or(zero);
+        found = Some(Breadcrumb { zero, ..start.crumb });
+    }
+    bench.said.clear();
+    bench.ask(Command::Info);
+    let hello = bench.said.iter().find_map(|message| match message {
+        Message::Hello(hello) => Some(*hello),
+        _ => None,
+    });
+    let hello = hello.expect("it was asked for");
+    assert_eq!(
+        (hello.reset_cause, hello.resets_in_a_row),
+        (ResetCause::BrownOut, 6)
+    );
+}

@@ -218,7 +218,8 @@ fn an_absolute_transducer_that_finds_no_zero_at_start_has_a_reason_and_no_number
         .expect("nothing that ends by itself is under way");
     life.run(3.0, restless);
     assert_eq!(life.pipeline.take_tare_answer(), Some(Err(TareRefusal::Restless)));
-    life.run(0.5, |_| 0.0);
+    // A window, and what was left of the restless one.
+    life.run(0.6, |_| 0.0);
     life.holds(0.0, Status::Warning(Warnings::ZERO_UNVERIFIED));
     life.pipeline.tare().expect("nothing is under way");
 }

@@ -39,7 +39,10 @@ struct World {
 
 impl World {
     fn new(transducer: usize, start_up: StartUp, calibration: Calibration) -> Self {
-        let design = Linear::with(TRANSDUCERS[transducer]);
+        Self::of(Linear::with(TRANSDUCERS[transducer]), start_up, calibration)
+    }
+
+    fn of(design: Linear, start_up: StartUp, calibration: Calibration) -> Self {
         Self {
             spacing: u64::from(design.parameters().period),
             pipeline: Pipeline::new(design, start_up, calibration, Warnings::NONE),
@@ -56,7 +59,11 @@ impl World {
 
     /// Switched on untouched, nothing stored, and told that nothing presses.
     fn tared(transducer: usize) -> Self {
-        let mut world = Self::new(transducer, StartUp::Measured, Calibration::default());
+        Self::tared_of(Linear::with(TRANSDUCERS[transducer]))
+    }
+
+    fn tared_of(design: Linear) -> Self {
+        let mut world = Self::of(design, StartUp::Measured, Calibration::default());
         world.run(1.0, |_| (0.0, 0.0));
         assert_eq!(world.tare(0.0, 0.0), Ok(()));
         world.run(0.5, |_| (0.0, 0.0));
@@ -365,3 +372,53 @@ fn creep_back_is_no_leak_and_a_gap_is_no_time_below() {
     }
     assert!(!leaks(&world));
 }
+
+/// A part that fails a few times in each window: no window ends, and the weather goes on.
+#[test]
+fn an_intermittent_part_ages_all_the_same() {
+    let mut world = World::tared(ABSOLUTE);
+    let mut last = None;
+    for minute in 0..60 {
+        for _ in 0..240 {
+            let shift = 100.0 * f64::from(minute) / 60.0;
+            let report = world.run(0.1, |_| (0.0, shift));
+            last = Some(report);
+            world.now += 150_000;
+        }
+    }
+    assert!(aged(&last.expect("it ran")));
+    world.assert_never_wrong();
+}
+
+/// Case 11: hum of the mains that comes after the zero was taken. Nothing is wrong but in the first four parts of a window, 64 ms.
+#[test]
+fn hum_is_noisy_and_no_number_with_ok() {
+    let hum = |hertz: f64, since: f64| 100.0 * (core::f64::consts::TAU * hertz * since).sin();
+    for (hertz, rise) in [(50.0, 0.0), (60.0, 0.0), (50.0, 5_000.0), (60.0, 5_000.0)] {
+        let mut world = World::tared(GAUGE);
+        if rise > 0.0 {
+            world.run(0.2, |since| (rise * since / 0.2, 0.0));
+            world.run(1.0, |_| (rise, 0.0));
+        }
+        world.run(0.064, |since| (rise, hum(hertz, since)));
+        world.worst_ok = 0.0;
+        let last = world.run(20.0, |since| (rise, hum(hertz, since + 0.064)));
+        world.assert_never_wrong();
+        let reading = last.outcome.expect("a reading");
+        assert!(reading.warnings.contains(Warnings::NOISY), "{}", last.status());
+        // One deviation allows for the amplitude.
+        assert!(reading.sigma.pressure_rise.pascals(8) > 100.0 / 3.0_f64.sqrt());
+        assert_eq!(touch(&last) == Touch::Touched, rise > 0.0);
+        // A grasp on top of it does not hide it.
+        world.run(0.2, |since| {
+            (rise + 3_000.0 * (since / 0.2).min(1.0), hum(hertz, since))
+        });
+        world.run(1.0, |since| (rise + 3_000.0, hum(hertz, since)));
+        world.assert_never_wrong();
+        let last = world.run(2.0, |_| (rise + 3_000.0, 0.0));
+        assert_eq!(last.status(), Status::Ok, "{hertz} Hz");
+    }
+}
+
+/// What the design states of its zero, and the air that a host tells.
+mod stated;

@@ -1,6 +1,7 @@
 use super::*;
 use crate::signal::design::Parameters;
 use crate::signal::test_design::Linear;
+use crate::signal::zero::surroundings::Surroundings;
 use model_tables::material::relaxation::{Relaxation, Term};
 use model_tables::material::series::SeriesStep;
 use model_tables::table::Reading;
@@ -33,6 +34,7 @@ impl InTime {
 
 impl Design for InTime {
     type Wall = Memory<8>;
+    type Around = [Surroundings; 1];
 
     fn parameters(&self) -> &Parameters {
         self.0.parameters()

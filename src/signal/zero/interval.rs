@@ -26,6 +26,8 @@ pub(super) struct Interval {
     looked: i64,
     /// How far below the witnessed zero a quiet level lay that drift does not explain: there the word is void.
     fallen: i64,
+    /// How far the zero of an absolute part may move before the next window ends: a lift goes on as it did.
+    moving: i64,
     /// Someone saw it untouched.
     pub(super) verified: bool,
 }
@@ -55,11 +57,12 @@ impl Interval {
         let value = level(value.0);
         Self {
             value,
-            low: value - level(limits.level),
+            low: value - level(limits.margin),
             high: level(high),
             witnessed: value,
             looked: value,
             fallen: 0,
+            moving: 0,
             verified: false,
         }
     }
@@ -74,6 +77,7 @@ impl Interval {
             witnessed: value,
             looked: value,
             fallen: 0,
+            moving: 0,
             verified: true,
         }
     }
@@ -85,18 +89,40 @@ impl Interval {
     }
 
     /// How far the true zero may be from the value, and how far it may have moved since someone saw it: counts, >= 0.
+    // Once in an image: inlined where it is asked for, each time a window ends, it takes 100 bytes more.
+    #[inline(never)]
     pub(super) fn bound(&self, limits: &Limits) -> i32 {
         let up = self.high - self.value;
         let down = self.value - self.low;
         let risen = self.looked - self.witnessed;
-        let moved = (risen + level(limits.level)).max(self.fallen);
-        counts_above(up.max(down).max(moved)).max(0)
+        let moved = (risen + level(limits.margin - limits.wander)).max(self.fallen);
+        let still = up.max(down).max(moved).max(level(limits.margin));
+        counts_above(still + self.moving)
     }
 
-    /// How far the true zero may be above the value, beyond what a quiet window leaves open: counts, >= 0.
+    /// How far the true zero may be above the value, beyond the level of a quiet window: counts, >= 0.
     pub(super) fn above(&self, limits: &Limits) -> i32 {
-        let open = self.value + level(limits.level);
-        counts(self.high - open).max(0)
+        let open = self.value + level(limits.margin);
+        counts(self.high - open).max(0).saturating_add(limits.wander)
+    }
+
+    /// Both ends move apart by so many counts.
+    pub(super) fn widen(&mut self, by: i32) {
+        self.low -= level(by);
+        self.high += level(by);
+    }
+
+    /// All of it moves by so many counts: somebody else saw the air do so.
+    pub(super) fn shift(&mut self, by: i32) {
+        for moved in [
+            &mut self.value,
+            &mut self.low,
+            &mut self.high,
+            &mut self.witnessed,
+            &mut self.looked,
+        ] {
+            *moved += level(by);
+        }
     }
 
     /// Time passes: what is not seen drifts.
@@ -108,13 +134,19 @@ impl Interval {
 
     /// A quiet window at this pressure, so long after the one before.
     pub(super) fn look(&mut self, limits: &Limits, pressure: Pressure, passed: u64) {
-        let (seen, margin, touch) = (level(pressure.0), level(limits.level), level(limits.bound));
+        let (seen, margin, touch) = (level(pressure.0), level(limits.margin), level(limits.bound));
         let over = seen - self.high;
         if seen < self.low - margin {
             self.fallen = self.fallen.max(self.witnessed - seen);
         }
+        self.moving = 0;
         if over > touch {
             return;
+        }
+        if limits.absolute {
+            // From the middle of the last window to the end of the next one it is one and a half of them.
+            let moved = (seen - self.looked).abs();
+            self.moving = moved + moved / 2;
         }
         self.looked = seen;
         // Nothing presses with less than nothing: the true zero is not higher than what is seen. But the air may rise.
@@ -143,7 +175,7 @@ impl Interval {
     /// The zero that this level makes when someone says that nothing presses. What lies over all that is known stays in the
     /// bound.
     pub(super) fn taken(&self, limits: &Limits, pressure: Pressure) -> Self {
-        let (seen, margin) = (level(pressure.0), level(limits.level));
+        let (seen, margin) = (level(pressure.0), level(limits.margin));
         let known = seen.min(self.high - margin);
         let mut taken = Self {
             value: seen,
@@ -152,6 +184,7 @@ impl Interval {
             witnessed: known,
             looked: seen,
             fallen: 0,
+            moving: 0,
             verified: true,
         };
         taken.verified = taken.bound(limits) <= limits.bound;
@@ -162,7 +195,7 @@ impl Interval {
     pub(super) fn vouched(&self, limits: &Limits) -> Self {
         let seen = self.value();
         Self {
-            high: self.value + level(limits.level),
+            high: self.value + level(limits.margin),
             ..*self
         }
         .taken(limits, seen)

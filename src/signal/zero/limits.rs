@@ -1,8 +1,11 @@
 //! What a zero is compared with: where it is expected, how far off it may be, and how fast it may move.
 
 use crate::signal::touch::Thresholds;
+use crate::signal::uncertainty::Uncertainty;
 use crate::units::Pressure;
-use model_tables::constants::{AIR, DesignConstants, Quantity};
+use model_tables::constants::{
+    AIR, AirReference, DesignConstants, Quantity, Transducer, TransducerKind, UNSEEN_KELVINS,
+};
 
 /// How far a zero at start-up may lie from the design's rest pressure, ten-thousandths of the transducer's range: what the
 /// offset of a compensated gauge bridge wanders between one day and another.
@@ -15,6 +18,11 @@ const FAR_PERMILLE: i64 = 25;
 /// How far apart the lowest and the highest sample of a window may lie, in noise floors. White noise of that size spreads
 /// over 5.6 of them in 256 draws, over more than 9 once in 10^16 windows.
 const QUIET_FLOORS: i64 = 10;
+
+/// How much wider than half a noise floor a swing is, in standard deviations of a reading: white noise spreads over that in a part of
+/// four samples once in 200 times, over the same levels in three of them once in a day. What is left unseen is three of them to
+/// either side, which a reading's own 1-sigma allows for.
+const SWING_DEVIATIONS: i32 = 6;
 
 /// What is left of a gauge bridge's drift after compensation, at a steady temperature, millipascals an hour.
 pub const GAUGE_DRIFT: i64 = 2_000;
@@ -33,7 +41,7 @@ const GAUGE_FOLLOWS: i64 = 500;
 const ABSOLUTE_FOLLOWS: i64 = 4_000;
 
 /// Fraction bits of rates.
-pub(super) const FRACTION: u32 = 32;
+pub(crate) const FRACTION: u32 = 32;
 
 /// The limits of a zero, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -49,14 +57,19 @@ pub struct Limits {
     pub far: i32,
     /// How far a quiet window may spread, >= 0.
     pub quiet: i32,
-    /// How well a quiet window tells a level: half a noise floor.
-    pub level: i32,
-    /// The largest bound of a zero whose readings are ok, and the rise from which on the fingertip is touched: six noise
-    /// floors.
+    /// What noise may have in common from one part of a window to the next two, >= 0.
+    pub swing: i32,
+    /// How well a quiet window tells the zero: half a noise floor, and `wander`.
+    pub margin: i32,
+    /// What moves the zero back and forth while nothing presses: the fluid's weight, hysteresis, creep, and temperature where the
+    /// part does not tell it; >= 0.
+    pub wander: i32,
+    /// The largest bound of a zero whose readings are ok, and the rise from which on a quiet window is a touch: what the design
+    /// states, or six noise floors.
     pub bound: i32,
     /// The air is in the pressure.
     pub absolute: bool,
-    /// Unseen drift, `2^-32` counts a microsecond.
+    /// Unseen drift, `2^-32` counts a microsecond; the weather is in it where nobody measures the air.
     pub drift: i64,
     /// The fastest rise of an untouched zero that is no surprise, in the same unit; 0 for a gauge transducer.
     pub air: i64,
@@ -72,10 +85,27 @@ impl Limits {
         let floor = transducer.grain();
         let absolute = matches!(transducer.quantity, Quantity::Absolute);
         let [thinnest, densest] = if absolute { AIR } else { [0; 2] };
-        let (drift, air, follows) = if absolute {
-            (ABSOLUTE_DRIFT, AIR_RATE, ABSOLUTE_FOLLOWS)
+        let (air, follows) = if absolute {
+            (AIR_RATE, ABSOLUTE_FOLLOWS)
         } else {
-            (GAUGE_DRIFT, 0, GAUGE_FOLLOWS)
+            (0, GAUGE_FOLLOWS)
+        };
+        let zero = &constants.zero;
+        let (stated, unmeasured) = (
+            zero.drift as i64,
+            absolute && !matches!(zero.air, AirReference::Host),
+        );
+        let drift = match (stated, unmeasured) {
+            // The weather, beside which the part's own drift is small.
+            (0, true) => ABSOLUTE_DRIFT,
+            (0, false) => GAUGE_DRIFT,
+            (_, true) => stated + ABSOLUTE_DRIFT,
+            (_, false) => stated,
+        };
+        let wander = wander(constants);
+        let bound = match zero.bound {
+            0 => Thresholds::of(constants, fraction_bits).touch.0,
+            stated => Pressure::from_millipascals(stated as i64, fraction_bits).0,
         };
         let rest = constants.rest_pressure;
         let near = range * NEAR_PERMYRIAD / 10;
@@ -88,8 +118,12 @@ impl Limits {
             near: Pressure::from_millipascals(near, fraction_bits).0,
             far: Pressure::from_millipascals(range * FAR_PERMILLE, fraction_bits).0,
             quiet: Pressure::from_millipascals(floor * QUIET_FLOORS, fraction_bits).0,
-            level: Pressure::from_millipascals(floor / 2, fraction_bits).0,
-            bound: Thresholds::of(constants, fraction_bits).touch.0,
+            swing: Pressure::from_millipascals(floor / 2, fraction_bits)
+                .0
+                .saturating_add(Uncertainty::of(constants, fraction_bits).noise() * SWING_DEVIATIONS),
+            margin: Pressure::from_millipascals(floor / 2 + wander, fraction_bits).0,
+            wander: Pressure::from_millipascals(wander, fraction_bits).0,
+            bound,
             absolute,
             drift: per_microsecond(drift, fraction_bits, 3_600_000_000),
             air: per_microsecond(air, fraction_bits, 1_000_000),
@@ -122,11 +156,72 @@ impl Limits {
     /// The highest zero that is believed at a start without asking: within the bound of a stored one, near the design's.
     pub(super) const fn highest_at_start(&self) -> i32 {
         let over = if self.stored {
-            self.bound - self.level
+            self.bound - self.margin
         } else {
             self.near
         };
         self.expected[1].0.saturating_add(over)
+    }
+}
+
+/// What moves a zero back and forth while nothing presses, millipascals: below 2^31 for all that a design can state. The air that a
+/// host measures is right to half a noise floor.
+const fn wander(constants: &DesignConstants) -> i64 {
+    let zero = &constants.zero;
+    let kelvins = if tells_temperature(&constants.transducer) {
+        0
+    } else {
+        UNSEEN_KELVINS as i64
+    };
+    let air = match zero.air {
+        AirReference::Host => constants.transducer.grain() / 2,
+        AirReference::None | AirReference::Part => 0,
+    };
+    zero.fluid_head as i64
+        + zero.hysteresis as i64
+        + zero.creep as i64
+        + kelvins * zero.per_kelvin as i64
+        + air
+}
+
+/// Whether samples of a part come with its temperature: of all on a bus.
+const fn tells_temperature(transducer: &Transducer) -> bool {
+    !matches!(transducer.kind, TransducerKind::Ratiometric { .. })
+}
+
+/// How fast what is measured around a fingertip moves its zero; 0 where the design does not ask for it.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Rates {
+    /// Of a part that tells its temperature, `2^-16` counts for a hundredth of a kelvin.
+    pub per_centikelvin: i64,
+    /// The weather since a host told the air, `2^-32` counts a microsecond.
+    pub weather: i64,
+}
+
+impl Rates {
+    /// How many [`Surroundings`](crate::signal::zero::surroundings::Surroundings) they need: none, or one.
+    pub const fn places(&self) -> usize {
+        (self.per_centikelvin != 0 || self.weather != 0) as usize
+    }
+
+    /// The rates of a design.
+    pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
+        let transducer = &constants.transducer;
+        let told = tells_temperature(transducer);
+        let host = matches!(constants.zero.air, AirReference::Host);
+        Self {
+            // Below 2^27 * 2^32 / 10^5, rounded up.
+            per_centikelvin: if told && constants.zero.per_kelvin > 0 {
+                (((constants.zero.per_kelvin as i64) << (fraction_bits + 16)) / 100_000) + 1
+            } else {
+                0
+            },
+            weather: if host && matches!(transducer.quantity, Quantity::Absolute) {
+                per_microsecond(ABSOLUTE_DRIFT, fraction_bits, 3_600_000_000)
+            } else {
+                0
+            },
+        }
     }
 }
 
@@ -162,7 +257,7 @@ mod tests {
         let gauge = of(0);
         assert_eq!(gauge.expected, [Pressure(1_000 << 8); 2]);
         assert_eq!((gauge.near, gauge.reach()), (250 << 8, 2_500 << 8));
-        assert_eq!((gauge.level, gauge.bound), (5 << 8, 60 << 8));
+        assert_eq!((gauge.margin, gauge.bound), (5 << 8, 60 << 8));
     }
 
     #[test]

@@ -1,18 +1,64 @@
-//! Pressure samples -> the level of a stretch of them, and whether it was quiet.
+//! Pressure samples -> the level of a stretch of them, whether it was quiet, and how far the pressure swings in it.
+//!
+//! A window has parts of [`PART`]. What the ranges of three parts one after the other have in common was passed three times within
+//! 48 ms: no hand presses and lets go so fast, but the hum of the mains does, and a motor. A ramp leaves nothing in common.
 
 use crate::units::{Microseconds, Pressure, saturate};
 
-/// How long a window is, microseconds: longer than any hum, shorter than patience.
+/// How long a window is, microseconds: many periods of any hum, shorter than patience.
 pub(super) const LENGTH: u64 = 256_000;
+
+/// How long a part of it is, microseconds, or as long as two samples take: at 50 Hz it holds nine tenths of the range, at 60 Hz
+/// nearly all. Three of them are shorter than two turns of the fastest tremor of a hand, 12 Hz.
+pub(super) const PART: u64 = 16_000;
 
 /// Samples so far: at most 2^32 of at most 2^31.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
+    /// When the part under way began.
     since: Option<Microseconds>,
     samples: u32,
     sum: i64,
+    /// Of the part under way.
     lowest: Pressure,
     highest: Pressure,
+    /// When the window began.
+    begun: Microseconds,
+    /// The range of its parts that ended.
+    range: Range,
+    /// The ranges of the two parts before, across windows: what both have in common, and the last one.
+    common: Range,
+    last: Range,
+}
+
+/// From the lowest to the highest of some samples, counts; of none the other way round.
+#[derive(Clone, Copy, Debug)]
+struct Range {
+    low: i32,
+    high: i32,
+}
+
+impl Range {
+    const EMPTY: Self = Self {
+        low: i32::MAX,
+        high: i32::MIN,
+    };
+
+    const fn common(self, other: Self) -> Self {
+        Self {
+            low: if self.low > other.low { self.low } else { other.low },
+            high: if self.high < other.high {
+                self.high
+            } else {
+                other.high
+            },
+        }
+    }
+
+    fn shift(&mut self, by: i32) {
+        self.low = self.low.saturating_add(by);
+        self.high = self.high.saturating_add(by);
+    }
 }
 
 /// What a full window saw.
@@ -24,6 +70,15 @@ pub(super) struct Seen {
     pub spread: i32,
 }
 
+/// What a part saw, and the window if it ended with it.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) struct Part {
+    /// What its range has in common with those of the two before it, counts: from one side to the other; 0 or less for nothing.
+    pub swing: i32,
+    /// The window.
+    pub window: Option<Seen>,
+}
+
 impl Window {
     pub(super) const EMPTY: Self = Self {
         since: None,
@@ -31,18 +86,34 @@ impl Window {
         sum: 0,
         lowest: Pressure(i32::MAX),
         highest: Pressure(i32::MIN),
+        begun: Microseconds(0),
+        range: Range::EMPTY,
+        common: Range::EMPTY,
+        last: Range::EMPTY,
     };
 
-    /// Takes a sample; a full window says what it saw and starts again.
+    /// Takes a sample; a part that ends with it says what it saw.
     #[inline]
-    pub(super) fn add(&mut self, time: Microseconds, pressure: Pressure) -> Option<Seen> {
+    pub(super) fn add(&mut self, time: Microseconds, pressure: Pressure) -> Option<Part> {
         let since = *self.since.get_or_insert(time);
         self.samples = self.samples.saturating_add(1);
         self.sum = self.sum.saturating_add(i64::from(pressure.0));
         self.lowest = self.lowest.min(pressure);
         self.highest = self.highest.max(pressure);
-        let full = time.0.saturating_sub(since.0) >= LENGTH;
-        full.then(|| self.end())
+        if time.0.saturating_sub(since.0) >= PART {
+            return Some(self.end_part(since, time));
+        }
+        None
+    }
+
+    /// The air, which is in all of its samples, moved by so many counts.
+    pub(super) fn shift(&mut self, by: i32) {
+        self.sum = self.sum.saturating_add(i64::from(by) * i64::from(self.samples));
+        self.lowest = Pressure(self.lowest.0.saturating_add(by));
+        self.highest = Pressure(self.highest.0.saturating_add(by));
+        for range in [&mut self.range, &mut self.common, &mut self.last] {
+            range.shift(by);
+        }
     }
 
     /// What it sees is no level of the zero: it will not have been quiet.
@@ -53,13 +124,99 @@ impl Window {
     }
 
     #[cold]
-    fn end(&mut self) -> Seen {
-        let samples = i64::from(self.samples.max(1));
-        let seen = Seen {
-            level: Pressure(saturate((self.sum + samples / 2).div_euclid(samples))),
-            spread: self.highest.0.saturating_sub(self.lowest.0),
+    fn end_part(&mut self, since: Microseconds, time: Microseconds) -> Part {
+        let part = Range {
+            low: self.lowest.0,
+            high: self.highest.0,
         };
-        *self = Self::EMPTY;
-        seen
+        (self.lowest, self.highest) = (Self::EMPTY.lowest, Self::EMPTY.highest);
+        let three = part.common(self.common);
+        self.common = part.common(self.last);
+        self.last = part;
+        if self.range.high < self.range.low {
+            self.begun = since;
+        }
+        self.range.low = self.range.low.min(part.low);
+        self.range.high = self.range.high.max(part.high);
+        self.since = Some(time);
+        let mut window = None;
+        if time.0.saturating_sub(self.begun.0) >= LENGTH {
+            let samples = i64::from(self.samples);
+            window = Some(Seen {
+                level: Pressure(saturate((self.sum + samples / 2) / samples)),
+                spread: self.range.high.saturating_sub(self.range.low),
+            });
+            self.since = None;
+            (self.samples, self.sum) = (0, 0);
+            self.range = Range::EMPTY;
+        }
+        Part {
+            swing: three.high.saturating_sub(three.low),
+            window,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::TAU;
+
+    /// The largest swing of two seconds of a pressure over time, seconds to counts, sampled every so many microseconds.
+    fn swing(every: u64, pressure: impl Fn(f64) -> f64) -> i32 {
+        let mut window = Window::EMPTY;
+        let mut largest = 0;
+        for sample in 0..2_000_000 / every {
+            let time = Microseconds(sample * every);
+            let counts = pressure(time.0 as f64 / 1e6).round() as i32;
+            if let Some(part) = window.add(time, Pressure(counts)) {
+                largest = largest.max(part.swing);
+            }
+        }
+        largest
+    }
+
+    #[test]
+    fn hum_swings_by_most_of_its_range() {
+        for hertz in [50.0, 60.0] {
+            let found = swing(1_000, |t| 1_000.0 * (TAU * hertz * t).sin());
+            assert!((1_600..=2_000).contains(&found), "{hertz} Hz: {found}");
+        }
+    }
+
+    #[test]
+    fn what_a_hand_does_is_no_swing() {
+        let press = |seconds: f64| swing(1_000, move |t| 1e6 * (t / seconds).min(1.0));
+        // The fastest press there is, a slow one, a tap of 0.15 s, tremor at 12 Hz.
+        assert_eq!([press(0.004), press(1.0)], [0, 0]);
+        assert_eq!(
+            swing(1_000, |t| 1e6 * (1.0 - (t / 0.075 - 1.0).abs()).max(0.0)),
+            0
+        );
+        let tremor = swing(1_000, |t| 1e6 * (TAU * 12.0 * t).sin());
+        assert!(tremor < 200_000, "{tremor}");
+    }
+
+    #[test]
+    fn a_window_is_as_long_as_it_says_and_has_the_mean_and_the_spread_of_all_its_parts() {
+        for every in [1_000, 8_000, 14_000] {
+            let mut window = Window::EMPTY;
+            let (mut sample, mut seen) = (0, None);
+            while seen.is_none() {
+                let time = Microseconds(7 + sample * every);
+                seen = window
+                    .add(time, Pressure(100 + sample as i32))
+                    .and_then(|part| part.window);
+                sample += 1;
+            }
+            let last = sample - 1;
+            assert!(
+                (LENGTH..LENGTH + 3 * every).contains(&(last * every)),
+                "{every}: {last}"
+            );
+            let seen = seen.expect("it ended");
+            assert_eq!(seen.spread, last as i32);
+            assert!((seen.level.0 - 100 - (last / 2) as i32).abs() <= 1);
+        }
     }
 }

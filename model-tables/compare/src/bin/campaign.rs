@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use compare::campaign::draw::Case;
 use compare::campaign::judge::{Judged, Verdict};
+use compare::campaign::lives::{self, tip};
 use compare::campaign::{self, Tally, solids, walls};
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
@@ -31,6 +32,28 @@ enum Campaign {
     /// Asks random solids alone, in lists, by half steps and on finer meshes
     #[command(after_help = "Example:\n  cargo campaign solids --designs 2000 --seed 0")]
     Solids(DrawArguments),
+    /// Lets fingertips live through the signal path, with all that moves a zero
+    #[command(after_help = "Example:\n  cargo campaign lives --lives 5000 --days 50 --seed 2026")]
+    Lives(LivesArguments),
+}
+
+#[derive(Debug, Args)]
+struct LivesArguments {
+    /// Lives of 1 to 10 minutes
+    #[arg(long, default_value_t = 100)]
+    lives: u64,
+    /// Lives of 8 to 24 hours
+    #[arg(long, default_value_t = 0)]
+    days: u64,
+    /// What the draw depends on
+    #[arg(long, default_value_t = 2026)]
+    seed: u64,
+    /// Only the life of this number, of the short ones or, after them, of the long ones
+    #[arg(long, value_name = "N")]
+    life: Option<u64>,
+    /// Absolute parts are also lifted while they are pressed, which breaks an assumption
+    #[arg(long)]
+    lift_while_pressed: bool,
 }
 
 #[derive(Debug, Args)]
@@ -136,6 +159,7 @@ fn main() -> ExitCode {
         Campaign::Designs(arguments) => designs(&arguments),
         Campaign::Walls(arguments) => Ok(judge_walls(&arguments)),
         Campaign::Solids(arguments) => Ok(judge_solids(&arguments)),
+        Campaign::Lives(arguments) => Ok(judge_lives(&arguments)),
     };
     match kept {
         Ok(true) => ExitCode::SUCCESS,
@@ -195,6 +219,42 @@ fn judge_solids(arguments: &DrawArguments) -> bool {
     eprintln!();
     print!("{counts}");
     counts.holds()
+}
+
+/// Whether no reading with status ok was wrong; a line for each life with one.
+fn judge_lives(arguments: &LivesArguments) -> bool {
+    let count = arguments.lives + arguments.days;
+    let mut kinds = [lives::Tally::default(); tip::TRANSDUCERS.len()];
+    for index in arguments.life.map_or(0..count, |life| life..life + 1) {
+        let length = if index < arguments.lives {
+            [60.0, 600.0]
+        } else {
+            [8.0 * 3_600.0, 24.0 * 3_600.0]
+        };
+        let mut life = lives::Life::draw(arguments.seed, index, length);
+        life.lifted_while_pressed = arguments.lift_while_pressed;
+        let tally = life.live();
+        kinds[life.transducer].add(&tally);
+        if tally.wrong > 0 {
+            println!(
+                "life {index}: {} wrong, by {:.1} Pa at most: {:?}",
+                tally.wrong, tally.worst, tally.first_wrong
+            );
+        }
+        eprint!("\r{} of {count} lives", index + 1);
+    }
+    eprintln!();
+    println!(
+        "| transducer | lives | resets | samples | ok, % | wrong | wrong where a sample was replaced | error over deviation: RMS | at most |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    let mut all = lives::Tally::default();
+    for ((name, _), tally) in tip::TRANSDUCERS.iter().zip(&kinds) {
+        println!("| {name} | {tally}");
+        all.add(tally);
+    }
+    println!("| all | {all}");
+    all.wrong == all.replaced
 }
 
 /// Whether no state was wrong.

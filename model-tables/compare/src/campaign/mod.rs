@@ -5,6 +5,7 @@
 
 pub mod draw;
 pub mod judge;
+pub mod lives;
 pub mod scaling;
 pub mod solids;
 pub mod walls;

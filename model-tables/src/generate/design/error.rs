@@ -21,6 +21,8 @@ pub enum GenerateError {
     UnknownObject,
     /// The wall relaxes, and the design is none that its convolution holds for: the key, and the remedy.
     NotConvolved(&'static str),
+    /// `air.reference` is `"part"`: no board has a second transducer.
+    SecondTransducer,
     /// The model gives no answer, or ends before `max_indentation_mm`.
     Model(ModelError),
     /// Pressure or force do not grow throughout.
@@ -91,6 +93,11 @@ impl fmt::Display for GenerateError {
                 "`object.unknown` is true, and tables are of one object: give object.radius_mm, or leave [object] out for a plate"
             ),
             Self::NotConvolved(reason) => f.write_str(reason),
+            Self::SecondTransducer => write!(
+                f,
+                "`air.reference` is \"part\", and no board reads a second transducer: give \"host\" and send the air with the \
+                 command `air`, or \"none\""
+            ),
             Self::MissingSection { section } => {
                 write!(f, "`[{section}]` is missing: tables cannot be made without it")
             }

@@ -7,7 +7,7 @@ pub use error::{GenerateError, State};
 pub use limit::Limit;
 
 use super::{Certified, NoTables, tables};
-use crate::constants::{BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
+use crate::constants::{AirReference, BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{
     DataCurve, DesignFile, ModelSection, RestSection, Supply, TransducerKindSection, TransducerSection,
@@ -152,6 +152,9 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
     let transducer = design.transducer.ok_or(missing("transducer"))?;
     if design.object.is_some_and(|object| object.unknown) {
         return Err(GenerateError::UnknownObject);
+    }
+    if design.air == AirReference::Part {
+        return Err(GenerateError::SecondTransducer);
     }
     let (rest_pressure, curve, end, rung) = if let Some(data) = &design.calibration.curve {
         let curve = measured(data, indentation * 1e-3)?;
