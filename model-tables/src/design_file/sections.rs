@@ -1,5 +1,6 @@
 //! The sections of a design file, in the order of the file.
 
+use super::actuator::ActuatorSection;
 use super::calibration::Calibration;
 use super::error::Problem;
 use super::relaxation;
@@ -15,7 +16,7 @@ use crate::material::relaxation::Relaxation;
 use toml::de::DeTable;
 
 /// Lengths of a fingertip, from a hair to a hand.
-const LENGTH: Bounds = Bounds::above(0.0, 1000.0, "mm");
+pub(super) const LENGTH: Bounds = Bounds::above(0.0, 1000.0, "mm");
 /// Elastic constants, up to that of steel.
 const STIFFNESS: Bounds = Bounds::above(0.0, 1e12, "Pa");
 /// Pole stretches of a rest state.
@@ -54,7 +55,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
     let press = root.sub("press")?.map(press).transpose()?;
     let transducer = root.sub("transducer")?.map(transducer).transpose()?;
     let accuracy = root.sub("accuracy")?.map(accuracy).transpose()?;
-    let actuator = root.sub("actuator")?.map(actuator).transpose()?;
+    let actuator = root.sub("actuator")?.map(ActuatorSection::parse).transpose()?;
     let calibration = root.sub("calibration")?.map(Calibration::parse).transpose()?;
     let thickness = membrane.thickness_mm * calibration.as_ref().map_or(1.0, |c| c.thickness_factor);
     let least = membrane.radial_semi_axis_mm.min(membrane.axial_semi_axis_mm);
@@ -81,7 +82,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         max_indentation_mm: press,
         transducer,
         accuracy,
-        actuator_diameter_mm: actuator,
+        actuator,
         calibration: calibration.unwrap_or_default(),
     })
 }
@@ -114,7 +115,7 @@ fn membrane(mut section: Section<'_>) -> Result<MembraneSection, Fault> {
     Ok(membrane)
 }
 
-fn material(mut section: Section<'_>) -> Result<(Law, Option<Relaxation>), Fault> {
+pub(super) fn material(mut section: Section<'_>) -> Result<(Law, Option<Relaxation>), Fault> {
     const LAWS: &str = "\"neo-hookean\", \"mooney-rivlin\" or \"yeoh\"";
     // The higher constants may have either sign; whether the law is then stable is the solver's to say.
     const HIGHER: Bounds = Bounds::within(-1e12, 1e12, "Pa");
@@ -321,10 +322,4 @@ fn accuracy(mut section: Section<'_>) -> Result<Accuracy, Fault> {
     };
     section.finish()?;
     Ok(accuracy)
-}
-
-fn actuator(mut section: Section<'_>) -> Result<f64, Fault> {
-    let diameter = section.needed_number("diameter_mm", LENGTH)?;
-    section.finish()?;
-    Ok(diameter)
 }
