@@ -4,6 +4,7 @@
 //! same design; [`DesignFile::design`] converts to SI. Every error is one line and names the key, the value
 //! found and what is allowed.
 
+mod actuator;
 mod calibration;
 mod error;
 mod object;
@@ -22,6 +23,7 @@ use crate::object::Object;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
+pub use actuator::ActuatorSection;
 pub use calibration::{Calibration, DataCurve};
 pub use error::{DesignFileError, Problem};
 pub use object::{ObjectSection, ShapeSection};
@@ -64,8 +66,8 @@ pub struct DesignFile {
     pub air: AirReference,
     /// `[accuracy]`.
     pub accuracy: Option<Accuracy>,
-    /// `[actuator] diameter_mm`: free diameter of the feedback membrane, millimetres.
-    pub actuator_diameter_mm: Option<f64>,
+    /// `[actuator]`: the feedback membrane.
+    pub actuator: Option<ActuatorSection>,
     /// `[calibration]`.
     pub calibration: Calibration,
 }

@@ -23,18 +23,7 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
     writeln!(out, "axial_semi_axis_mm = {:?}", membrane.axial_semi_axis_mm)?;
     writeln!(out, "thickness_mm = {:?}", membrane.thickness_mm)?;
     writeln!(out, "\n[material]")?;
-    match file.material {
-        Law::NeoHookean { c1 } => writeln!(out, "law = \"neo-hookean\"\nc1_pa = {c1:?}")?,
-        Law::MooneyRivlin { c1, c2 } => {
-            writeln!(out, "law = \"mooney-rivlin\"\nc1_pa = {c1:?}\nc2_pa = {c2:?}")?;
-        }
-        Law::Yeoh { c1, c2, c3 } => {
-            writeln!(
-                out,
-                "law = \"yeoh\"\nc1_pa = {c1:?}\nc2_pa = {c2:?}\nc3_pa = {c3:?}"
-            )?;
-        }
-    }
+    law(&file.material, out)?;
     if let Some(relaxation) = &file.relaxation {
         relaxation::print(relaxation, out)?;
     }
@@ -98,10 +87,26 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
             writeln!(out, "model_percent = {:?}", accuracy.model_percent)?;
         }
     }
-    if let Some(diameter) = file.actuator_diameter_mm {
-        writeln!(out, "\n[actuator]\ndiameter_mm = {diameter:?}")?;
+    if let Some(actuator) = &file.actuator {
+        actuator.print(out)?;
     }
     file.calibration.print(out)
+}
+
+/// The keys of a law.
+pub(super) fn law(law: &Law, out: &mut String) -> fmt::Result {
+    match *law {
+        Law::NeoHookean { c1 } => writeln!(out, "law = \"neo-hookean\"\nc1_pa = {c1:?}"),
+        Law::MooneyRivlin { c1, c2 } => {
+            writeln!(out, "law = \"mooney-rivlin\"\nc1_pa = {c1:?}\nc2_pa = {c2:?}")
+        }
+        Law::Yeoh { c1, c2, c3 } => {
+            writeln!(
+                out,
+                "law = \"yeoh\"\nc1_pa = {c1:?}\nc2_pa = {c2:?}\nc3_pa = {c3:?}"
+            )
+        }
+    }
 }
 
 fn transducer(section: &TransducerSection, out: &mut String) -> fmt::Result {

@@ -1,5 +1,6 @@
 //! The sections of a design file, in the order of the file.
 
+use super::actuator::ActuatorSection;
 use super::calibration::Calibration;
 use super::error::Problem;
 use super::relaxation;
@@ -17,7 +18,7 @@ use crate::material::relaxation::Relaxation;
 use toml::de::DeTable;
 
 /// Lengths of a fingertip, from a hair to a hand.
-const LENGTH: Bounds = Bounds::above(0.0, 1000.0, "mm");
+pub(super) const LENGTH: Bounds = Bounds::above(0.0, 1000.0, "mm");
 /// Elastic constants, up to that of steel.
 const STIFFNESS: Bounds = Bounds::above(0.0, 1e12, "Pa");
 /// Pole stretches of a rest state.
@@ -64,7 +65,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         .map(|section| zero::air(section, transducer.as_ref()))
         .transpose()?;
     let accuracy = root.sub("accuracy")?.map(accuracy).transpose()?;
-    let actuator = root.sub("actuator")?.map(actuator).transpose()?;
+    let actuator = root.sub("actuator")?.map(ActuatorSection::parse).transpose()?;
     let calibration = root.sub("calibration")?.map(Calibration::parse).transpose()?;
     let thickness = membrane.thickness_mm * calibration.as_ref().map_or(1.0, |c| c.thickness_factor);
     let least = membrane.radial_semi_axis_mm.min(membrane.axial_semi_axis_mm);
@@ -93,7 +94,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
         zero: zero.unwrap_or_default(),
         air: air.unwrap_or(AirReference::None),
         accuracy,
-        actuator_diameter_mm: actuator,
+        actuator,
         calibration: calibration.unwrap_or_default(),
     })
 }
@@ -126,7 +127,7 @@ fn membrane(mut section: Section<'_>) -> Result<MembraneSection, Fault> {
     Ok(membrane)
 }
 
-fn material(mut section: Section<'_>) -> Result<(Law, Option<Relaxation>), Fault> {
+pub(super) fn material(mut section: Section<'_>) -> Result<(Law, Option<Relaxation>), Fault> {
     const LAWS: &str = "\"neo-hookean\", \"mooney-rivlin\" or \"yeoh\"";
     // The higher constants may have either sign; whether the law is then stable is the solver's to say.
     const HIGHER: Bounds = Bounds::within(-1e12, 1e12, "Pa");
@@ -333,10 +334,4 @@ fn accuracy(mut section: Section<'_>) -> Result<Accuracy, Fault> {
     };
     section.finish()?;
     Ok(accuracy)
-}
-
-fn actuator(mut section: Section<'_>) -> Result<f64, Fault> {
-    let diameter = section.needed_number("diameter_mm", LENGTH)?;
-    section.finish()?;
-    Ok(diameter)
 }

@@ -65,7 +65,7 @@ fn reads_every_section_and_fills_in_the_defaults() {
             supply: Supply::Reference,
         }
     );
-    assert_eq!(file.actuator_diameter_mm, None);
+    assert_eq!(file.actuator, None);
 }
 
 #[test]
@@ -470,6 +470,31 @@ const IMPOSSIBLE: &[(&str, &str, &str)] = &[
         "[press]",
         "[actuator]\ndiameter_mm = 0\n[press]",
         "actuator.diameter_mm",
+    ),
+    (
+        "[press]",
+        "[actuator]\ndiameter_mm = 9\nthickness_mm = 9\n[press]",
+        "actuator.thickness_mm",
+    ),
+    (
+        "[press]",
+        "[actuator]\ndiameter_mm = 9\nthickness_mm = 1\ngap_mm = -0.1\n[press]",
+        "actuator.gap_mm",
+    ),
+    (
+        "[press]",
+        "[actuator]\ndiameter_mm = 9\ngap_mm = 0.1\n[press]",
+        "actuator.gap_mm",
+    ),
+    (
+        "[press]",
+        "[actuator]\ndiameter_mm = 9\nthickness_mm = 1\nfoundation_kpa_per_mm = 0\n[press]",
+        "actuator.foundation_kpa_per_mm",
+    ),
+    (
+        "[press]",
+        "[actuator]\ndiameter_mm = 9\n[actuator.material]\npreset = \"rubber\"\n[press]",
+        "actuator.material.preset",
     ),
     ("[press]", "[model]\nkind = \"beam\"\n[press]", "model.kind"),
     (

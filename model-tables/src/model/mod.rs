@@ -16,6 +16,7 @@ use std::fmt;
 
 pub mod choice;
 mod error;
+pub mod feedback;
 mod inflation;
 pub mod own_error;
 pub mod state;

@@ -161,6 +161,17 @@ impl<const N: usize, const T: usize> Elements<N, T> {
         let energies = self.batches.iter();
         energies.map(|batch| batch.energy(material, &state.nodes)).sum()
     }
+
+    fn work_of_pressures(&self, state: &State) -> f64 {
+        let pressures = state.pressures.chunks(super::lanes::LANES);
+        let of_batch = |(excess, pressures): (&[Lanes; T], &[[f64; CUBIC_PRESSURES]])| -> f64 {
+            let lanes = pressures.iter().enumerate();
+            lanes
+                .flat_map(|(lane, pressures)| excess.iter().zip(pressures).map(move |(e, p)| e.0[lane] * p))
+                .sum()
+        };
+        self.excess.iter().zip(pressures).map(of_batch).sum()
+    }
 }
 
 /// The elements of a wall.
@@ -229,5 +240,10 @@ impl Assembly {
     /// Strain energy.
     pub(super) fn energy(&self, material: &Material, state: &State) -> f64 {
         of_either!(&self.0, elements => elements.energy(material, state))
+    }
+
+    /// Work of the pressures on the latest excess of volume.
+    pub(super) fn work_of_pressures(&self, state: &State) -> f64 {
+        of_either!(&self.0, elements => elements.work_of_pressures(state))
     }
 }

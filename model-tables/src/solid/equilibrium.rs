@@ -66,6 +66,8 @@ pub struct Wall {
     /// What it remembers, where it relaxes.
     pub(super) memory: Option<Memory>,
     assembly: Assembly,
+    /// Largest unbalanced force where there is hardly one on the plate, in moduli times radius times thickness.
+    tolerance: f64,
     /// Contact pressure over penetration.
     contact_stiffness: f64,
     /// What touches the outer surface.
@@ -93,9 +95,14 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// A wall of outer semi-axes 1 and `height`, with a law in shear moduli.
+    /// A dome's wall of outer semi-axes 1 and `height`, with a law in shear moduli.
     pub fn new(height: f64, thickness: f64, law: Law, elements: Elements) -> Self {
-        let mesh = Mesh::new(height, thickness, elements);
+        Self::of(Mesh::new(height, thickness, elements), law)
+    }
+
+    /// The wall of a mesh, with a law in shear moduli.
+    pub fn of(mesh: Mesh, law: Law) -> Self {
+        let elements = mesh.elements;
         let material = Material::new(law, mesh.is_cubic());
         let outer = (0..elements.along)
             .map(|column| edge(&mesh, &mesh.nodes, column, mesh.layers() - 1))
@@ -106,7 +113,8 @@ impl Wall {
             fluid: 0.0,
         };
         Self {
-            contact_stiffness: CONTACT_STIFFNESS / thickness,
+            tolerance: TOLERANCE,
+            contact_stiffness: CONTACT_STIFFNESS / mesh.thickness,
             outer,
             fronts: Fronts::new(2 * mesh.stride(), elements.along),
             assembly: Assembly::new(&mesh, &material),
@@ -156,6 +164,12 @@ impl Wall {
     /// Strain energy of the wall.
     pub fn energy(&self, state: &State) -> f64 {
         self.assembly.energy(&self.material, state)
+    }
+
+    /// Potential energy of the latest settled state: strain energy, and the work of the pressures on what is left of excess volume. An excess within the
+    /// tolerance is an error of first order in the one, and of second order in this.
+    pub fn potential(&self, state: &State) -> f64 {
+        self.energy(state) + self.assembly.work_of_pressures(state)
     }
 
     /// The deformations at the Gauss points, with those in the crease or without.
@@ -223,7 +237,7 @@ impl Wall {
                 return Err(Failure::Singular);
             }
             let force = balance.force / self.mesh.thickness;
-            if balance.residual < TOLERANCE * self.stiffening() + RELATIVE_TOLERANCE * force {
+            if balance.residual < self.tolerance * self.stiffening() + RELATIVE_TOLERANCE * force {
                 // Admissible only right side out: the equations go on beyond.
                 let least = self.deformations(state, false).map(element::least);
                 return if least.fold(f64::INFINITY, f64::min) > 0.0 {

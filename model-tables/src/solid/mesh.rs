@@ -4,8 +4,9 @@
 //! 1 outside. Quadratic alone it cannot follow the parabola of shear strain across the wall, and a dome with a wall of 0.3 of its radius
 //! is 5 % too stiff.
 //!
-//! `X(t, s) = ((a - h + h s) sin t, (b - h + h s) cos t)`: `a` and `b` are the semi-axes of the outer surface, `h` the
-//! wall's thickness, `t` runs from the pole to the rim, `s` from inside to outside. Lengths are in units of `a`.
+//! A dome is `X(t, s) = ((a - h + h s) sin t, (b - h + h s) cos t)`: `a` and `b` are the semi-axes of the outer surface, `h` the
+//! wall's thickness, `t` runs from the pole to the rim, `s` from inside to outside. Lengths are in units of `a`. A flat disc of radius `a` is
+//! `X(t, s) = (a t / (pi/2), h s)`, with the fluid under it.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -37,7 +38,7 @@ pub fn slope(x: f64) -> [f64; 3] {
     [x - 0.5, -2.0 * x, x + 0.5]
 }
 
-/// Height over the base, in wall thicknesses, up to which the wall belongs to the crease at the rim. Where a free surface meets
+/// Distance from what the rim is bonded to, in wall thicknesses, up to which the wall belongs to the crease at the rim. Where a free surface meets
 /// a bonded one the strains are singular: pressed deep, the surface rolls over the base there in a place that is the
 /// smaller the finer the mesh, and of no consequence for the rest.
 pub const CREASE: f64 = 0.5;
@@ -49,6 +50,11 @@ pub const CREASE: f64 = 0.5;
 const GRADING: f64 = 0.25;
 /// Elements along with the full grading.
 const FEW: f64 = 24.0;
+
+/// Length of a disc's element at the rim, over the thickness: within about a thickness of the clamp the disc bends sharply.
+const DISC_RIM: f64 = 0.25;
+/// Most that lengths grow from the rim of a disc to its centre, as an exponent: they are a geometric series.
+const DISC_GRADING: f64 = 6.0;
 
 /// Elements of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,7 +84,7 @@ pub struct Mesh {
     pub elements: Elements,
     /// Wall thickness.
     pub thickness: f64,
-    /// Outer axial semi-axis.
+    /// Height of the undeformed pole: of a dome the outer axial semi-axis, of a disc its thickness.
     pub height: f64,
     /// The meridian's parameter `t` of the stations.
     pub parameters: Vec<f64>,
@@ -93,28 +99,72 @@ impl Mesh {
     /// The wall of an outer half ellipsoid with semi-axes 1 and `height`.
     pub fn new(height: f64, thickness: f64, elements: Elements) -> Self {
         let Elements { through, along } = elements;
-        let (stations, layers) = (2 * along + 1, 2 * through + 1);
-        let cubic = usize::from(through == 1);
-        let mut nodes = Vec::with_capacity(stations * (layers + cubic));
-        let mut parameters = Vec::with_capacity(stations);
+        let stations = 2 * along + 1;
         let grading = if through > 1 {
             GRADING * (FEW / along as f64).powi(2).min(1.0)
         } else {
             0.0
         };
-        for station in 0..stations {
-            let part = station as f64 / (stations - 1) as f64;
-            let t = FRAC_PI_2 * part - 0.25 * grading * libm::sin(2.0 * PI * part);
-            parameters.push(t);
+        let parameters = (0..stations)
+            .map(|station| {
+                let part = station as f64 / (stations - 1) as f64;
+                FRAC_PI_2 * part - 0.25 * grading * libm::sin(2.0 * PI * part)
+            })
+            .collect();
+        let place = |station: usize, t: f64, through: f64| {
             // Exactly on the axis and on the base plane.
             let (sin, cos) = match station {
                 0 => (0.0, 1.0),
                 last if last + 1 == stations => (1.0, 0.0),
                 _ => (libm::sin(t), libm::cos(t)),
             };
+            let inset = thickness * (1.0 - through);
+            [(1.0 - inset) * sin, (height - inset) * cos]
+        };
+        Self::build([height, thickness], elements, parameters, place, |[_, height]| {
+            height
+        })
+    }
+
+    /// A flat disc of radius 1, clamped at its rim, from the height 0 to `thickness`.
+    pub fn disc(thickness: f64, elements: Elements) -> Self {
+        let along = elements.along;
+        let grading = grading(DISC_RIM * thickness * along as f64);
+        // Radius of the edge between two columns.
+        let edge = |column: usize| {
+            let part = (along - column) as f64 / along as f64;
+            let from_rim = if grading > 0.0 {
+                libm::expm1(grading * part) / libm::expm1(grading)
+            } else {
+                part
+            };
+            1.0 - from_rim
+        };
+        let parameters = (0..=2 * along)
+            .map(|station| FRAC_PI_2 * 0.5 * (edge(station / 2) + edge(station.div_ceil(2))))
+            .collect();
+        let place = |_, t: f64, through: f64| [t / FRAC_PI_2, thickness * through];
+        Self::build([thickness; 2], elements, parameters, place, |[radius, _]| {
+            1.0 - radius
+        })
+    }
+
+    /// The mesh with stations at these parameters. `place` gives radius and height of a station, by its number and parameter, at a part of the
+    /// wall from inside; `from_bond` how far a place is from what the rim is bonded to.
+    fn build(
+        [height, thickness]: [f64; 2],
+        elements: Elements,
+        parameters: Vec<f64>,
+        place: impl Fn(usize, f64, f64) -> [f64; 2],
+        from_bond: impl Fn([f64; 2]) -> f64,
+    ) -> Self {
+        let Elements { through, along } = elements;
+        let layers = 2 * through + 1;
+        let cubic = usize::from(through == 1);
+        let mut nodes = Vec::with_capacity(parameters.len() * (layers + cubic));
+        for (station, &t) in parameters.iter().enumerate() {
             for layer in 0..layers {
-                let inset = thickness * (1.0 - layer as f64 / (layers - 1) as f64);
-                nodes.push([(1.0 - inset) * sin, (height - inset) * cos]);
+                nodes.push(place(station, t, layer as f64 / (layers - 1) as f64));
             }
             nodes.extend(core::iter::repeat_n([0.0; 2], cubic));
         }
@@ -131,7 +181,11 @@ impl Mesh {
                 let corners = mesh.element_nodes(column, layer).map(|node| mesh.nodes[node]);
                 mesh.points.push(core::array::from_fn(|i| {
                     let weight = WEIGHTS[i / 3] * WEIGHTS[i % 3];
-                    point(&corners, PLACES[i / 3], PLACES[i % 3], weight, CREASE * thickness)
+                    let (point, place) = point(&corners, PLACES[i / 3], PLACES[i % 3], weight);
+                    Point {
+                        in_crease: from_bond(place) < CREASE * thickness,
+                        ..point
+                    }
                 }));
             }
         }
@@ -192,17 +246,32 @@ impl Mesh {
     }
 }
 
-/// The Gauss point at `along`, `through` in `[-1, 1]`.
-fn point(corners: &[[f64; 2]; NODES], along: f64, through: f64, weight: f64, crease: f64) -> Point {
+/// The exponent of a geometric series of lengths from 1 to its greatest, whose first is `first` of their mean; 0 where that is no shorter.
+fn grading(first: f64) -> f64 {
+    // x / (e^x - 1) falls from 1.
+    let (mut low, mut high) = (0.0, DISC_GRADING);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if middle / libm::expm1(middle) > first {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    if first < 1.0 { low } else { 0.0 }
+}
+
+/// The Gauss point at `along`, `through` in `[-1, 1]`, and its place.
+fn point(corners: &[[f64; 2]; NODES], along: f64, through: f64, weight: f64) -> (Point, [f64; 2]) {
     let (n, m) = (shape(along), shape(through));
     let height: f64 = (0..NODES).map(|i| n[i / 3] * m[i % 3] * corners[i][1]).sum();
     let undeformed = [0, 1].map(|c| core::array::from_fn(|i| corners.get(i).map_or(0.0, |x| x[c])));
     let (point, _, radius) = sample(&undeformed, along, through);
-    Point {
+    let point = Point {
         weight: 2.0 * PI * radius * point.weight * weight,
-        in_crease: height < crease,
         ..point
-    }
+    };
+    (point, [radius, height])
 }
 
 /// Value of a shape function of an element at `along`, `through` in `[-1, 1]`, and its derivatives by both.
@@ -261,6 +330,24 @@ mod tests {
             let sum: f64 = mesh.points.iter().flatten().map(|point| point.weight).sum();
             let volume = 2.0 * PI / 3.0 * (0.8 - 0.85 * 0.85 * 0.65);
             assert!((sum / volume - 1.0).abs() < 1e-6, "{sum} {volume}");
+        }
+    }
+
+    /// `pi h` of a disc of radius 1, with short elements at the rim where it is thin.
+    #[test]
+    fn a_disc_has_its_volume_and_short_elements_at_the_rim() {
+        for thickness in [0.0025, 0.2] {
+            let elements = Elements {
+                through: 2,
+                along: 32,
+            };
+            let mesh = Mesh::disc(thickness, elements);
+            let sum: f64 = mesh.points.iter().flatten().map(|point| point.weight).sum();
+            assert!((sum / (PI * thickness) - 1.0).abs() < 1e-12, "{sum}");
+            let last = mesh.node(64, 0);
+            assert!(mesh.nodes[0][0].abs() < 1e-15 && (mesh.nodes[last][0] - 1.0).abs() < 1e-15);
+            let at_rim = 1.0 - mesh.nodes[mesh.node(62, 0)][0];
+            assert!(at_rim < 1.01 * (1.0_f64 / 32.0).min(0.3 * thickness), "{at_rim}");
         }
     }
 

@@ -9,7 +9,7 @@
 //! in [`lanes`]), [`fluid`] (the volume inside) and [`object`] with [`plate`] and `friction` (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
 //! (Newton's method) -> [`inflation`] -> [`path`] (the
 //! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units, and by `branch` those beside the path)
-//! -> [`section`] (what is read off along the meridian).
+//! -> [`section`] (what is read off along the meridian). [`disc`] is the feedback actuator: a flat wall that goes by the fluid's pressure.
 #![cfg_attr(
     feature = "std",
     expect(
@@ -24,6 +24,8 @@ mod assembly;
 pub mod batch;
 #[cfg(feature = "std")]
 mod branch;
+#[cfg(feature = "std")]
+pub mod disc;
 #[cfg(feature = "std")]
 pub mod element;
 #[cfg(feature = "std")]

@@ -2,6 +2,8 @@
 
 use super::{finite, read};
 use model_tables::actuator::{Actuator, FREE_DIAMETER};
+use model_tables::design_file::DesignFile;
+use model_tables::solid::disc::{DISC, Disc, DiscDesign};
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
@@ -15,7 +17,7 @@ const COLUMNS: &[&str] = &[
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// The design file; its `[actuator] diameter_mm` is the free diameter, 9 mm if it has none
+    /// The design file; its `[actuator] diameter_mm` is the free diameter, 9 mm if it has none; with `thickness_mm` the disc as a solid
     design: PathBuf,
     /// Gauge pressures in kilopascals, separated by commas
     #[arg(long, value_name = "LIST", required = true, value_delimiter = ',',
@@ -26,11 +28,47 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let design_file = read(file)?;
+    match design_file.disc() {
+        Some(disc) => of_disc(arguments, &disc),
+        None => by_formula(arguments, &design_file),
+    }
+}
+
+/// The disc as a solid.
+fn of_disc(arguments: &Arguments, design: &DiscDesign) -> Result<CommandAnswer, Refusal> {
+    let refuse = |error| Refusal::about(&arguments.design, &error);
+    let mut disc = Disc::new(design, DISC).map_err(refuse)?;
+    let mut rows = Rows::new(COLUMNS);
+    let mut notes = Vec::new();
+    for &pressure in &arguments.pressure_kpa {
+        let state = disc.at_pressure(pressure * 1e3).map_err(refuse)?;
+        rows.push(vec![
+            Cell::Number(pressure),
+            Cell::Number(2e3 * state.contact_radius),
+            Cell::Number(state.force),
+            Cell::Number(state.volume * 1e9),
+        ]);
+        notes.push(format!(
+            "at {pressure} kPa the centre has moved by {:.6} mm and is stretched by {:.6}",
+            state.travel * 1e3,
+            state.centre_stretch
+        ));
+    }
+    Ok(CommandAnswer { rows, notes })
+}
+
+/// The paper's formula.
+fn by_formula(arguments: &Arguments, design_file: &DesignFile) -> Result<CommandAnswer, Refusal> {
+    let file = &arguments.design;
     let design = design_file.design();
     let free_diameter = design_file
-        .actuator_diameter_mm
-        .map_or(FREE_DIAMETER, |diameter| diameter * 1e-3);
-    let actuator = Actuator::new(free_diameter, design.membrane.thickness, &design.law);
+        .actuator
+        .map_or(FREE_DIAMETER, |actuator| actuator.diameter_mm * 1e-3);
+    let actuator = Actuator::new(
+        free_diameter,
+        design.membrane.thickness,
+        &design_file.actuator_law(),
+    );
     let mut rows = Rows::new(COLUMNS);
     for &pressure in &arguments.pressure_kpa {
         let state = actuator
@@ -45,6 +83,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     Ok(CommandAnswer {
         rows,
-        notes: Vec::new(),
+        notes: vec![format!(
+            "the paper's formula, whose contact grows without bound towards {:.1} kPa: a disc clamped at its rim and held against a plate \
+             passes on pressure times free area, which is less; [actuator] thickness_mm gives the disc as a solid",
+            actuator.youngs_modulus / 1e3
+        )],
     })
 }

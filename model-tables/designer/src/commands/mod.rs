@@ -8,6 +8,7 @@ mod bench;
 mod calibration;
 mod estimate;
 mod estimate_in_time;
+mod feedback_loop;
 mod fit;
 mod history;
 mod materials;
@@ -93,6 +94,9 @@ enum Command {
     /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
     #[command(after_help = "Example:\n  cargo designer actuator my.toml --pressure-kpa 5,17.9")]
     Actuator(actuator::Arguments),
+    /// Fingertip and feedback membrane together: what the wearer feels when the tip is pressed
+    #[command(after_help = "Example:\n  cargo designer loop my.toml --indentation-mm 0.5,1.0,2.0")]
+    Loop(feedback_loop::Arguments),
     /// Calibrates a design to bench data
     #[command(after_help = fit::HELP)]
     Fit(fit::Arguments),
@@ -185,6 +189,7 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::Ladder(arguments) => compare::ladder::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),
+        Command::Loop(arguments) => feedback_loop::run(arguments),
         Command::Fit(arguments) => fit::run(arguments),
         Command::Calibration(arguments) => calibration::run(arguments),
         Command::Size(arguments) => size::run(arguments),

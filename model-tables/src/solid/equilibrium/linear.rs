@@ -81,8 +81,19 @@ impl Wall {
         self.assembly.pressures(&mut self.by_pressure, false);
     }
 
+    /// How a settled state follows the fluid's pressure, a plate held at a height, by factors of its own.
+    pub fn follow(&mut self, state: &State, plate: f64) -> Option<State> {
+        self.set_up(state);
+        self.factor(state, plate, 0)?;
+        self.follow_pressure();
+        Some(State {
+            fluid: 1.0,
+            ..self.by_pressure.clone()
+        })
+    }
+
     /// Change of the fluid's volume with a step.
-    pub(super) fn change(&self, step: &State) -> f64 {
+    pub(in crate::solid) fn change(&self, step: &State) -> f64 {
         let by_node = self.by_node.as_flattened();
         by_node
             .iter()

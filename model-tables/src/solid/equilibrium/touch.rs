@@ -26,6 +26,13 @@ impl Wall {
         [r, z.map(|z| z - apex)]
     }
 
+    /// What a plate answers to penetration, pressure per length, in place of a rigid one's penalty: of objects that are put in its place after this.
+    /// And the tolerance in place of a dome's, whose wall is far stiffer than a thin disc.
+    pub fn resist(&mut self, stiffness: f64, tolerance: f64) {
+        self.contact_stiffness = stiffness;
+        self.tolerance = tolerance;
+    }
+
     /// Puts an object in the plate's place.
     pub fn touch(&mut self, surface: Surface, friction: Friction) {
         self.surface = surface;

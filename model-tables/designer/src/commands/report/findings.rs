@@ -229,10 +229,16 @@ fn bending(outer: &Design, membrane: &mut Fingertip, deepest: f64) -> Vec<Bendin
 /// The feedback membrane over the pressures that it meets, where the design has one.
 fn actuator(file: &DesignFile, design: &Design) -> Vec<(f64, Blocked)> {
     const PARTS: usize = 24;
-    let Some(diameter) = file.actuator_diameter_mm else {
+    let Some(section) = file.actuator else {
         return Vec::new();
     };
-    let actuator = Actuator::new(diameter / 1e3, design.membrane.thickness, &design.law);
+    let actuator = Actuator::new(
+        section.diameter_mm / 1e3,
+        section
+            .thickness_mm
+            .map_or(design.membrane.thickness, |mm| mm / 1e3),
+        &file.actuator_law(),
+    );
     let largest = 0.25 * actuator.youngs_modulus;
     let largest = file.transducer.map_or(largest, |transducer| {
         largest.min(1e3 * transducer.gauge_range_kpa()[1])

@@ -1,0 +1,217 @@
+//! The haptic loop: fingertip and feedback actuator share one fluid, `V_tip(P, H) + V_actuator(P) + c P = const`.
+//!
+//! At one indentation the actuator is to the fingertip a compliance, its volume over its pressure since rest: the state of the loop is that of a
+//! fingertip with the compliance for which both have one pressure. What is looked for is this compliance.
+
+use super::{Fingertip, Kind, ModelError};
+use crate::curve::Contact;
+use crate::design::Design;
+use crate::membrane::TensionField;
+use crate::membrane::press;
+use crate::solid;
+use crate::solid::disc::{Disc, DiscError, DiscState};
+use std::fmt;
+
+/// Accuracy of the compliance, relative: a solid has its pressure to some 1e-8.
+const TOLERANCE: f64 = 1e-7;
+/// Iterations after which there is no balance: doublings, then halvings of a bracket.
+const MAX_ITERATIONS: u32 = 80;
+
+/// Why the loop gives no answer.
+#[derive(Clone, Debug)]
+pub enum LoopError {
+    /// Of the fingertip.
+    Fingertip(ModelError),
+    /// Of the actuator, at the pressure of the rest state.
+    Actuator(DiscError),
+    /// At no pressure that the actuator stands do both have the fluid's volume.
+    NoBalance {
+        /// The indentation, metres.
+        asked: f64,
+        /// The least pressure at which the actuator failed, and why, if it did.
+        failed: Option<DiscError>,
+    },
+}
+
+impl fmt::Display for LoopError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fingertip(error) => error.fmt(f),
+            Self::Actuator(error) => write!(f, "at the rest pressure of the fingertip: {error}"),
+            Self::NoBalance { asked, failed } => {
+                write!(
+                    f,
+                    "fingertip and actuator do not balance at indentation {} mm",
+                    asked * 1e3
+                )?;
+                match failed {
+                    Some(error) => write!(f, ": {error}; or press less deep"),
+                    None => write!(f, "; press less deep, or take a stiffer actuator"),
+                }
+            }
+        }
+    }
+}
+
+impl std::error::Error for LoopError {}
+
+impl From<ModelError> for LoopError {
+    fn from(error: ModelError) -> Self {
+        Self::Fingertip(error)
+    }
+}
+
+/// A state of the loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopState {
+    /// Of the fingertip: indentation, pressure rise and force of the touch.
+    pub touch: Contact,
+    /// Of the actuator, at the same pressure.
+    pub actuator: DiscState,
+    /// Fluid that the actuator has taken since rest, cubic metres.
+    pub volume_moved: f64,
+    /// The compliance of a fingertip alone that has the same state, cubic metres per pascal.
+    pub compliance: f64,
+}
+
+impl LoopState {
+    /// Force that the actuator presses with over that of the touch; `None` where nothing touches.
+    pub fn transmission(&self) -> Option<f64> {
+        (self.touch.force > 0.0).then(|| self.actuator.force / self.touch.force)
+    }
+}
+
+/// Fingertip and actuator at rest.
+#[derive(Clone, Debug)]
+pub struct Loop {
+    kind: Kind,
+    design: Design,
+    rest_pressure: f64,
+    actuator: Disc,
+    actuator_at_rest: DiscState,
+    /// The compliance of the latest state.
+    compliance: f64,
+}
+
+impl Loop {
+    /// A fingertip whose semi-axes are those that its model takes (of the middle of a membrane, of the outer surface of a solid), and an actuator.
+    ///
+    /// # Errors
+    /// [`LoopError::Fingertip`], [`LoopError::Actuator`].
+    pub fn new(kind: Kind, design: &Design, mut actuator: Disc) -> Result<Self, LoopError> {
+        let rest_pressure = fingertip(kind, design)?.rest_pressure();
+        let actuator_at_rest = actuator
+            .at_pressure(rest_pressure.max(0.0))
+            .map_err(LoopError::Actuator)?;
+        Ok(Self {
+            kind,
+            design: *design,
+            rest_pressure,
+            actuator,
+            compliance: design.compliance + actuator_at_rest.compliance,
+            actuator_at_rest,
+        })
+    }
+
+    /// The actuator at rest.
+    pub fn actuator_at_rest(&self) -> &DiscState {
+        &self.actuator_at_rest
+    }
+
+    /// The touch of a fingertip with a constant compliance in the loop's place: the actuator's at rest, and that of the fluid.
+    ///
+    /// # Errors
+    /// [`ModelError`] of the fingertip.
+    pub fn with_constant_compliance(&self, indentation: f64) -> Result<Contact, ModelError> {
+        self.touch(
+            indentation,
+            self.design.compliance + self.actuator_at_rest.compliance,
+        )
+    }
+
+    fn touch(&self, indentation: f64, compliance: f64) -> Result<Contact, ModelError> {
+        let design = Design {
+            compliance,
+            ..self.design
+        };
+        fingertip(self.kind, &design)?.contact_at(indentation)
+    }
+
+    /// The loop with a fingertip of this compliance.
+    fn state(&mut self, touch: Contact, compliance: f64) -> Result<LoopState, DiscError> {
+        let pressure = (self.rest_pressure + touch.pressure_rise).max(0.0);
+        let actuator = self.actuator.at_pressure(pressure)?;
+        Ok(LoopState {
+            touch,
+            actuator,
+            volume_moved: actuator.volume - self.actuator_at_rest.volume,
+            compliance,
+        })
+    }
+
+    /// The state at an indentation of the fingertip in metres, 0 ..= limit.
+    ///
+    /// # Errors
+    /// [`LoopError`].
+    pub fn at_indentation(&mut self, indentation: f64) -> Result<LoopState, LoopError> {
+        // Where the actuator takes more than the compliance stands for (or does not stand the pressure), more is needed; else less.
+        let (mut low, mut high) = (self.design.compliance, f64::INFINITY);
+        let mut compliance = self.compliance;
+        let mut before: Option<[f64; 2]> = None;
+        let mut failed = None;
+        for _ in 0..MAX_ITERATIONS {
+            let touch = self.touch(indentation, compliance)?;
+            if touch.pressure_rise <= 0.0 {
+                return self.state(touch, compliance).map_err(LoopError::Actuator);
+            }
+            let mut next = None;
+            match self.state(touch, compliance) {
+                Ok(state) => {
+                    let needed = self.design.compliance + state.volume_moved / touch.pressure_rise;
+                    let excess = needed - compliance;
+                    if excess.abs() <= TOLERANCE * needed {
+                        self.compliance = compliance;
+                        return Ok(state);
+                    }
+                    if excess > 0.0 {
+                        low = compliance;
+                    } else {
+                        high = compliance;
+                    }
+                    // The secant through the last two, or what is needed at the pressure of now.
+                    next = Some(match before {
+                        Some([c, e]) if (e - excess).abs() > 0.0 => {
+                            compliance - excess * (compliance - c) / (excess - e)
+                        }
+                        _ => needed,
+                    });
+                    before = Some([compliance, excess]);
+                }
+                Err(error) => {
+                    low = compliance;
+                    failed = Some(error);
+                }
+            }
+            if high.is_finite() && high - low <= TOLERANCE * high {
+                break;
+            }
+            let middle = if high.is_finite() {
+                0.5 * (low + high)
+            } else {
+                2.0 * compliance
+            };
+            compliance = next.filter(|next| *next > low && *next < high).unwrap_or(middle);
+        }
+        Err(LoopError::NoBalance {
+            asked: indentation,
+            failed,
+        })
+    }
+}
+
+fn fingertip(kind: Kind, design: &Design) -> Result<Fingertip, ModelError> {
+    Ok(match kind {
+        Kind::Membrane => Fingertip::Membrane(Box::new(press::Press::new(design, TensionField::Relaxed)?)),
+        Kind::Solid(elements) => Fingertip::Solid(Box::new(solid::press::Press::new(design, elements)?)),
+    })
+}

@@ -1,0 +1,220 @@
+//! The feedback actuator as a solid: a flat disc clamped at its rim, with the fluid's pressure under it.
+//!
+//! What is over it, see [`FarSide`], takes its force: nothing, a rigid plate at a gap, or a foundation whose pressure is in proportion to how far it is
+//! pushed in (Winkler), per undeformed area. The clamp holds the rim over the whole thickness; its frame is flush with the disc's outer face.
+//!
+//! The [`path`] goes by pressure from zero. A held pressure has no state beyond the greatest that the disc stands.
+
+mod error;
+mod path;
+
+pub use error::{DiscEnd, DiscError, DiscLimit};
+
+use super::equilibrium::Wall;
+use super::mesh::{Elements, Mesh};
+use super::object::Surface;
+use super::section::{self, Station};
+use crate::material::{Hyperelastic as _, Law};
+use crate::object::Friction;
+use core::f64::consts::PI;
+use path::{Kept, Path, Stop};
+
+/// Elements of a disc: deflection and volume to 0.3 % of a refined mesh where the thickness is 0.2 of the radius, 1.5 % at 0.45.
+pub const DISC: Elements = Elements {
+    through: 2,
+    along: 32,
+};
+/// Contact pressure of a rigid plate over penetration, in moduli over thicknesses. So stiff that the clamp takes less than 1 % of the force of
+/// a disc that lies on the plate all over; a dome's contact, which has no clamp beside it, takes less.
+const RIGID: f64 = 2e4;
+/// Largest unbalanced force, in moduli times square radii: some ten times the round-off.
+const TOLERANCE: f64 = 2e-13;
+/// A plate far above anything.
+const NO_PLATE: f64 = 1e6;
+
+/// What is over a disc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FarSide {
+    /// Nothing.
+    Free,
+    /// A rigid plate.
+    Plate {
+        /// Its distance from the undeformed face, metres, >= 0.
+        gap: f64,
+    },
+    /// A soft foundation, such as skin.
+    Foundation {
+        /// Its distance from the undeformed face, metres, >= 0.
+        gap: f64,
+        /// Its pressure over the depth to which it is pushed in, pascals per metre, > 0.
+        stiffness: f64,
+    },
+}
+
+/// A disc, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscDesign {
+    /// Free diameter, metres, > 0.
+    pub diameter: f64,
+    /// Undeformed thickness, metres, > 0 and less than the diameter.
+    pub thickness: f64,
+    /// Its law.
+    pub law: Law,
+    /// What is over it.
+    pub far_side: FarSide,
+    /// Friction of what is over it.
+    pub friction: Friction,
+}
+
+/// A disc at a pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscState {
+    /// Gauge pressure of the fluid, pascals.
+    pub pressure: f64,
+    /// Force on what is over it, newtons.
+    pub force: f64,
+    /// Radius of the contact's outer edge, deformed, metres.
+    pub contact_radius: f64,
+    /// Volume of fluid that the disc has taken, cubic metres.
+    pub volume: f64,
+    /// Derivative of that by the pressure, cubic metres per pascal.
+    pub compliance: f64,
+    /// How far the outer face has moved at the centre, metres.
+    pub travel: f64,
+    /// Stretch of the middle of the disc at the centre.
+    pub centre_stretch: f64,
+    /// Strain energy of the disc, and energy in the contact or the foundation, joules.
+    pub energy: f64,
+    /// Work of the fluid along the path from the undeformed state, less what friction took, joules: the same.
+    pub work: f64,
+}
+
+impl DiscState {
+    /// Area of the contact, square metres.
+    pub fn contact_area(&self) -> f64 {
+        PI * self.contact_radius * self.contact_radius
+    }
+}
+
+/// A clamped disc, and the states found so far.
+#[derive(Clone, Debug)]
+pub struct Disc {
+    wall: Wall,
+    /// Its radius, metres.
+    length: f64,
+    /// Its shear modulus, pascals.
+    modulus: f64,
+    path: Path,
+}
+
+impl Disc {
+    /// The undeformed disc.
+    ///
+    /// # Errors
+    /// [`DiscError::NoStiffness`], [`DiscError::NotADisc`] for lengths or a stiffness out of their ranges.
+    pub fn new(design: &DiscDesign, elements: Elements) -> Result<Self, DiscError> {
+        let modulus = design.law.shear_modulus();
+        if modulus.is_nan() || modulus <= 0.0 {
+            return Err(DiscError::NoStiffness {
+                shear_modulus: modulus,
+            });
+        }
+        let length = 0.5 * design.diameter;
+        let thickness = design.thickness / length;
+        let is_disc = design.thickness > 0.0 && design.thickness < design.diameter && length.is_finite();
+        let (plate, stiffness) = match design.far_side {
+            FarSide::Free => (NO_PLATE, RIGID / thickness),
+            FarSide::Plate { gap } => (thickness + gap / length, RIGID / thickness),
+            FarSide::Foundation { gap, stiffness } => {
+                (thickness + gap / length, stiffness * length / modulus)
+            }
+        };
+        if !(is_disc && plate >= thickness && stiffness > 0.0 && stiffness.is_finite()) {
+            return Err(DiscError::NotADisc { design: *design });
+        }
+        let mut wall = Wall::of(
+            Mesh::disc(thickness, elements),
+            design.law.stiffened(1.0 / modulus),
+        );
+        wall.resist(stiffness, TOLERANCE / thickness);
+        wall.touch(Surface::Plate, design.friction);
+        let path = Path::new(&mut wall, plate).ok_or(DiscError::Unsolved {
+            asked: 0.0,
+            failure: super::Failure::Singular,
+        })?;
+        Ok(Self {
+            wall,
+            length,
+            modulus,
+            path,
+        })
+    }
+
+    /// The disc at a gauge pressure in pascals, 0 ..= limit.
+    ///
+    /// # Errors
+    /// [`DiscError::NotAPressure`], [`DiscError::BeyondLimit`], [`DiscError::Unsolved`].
+    pub fn at_pressure(&mut self, pressure: f64) -> Result<DiscState, DiscError> {
+        let kept = self.solve(pressure)?;
+        let unit = self.length * self.length * self.length;
+        let outer = self.wall.mesh.layers() - 1;
+        Ok(DiscState {
+            pressure,
+            force: kept.balance.force * self.modulus * self.length * self.length,
+            contact_radius: section::contact_edge(&self.wall, &kept.state, self.path.plate()).radius
+                * self.length,
+            volume: kept.balance.volume * unit,
+            compliance: kept.compliance * unit / self.modulus,
+            travel: (kept.state.nodes[outer][1] - self.wall.mesh.thickness) * self.length,
+            centre_stretch: section::pole_stretch(&self.wall, &kept.state),
+            energy: kept.energy * self.modulus * unit,
+            work: kept.work * self.modulus * unit,
+        })
+    }
+
+    fn solve(&mut self, pressure: f64) -> Result<Kept, DiscError> {
+        if !(pressure >= 0.0 && pressure.is_finite()) {
+            return Err(DiscError::NotAPressure { asked: pressure });
+        }
+        match self.path.at(&mut self.wall, pressure / self.modulus) {
+            Ok(kept) => Ok(kept),
+            Err(Stop::Ends(last, ends_by)) => Err(DiscError::BeyondLimit {
+                asked: pressure,
+                limit: DiscLimit {
+                    pressure: last * self.modulus,
+                    ends_by,
+                },
+            }),
+            Err(Stop::Failed(failure)) => Err(DiscError::Unsolved {
+                asked: pressure,
+                failure,
+            }),
+        }
+    }
+
+    /// The greatest pressure, if it is not above `highest`, pascals, and why there is no state beyond it.
+    pub fn limit(&mut self, highest: f64) -> Option<DiscLimit> {
+        let (pressure, ends_by) = self.path.end(&mut self.wall, highest / self.modulus)?;
+        Some(DiscLimit {
+            pressure: pressure * self.modulus,
+            ends_by,
+        })
+    }
+
+    /// The meridian at a pressure in pascals, 0 ..= limit: the middle of the disc from the centre to the rim, at `points` equally spaced undeformed
+    /// radii, at least 3. Heights are over the undeformed inner face.
+    ///
+    /// # Errors
+    /// As [`Disc::at_pressure`].
+    pub fn profile(&mut self, pressure: f64, points: usize) -> Result<Vec<Station>, DiscError> {
+        let kept = self.solve(pressure)?;
+        let contact = section::contact_edge(&self.wall, &kept.state, self.path.plate()).parameter;
+        let intervals = points.max(3) - 1;
+        Ok((0..=intervals)
+            .map(|i| {
+                let share = i as f64 / intervals as f64;
+                section::station(&self.wall, &kept.state, share, contact).in_units(self.length, self.modulus)
+            })
+            .collect())
+    }
+}

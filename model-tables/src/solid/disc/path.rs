@@ -1,0 +1,321 @@
+//! States of a disc by the fluid's pressure, each from those before it.
+//!
+//! A step must pass what a step of a [press](crate::solid::path) must: its state is a minimum of the energy at a held pressure, it lies where the states
+//! before it point to, and the energy stored grows by the fluid's work. Steps are halved where they fail, and grow while they pass
+//! easily. Indentation's place is the pressure's: states follow it by their own factors.
+
+use super::error::DiscEnd;
+use crate::solid::Failure;
+use crate::solid::equilibrium::Wall;
+use crate::solid::mesh::CREASE;
+use crate::solid::state::{Balance, Fluid, State};
+use crate::solid::station::hermite;
+use core::f64::consts::PI;
+
+/// Displacement in the first step, over the thickness.
+const FIRST_STEP: f64 = 0.15;
+/// Largest step, moduli.
+const LARGEST_STEP: f64 = 0.1;
+/// Step under which a path ends, over the pressure.
+const SMALLEST_STEP: f64 = 1e-6;
+/// Largest growth of a step.
+const LARGEST_GROWTH: f64 = 3.0;
+/// Part of what is allowed at which a step keeps its length.
+const EASY: f64 = 0.5;
+/// Largest displacement of a node between prediction and solution, in thicknesses.
+const LARGEST_CORRECTION: f64 = 0.1;
+/// Energy that may be missing after a step, over the work done in it.
+const ENERGY_TOLERANCE: f64 = 2e-3;
+/// The same in the first step, which is as small as what is left unbalanced allows.
+const FIRST_ENERGY_TOLERANCE: f64 = 5e-2;
+/// Volume, over that of the disc, from which on energies are compared: a blocked disc takes only what its contact gives way.
+const LEAST_VOLUME: f64 = 1e-3;
+/// Relative growth of the volume, over that of the pressure, from which on the pressure counts as at its greatest.
+const AT_MAXIMUM: f64 = 30.0;
+/// Halvings on the way to an asked state.
+const MOST_HALVINGS: u32 = 12;
+
+/// A state of the path.
+#[derive(Clone, Debug)]
+pub(super) struct Kept {
+    pub(super) state: State,
+    pub(super) balance: Balance,
+    /// Its derivative by the pressure.
+    tangent: State,
+    /// The volume's.
+    pub(super) compliance: f64,
+    /// Where its points are anchored on what touches; empty without friction.
+    anchors: Vec<f64>,
+    /// Energy of the disc and of the contact.
+    pub(super) energy: f64,
+    /// Work of the fluid since the undeformed state, less what friction took.
+    pub(super) work: f64,
+}
+
+impl Kept {
+    fn pressure(&self) -> f64 {
+        self.state.fluid
+    }
+}
+
+/// Why a state is not the next of the path.
+#[derive(Clone, Copy, Debug)]
+enum Rejected {
+    Failed(Failure),
+    TouchesFrame,
+    Elsewhere,
+}
+
+/// Why there is no state.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Stop {
+    /// The path ends before it, at this pressure.
+    Ends(f64, DiscEnd),
+    Failed(Failure),
+}
+
+/// The equation of a held pressure.
+fn held(pressure: f64) -> Fluid {
+    Fluid {
+        by_volume: 0.0,
+        volume: 0.0,
+        by_pressure: 1.0,
+        pressure,
+    }
+}
+
+/// The states of a disc, the undeformed one first.
+#[derive(Clone, Debug)]
+pub(super) struct Path {
+    stations: Vec<Kept>,
+    /// Height of what is over the disc.
+    plate: f64,
+    /// The first step, and the next.
+    first: f64,
+    step: f64,
+    ends_by: Option<DiscEnd>,
+}
+
+impl Path {
+    /// The undeformed state alone. `None` if it has no stiffness.
+    pub(super) fn new(wall: &mut Wall, plate: f64) -> Option<Self> {
+        let state = wall.undeformed();
+        let tangent = wall.follow(&state, plate)?;
+        let fastest = tangent.nodes.as_flattened().iter().map(|x| x.abs());
+        let fastest = fastest.fold(0.0, f64::max);
+        let step = (FIRST_STEP * wall.mesh.thickness / fastest).min(LARGEST_STEP);
+        Some(Self {
+            first: step,
+            step,
+            stations: vec![Kept {
+                state,
+                balance: Balance::default(),
+                compliance: wall.change(&tangent),
+                tangent,
+                anchors: Vec::new(),
+                energy: 0.0,
+                work: 0.0,
+            }],
+            plate,
+            ends_by: None,
+        })
+    }
+
+    pub(super) fn plate(&self) -> f64 {
+        self.plate
+    }
+
+    fn last(&self) -> &Kept {
+        &self.stations[self.stations.len() - 1]
+    }
+
+    /// The state at a pressure.
+    pub(super) fn at(&mut self, wall: &mut Wall, pressure: f64) -> Result<Kept, Stop> {
+        if let Some((last, ends_by)) = self.end(wall, pressure)
+            && last < pressure
+        {
+            return Err(Stop::Ends(last, ends_by));
+        }
+        let after = self.stations.partition_point(|kept| kept.pressure() < pressure);
+        let above = self.stations[after].clone();
+        if above.pressure() <= pressure {
+            return Ok(above);
+        }
+        let mut below = self.stations[after - 1].clone();
+        let mut halvings = 0;
+        // The state asked for; where it is not found, one half way before it first.
+        let mut target = pressure;
+        // All that may miss up to the next state of the path may miss up to here.
+        let whole = above.work - below.work;
+        loop {
+            let guess = between(&below, &above, target);
+            match self.solve(wall, &below, target, guess, Some(whole)) {
+                Ok((kept, _)) if target >= pressure => return Ok(kept),
+                Ok((kept, _)) => {
+                    below = kept;
+                    target = pressure;
+                }
+                Err(_) if halvings < MOST_HALVINGS => {
+                    halvings += 1;
+                    target = 0.5 * (below.pressure() + target);
+                }
+                Err(Rejected::Failed(failure)) => return Err(Stop::Failed(failure)),
+                Err(Rejected::TouchesFrame | Rejected::Elsewhere) => {
+                    return Err(Stop::Failed(Failure::Elsewhere));
+                }
+            }
+        }
+    }
+
+    /// The end of the path, its pressure and why, if that is not beyond a pressure.
+    pub(super) fn end(&mut self, wall: &mut Wall, highest: f64) -> Option<(f64, DiscEnd)> {
+        while self.ends_by.is_none() && (self.stations.len() == 1 || self.last().pressure() < highest) {
+            self.extend(wall);
+        }
+        self.ends_by.map(|ends_by| (self.last().pressure(), ends_by))
+    }
+
+    /// The next state of the path, or its end.
+    fn extend(&mut self, wall: &mut Wall) {
+        loop {
+            let last = self.last();
+            let next = last.pressure() + self.step;
+            match self.solve(wall, last, next, self.beyond(next), None) {
+                Ok((kept, strain)) => {
+                    let growth = libm::sqrt(EASY / strain.max(1e-3)).min(LARGEST_GROWTH);
+                    self.step = (self.step * growth).min(LARGEST_STEP);
+                    if self.stations.len() == 1 {
+                        // A face that only touches what is over it follows as if it were free: the loaded one's slopes hold down to no load.
+                        self.stations[0].tangent = kept.tangent.clone();
+                        self.stations[0].compliance = kept.compliance;
+                    }
+                    self.stations.push(kept);
+                    return;
+                }
+                Err(rejected) => {
+                    self.step *= 0.5;
+                    if self.step < SMALLEST_STEP * (next - self.step).max(self.first) {
+                        self.ends_by = Some(reason(wall, self.last(), rejected));
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    /// A guess beyond the last state: the parabola with its value and slope, through the one before.
+    fn beyond(&self, pressure: f64) -> State {
+        let count = self.stations.len();
+        let last = &self.stations[count - 1];
+        let step = pressure - last.pressure();
+        let mut guess = last.state.clone();
+        guess.add(step, &last.tangent);
+        if count > 1 {
+            let before = &self.stations[count - 2];
+            let back = last.pressure() - before.pressure();
+            let ratio = (step / back) * (step / back);
+            guess.add(ratio, &before.state);
+            guess.add(-ratio, &last.state);
+            guess.add(ratio * back, &last.tangent);
+        }
+        guess
+    }
+
+    /// Solves from a guess for the state after another one, and holds it to what it must pass: its energy may miss a part of `scale`, or of the work done
+    /// since. Beside the state, how much of what is allowed it takes.
+    fn solve(
+        &self,
+        wall: &mut Wall,
+        below: &Kept,
+        pressure: f64,
+        guess: State,
+        scale: Option<f64>,
+    ) -> Result<(Kept, f64), Rejected> {
+        let mut state = guess.clone();
+        wall.start_sliding(&below.state, self.plate, &below.anchors);
+        let balance = wall
+            .settle(&mut state, self.plate, &held(pressure))
+            .map_err(Rejected::Failed)?;
+        if touches_frame(wall, &state) {
+            return Err(Rejected::TouchesFrame);
+        }
+        let tangent = wall
+            .follow(&state, self.plate)
+            .ok_or(Rejected::Failed(Failure::Singular))?;
+        let (anchors, dissipated) = wall.finish_sliding(&state, self.plate);
+        let compliance = wall.change(&tangent);
+        let step = pressure - below.pressure();
+        // P dV is d(PV) - V dP: a trapezium with the slopes of both ends, of fourth order.
+        let (first, last) = (below.balance.volume, balance.volume);
+        let moved = pressure * last - below.pressure() * first;
+        // From the undeformed state the response is linear.
+        let bent = if below.pressure() > 0.0 {
+            step / 12.0 * (below.compliance - compliance)
+        } else {
+            0.0
+        };
+        let done = moved - step * (0.5 * (first + last) + bent) - dissipated;
+        let energy = wall.potential(&state) + balance.contact_energy;
+        let missing = (energy - below.energy - done).abs();
+        let tolerance = if below.pressure() > 0.0 {
+            ENERGY_TOLERANCE
+        } else {
+            FIRST_ENERGY_TOLERANCE
+        };
+        let least = step * LEAST_VOLUME * PI * wall.mesh.thickness;
+        let allowed = tolerance * scale.unwrap_or(done).abs().max(least);
+        let corrections = guess.nodes.as_flattened().iter().zip(state.nodes.as_flattened());
+        let corrected = corrections.map(|(guess, found)| (guess - found).abs());
+        let corrected = corrected.fold(0.0, f64::max) / wall.mesh.thickness;
+        let strain = (missing / allowed).max(corrected / LARGEST_CORRECTION);
+        if strain.is_nan() || strain > 1.0 || !wall.is_stable(&held(pressure)) {
+            return Err(Rejected::Elsewhere);
+        }
+        let kept = Kept {
+            work: below.work + done,
+            state,
+            balance,
+            tangent,
+            compliance,
+            anchors,
+            energy,
+        };
+        Ok((kept, strain))
+    }
+}
+
+/// Cubic of Hermite between two states.
+fn between(below: &Kept, above: &Kept, pressure: f64) -> State {
+    let step = above.pressure() - below.pressure();
+    let w = hermite((pressure - below.pressure()) / step);
+    let mut guess = below.state.clone();
+    guess.clear();
+    guess.add(w[0], &below.state);
+    guess.add(w[1], &above.state);
+    guess.add(step * w[2], &below.tangent);
+    guess.add(step * w[3], &above.tangent);
+    guess
+}
+
+/// Whether the outer face has gone through the frame; the crease at the rim does not count.
+fn touches_frame(wall: &Wall, state: &State) -> bool {
+    let mesh = &wall.mesh;
+    let crease = CREASE * mesh.thickness;
+    (0..mesh.stations()).any(|station| {
+        let node = mesh.node(station, mesh.layers() - 1);
+        let [radius, height] = state.nodes[node];
+        mesh.nodes[node][0] < 1.0 - crease && radius > 1.0 && height < mesh.thickness
+    })
+}
+
+/// Why a path has no state after this one.
+fn reason(wall: &Wall, last: &Kept, rejected: Rejected) -> DiscEnd {
+    let growth = last.compliance * last.pressure() / last.balance.volume;
+    match rejected {
+        Rejected::TouchesFrame => DiscEnd::BulgeTouchesFrame,
+        Rejected::Failed(Failure::InsideOut) => DiscEnd::WallFolds,
+        Rejected::Failed(_) | Rejected::Elsewhere if growth > AT_MAXIMUM => DiscEnd::PressureMaximum,
+        Rejected::Failed(_) | Rejected::Elsewhere if wall.softens(&last.state) => DiscEnd::MaterialSoftens,
+        Rejected::Failed(_) | Rejected::Elsewhere => DiscEnd::NoFurtherState,
+    }
+}

@@ -1,0 +1,110 @@
+//! The haptic loop against brute force: the fluid's volume counted, state by state.
+
+use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::material::Law;
+use model_tables::model::Kind;
+use model_tables::model::feedback::{Loop, LoopError};
+use model_tables::object::{Friction, Object};
+use model_tables::solid::disc::{DISC, Disc, DiscDesign, FarSide};
+use model_tables::solid::press::{COARSE, Press};
+
+const AGILUS30: Law = Law::MooneyRivlin {
+    c1: 160_355.0,
+    c2: 46_559.0,
+};
+
+fn printed(compliance: f64) -> Design {
+    Design {
+        membrane: Membrane {
+            radial_semi_axis: 9e-3,
+            axial_semi_axis: 7e-3,
+            thickness: 1e-3,
+        },
+        law: AGILUS30,
+        rest: RestBy::Unstretched,
+        compliance,
+        object: Object::PLATE,
+    }
+}
+
+fn actuator(far_side: FarSide, law: Law, thickness: f64) -> Disc {
+    let design = DiscDesign {
+        diameter: 9e-3,
+        thickness,
+        law,
+        far_side,
+        friction: Friction::NONE,
+    };
+    Disc::new(&design, DISC).expect("a disc")
+}
+
+/// Bisects the compliance of a fingertip alone until the volume that has left it is what the actuator and the tubing have taken at its pressure.
+#[test]
+fn the_volume_is_where_brute_force_finds_it() {
+    let tubing = 0.2e-12;
+    for far_side in [FarSide::Free, FarSide::Plate { gap: 0.3e-3 }] {
+        for indentation in [0.5e-3, 2e-3] {
+            let mut disc = actuator(far_side, AGILUS30, 1e-3);
+            let mut at = |compliance: f64| {
+                let mut press = Press::new(&printed(compliance), COARSE).expect("at rest");
+                let state = press.at_indentation(indentation).expect("a state");
+                let taken = disc.at_pressure(state.pressure).expect("a state").volume;
+                let left = press.rest().volume - state.volume;
+                (left - taken - tubing * state.pressure, taken, state)
+            };
+            let (mut low, mut high) = (tubing, 10e-12);
+            for _ in 0..45 {
+                let middle = 0.5 * (low + high);
+                if at(middle).0 < 0.0 {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            let (_, taken, brute) = at(0.5 * (low + high));
+            let mut haptic = Loop::new(
+                Kind::Solid(COARSE),
+                &printed(tubing),
+                actuator(far_side, AGILUS30, 1e-3),
+            )
+            .expect("at rest");
+            let found = haptic.at_indentation(indentation).expect("a state");
+            assert!(
+                (found.volume_moved / taken - 1.0).abs() < 1e-6,
+                "{} {taken}",
+                found.volume_moved
+            );
+            assert!((found.touch.pressure_rise / brute.pressure_rise - 1.0).abs() < 1e-6);
+            assert!((found.touch.force / brute.force - 1.0).abs() < 1e-6);
+        }
+    }
+}
+
+/// Held on every side an actuator takes no fluid: the tip is the one alone, and the force is the pressure on the free area.
+#[test]
+fn a_blocked_actuator_leaves_the_tip_alone() {
+    let blocked = actuator(FarSide::Plate { gap: 0.0 }, AGILUS30, 1e-3);
+    let mut haptic = Loop::new(Kind::Solid(COARSE), &printed(0.0), blocked).expect("at rest");
+    let state = haptic.at_indentation(2e-3).expect("a state");
+    let alone = Press::new(&printed(0.0), COARSE)
+        .expect("at rest")
+        .at_indentation(2e-3)
+        .expect("a state");
+    assert!((state.touch.force / alone.force - 1.0).abs() < 2e-3);
+    let passed_on = state.touch.pressure_rise * core::f64::consts::PI * 4.5e-3 * 4.5e-3;
+    assert!((state.actuator.force / passed_on - 1.0).abs() < 0.01);
+    let rest = haptic.at_indentation(0.0).expect("at rest");
+    assert!(rest.transmission().is_none() && rest.volume_moved == 0.0);
+}
+
+/// A soft thin actuator with nothing over it takes whatever the tip gives until it stands no more.
+#[test]
+fn what_cannot_balance_is_refused_with_the_reason() {
+    let soft = actuator(FarSide::Free, Law::NeoHookean { c1: 200.0 }, 0.1e-3);
+    let mut haptic = Loop::new(Kind::Solid(COARSE), &printed(0.0), soft).expect("at rest");
+    let refused = haptic.at_indentation(3e-3);
+    assert!(
+        matches!(refused, Err(LoopError::NoBalance { failed: Some(_), .. })),
+        "{refused:?}"
+    );
+}
