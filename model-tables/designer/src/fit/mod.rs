@@ -9,9 +9,11 @@
 //! if the model is right, which [`Fit::systematic`] doubts where what is left has an order.
 
 pub mod check;
+mod columns;
 pub mod data;
 mod data_error;
 mod error;
+mod heading;
 mod identify;
 mod model;
 mod noise;
@@ -37,6 +39,7 @@ use search::Found;
 use solve::Task;
 
 pub use error::FitError;
+pub use heading::Measured;
 pub use identify::Unidentified;
 pub use model::DataQuantity;
 pub use noise::NoiseModel;

@@ -28,6 +28,8 @@ const COLUMNS: &[&str] = &[
     "held_out_refused",
 ];
 
+/// What is written beside the design.
+const FILES: [&str; 2] = ["from-data.md", "from-data.svg"];
 /// Knots of a curve as it is written, and the power by which they crowd towards zero.
 const KNOTS: usize = 60;
 const CROWDING: f64 = 1.6;
@@ -43,6 +45,10 @@ fn digits(number: f64) -> String {
 }
 
 pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Result<CommandAnswer, Refusal> {
+    let stem = format!("{}-from-data.toml", file.name);
+    if let Some(out) = &arguments.out {
+        files::expect_folder(out, &[FILES[0], FILES[1], &stem])?;
+    }
     let found = from_data(data).map_err(|error| Refusal::about(&arguments.data, &error))?;
     let branches = branches(&found);
     let mut rows = Rows::new(COLUMNS);
@@ -61,7 +67,8 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
             Cell::Count(branch.refused),
         ]);
     }
-    let mut notes = findings(&found, data);
+    let mut notes = data.notes.clone();
+    notes.extend(findings(&found, data));
     notes.extend(bench::caution(file));
     if let Some(out) = &arguments.out {
         if found.start > EMPTY * found.end && !arguments.to_zero {
@@ -101,7 +108,6 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
         );
         let refuse = |reason: String| Refusal::about(&arguments.design, &reason);
         let text = write::with_calibration(&text, &calibration, &comment).map_err(refuse)?;
-        let stem = format!("{}-from-data.toml", file.name);
         let (text, note) = with_tables(&text, &stem, deepest, &found)
             .map_err(|Refusal(reason)| Refusal::about(&arguments.design, &reason))?;
         notes.push(note);
@@ -112,10 +118,11 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
         for line in &notes {
             let _ = writeln!(page, "- {line}");
         }
+        // The design last: it stands for the set.
         let contents = [
+            (FILES[0], page.into_bytes()),
+            (FILES[1], draw(data, &found).into_bytes()),
             (stem.as_str(), text.into_bytes()),
-            ("from-data.md", page.into_bytes()),
-            ("from-data.svg", draw(data, &found).into_bytes()),
         ];
         files::write_all(out, &contents)?;
         notes.push(format!(

@@ -242,7 +242,7 @@ pub(super) fn markdown(file: &DesignFile, data: &Data, fit: &Fit) -> String {
             );
         }
     }
-    for line in findings(file, data, fit) {
+    for line in data.notes.iter().cloned().chain(findings(file, data, fit)) {
         let _ = writeln!(text, "- {line}");
     }
     if let Some(caution) = bench::caution(file) {
