@@ -2,6 +2,7 @@
 
 pub use super::data_error::DataError;
 
+use super::clipping;
 use super::columns::{self, Columns};
 use super::heading::Measured;
 use crate::table_text::{Decimal, Sheet, SheetRow};
@@ -99,7 +100,7 @@ impl DataRow {
         }
     }
 
-    fn quantities(&self) -> usize {
+    pub(super) fn quantities(&self) -> usize {
         Measured::ALL
             .iter()
             .filter(|quantity| self.get(**quantity).is_some())
@@ -212,6 +213,11 @@ impl Data {
             data.rows.retain(|row| row.direction == direction);
         }
         data.check()?;
+        let clipped = clipping::take_out(&mut data);
+        if !clipped.is_empty() {
+            data.notes.extend(clipped);
+            data.check()?;
+        }
         Ok(data)
     }
 

@@ -9,8 +9,10 @@ use super::{bench, finite, read};
 use crate::fit::data::{Data, DataChoice, Direction};
 use crate::fit::parameter::Parameter;
 use crate::fit::{self, Fit, Held, Measured};
+use model_tables::design_file::DesignFile;
 use model_tables::model::Fingertip;
 use output::files;
+use output::progress::Ticks;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
@@ -126,14 +128,34 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         files::expect_folder(out, &[FILES[0], FILES[1], FILES[2], &stem])?;
     }
     let start = Instant::now();
+    let ticks = Ticks::begin(move || {
+        format!(
+            "fit: {:.0} s, {} states of the model solved",
+            start.elapsed().as_secs_f64(),
+            fit::states_solved()
+        )
+    });
     let fit = fit::fit(&file, &data, &arguments.parameters)
         .map_err(|error| Refusal::about(&arguments.data, &error))?;
     let seconds = start.elapsed().as_secs_f64();
     let mut notes = data.notes.clone();
     notes.extend(report::findings(&file, &data, &fit));
     notes.extend(bench::caution(&file));
-    let mut tip = Fingertip::new(&file).map_err(|error| Refusal::about(&arguments.design, &error))?;
-    notes.push(super::model::note_of_error(&file, &mut tip, 0.0));
+    // What is written is the calibrated design, and its limits count.
+    let calibrated = DesignFile {
+        calibration: fit.values.calibration(&file, &fit.fitted),
+        ..file.clone()
+    };
+    let mut tip = Fingertip::new(&calibrated).map_err(|error| Refusal::about(&arguments.design, &error))?;
+    let deepest = data
+        .rows
+        .iter()
+        .filter_map(|row| row.indentation)
+        .fold(0.0, f64::max);
+    let deepest = calibrated.calibration.indentation_of(deepest);
+    notes.extend(bench::beyond_strain(&calibrated, &mut tip, deepest));
+    notes.push(super::model::note_of_error(&calibrated, &mut tip, 0.0));
+    drop(ticks);
     if let Some(out) = &arguments.out {
         let design_text = std::fs::read_to_string(&arguments.design)
             .map_err(|error| Refusal::about(&arguments.design, &error))?;
