@@ -152,15 +152,7 @@ pub fn fit(file: &DesignFile, data: &Data, chosen: &[Parameter]) -> Result<Fit, 
     }
     let units = units(file, data);
     let model = Model::new(kind, file, data, &free);
-    let height = model.height()?;
-    let deepest = data
-        .rows
-        .iter()
-        .filter_map(|row| row.indentation)
-        .fold(0.0, f64::max);
-    if deepest > height {
-        return Err(FitError::TooDeep { deepest, height });
-    }
+    check_depth(data, model.height()?)?;
     let before = model.predict(&start, data, &targets)?;
     check_swapped(&targets, &before)?;
     check_units(&targets, &before)?;
@@ -330,8 +322,40 @@ fn units(file: &DesignFile, data: &Data) -> Units {
     }
 }
 
+/// Refuses data that go deeper than the tip is high, metres.
+fn check_depth(data: &Data, height: f64) -> Result<(), FitError> {
+    let deepest = data
+        .rows
+        .iter()
+        .filter_map(|row| row.indentation)
+        .fold(0.0, f64::max);
+    if deepest > height {
+        return Err(FitError::TooDeep { deepest, height });
+    }
+    Ok(())
+}
+
+/// Height that a tip may have over a guess of it from its dimensions.
+const ROOM: f64 = 1.3;
+
+/// Refuses data that no press of the design's shape has, for curves that are made without its model.
+///
+/// # Errors
+/// [`FitError`].
+pub fn check_shape(file: &DesignFile, data: &Data) -> Result<(), FitError> {
+    let design = file.design();
+    let made = design.membrane.axial_semi_axis;
+    let height = match design.rest {
+        RestBy::Unstretched | RestBy::Pressure(_) => made,
+        RestBy::PoleStretch(stretch) => stretch * made,
+        RestBy::Height(height) => height,
+        RestBy::EquatorRadius(radius) => made * radius / design.membrane.radial_semi_axis,
+    };
+    check_depth(data, ROOM * height)
+}
+
 /// Part of what a straight line leaves of force and pressure as they are named, over which the other way round is no better.
-const SWAPPED: f64 = 0.25;
+const SWAPPED: f64 = 0.5;
 
 /// Force and pressure rise in each other's columns: each then runs as the other does in the design, whatever its size and zero.
 fn check_swapped(targets: &[Target], predicted: &[f64]) -> Result<(), FitError> {

@@ -271,8 +271,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
             // A compliance may be asked for below zero: the model continues there.
             parameter == Parameter::Compliance || (low..=high).contains(&values.get(parameter))
         });
-        self.predicted = match self.task.predict(&values) {
-            Ok(predicted) if possible => predicted,
+        // Only then is there a device to solve: the way to a stretch of any size would have no end.
+        self.predicted = match possible.then(|| self.task.predict(&values)) {
+            Some(Ok(predicted)) => predicted,
             // Far away: the method comes back with a shorter step.
             _ => self
                 .task

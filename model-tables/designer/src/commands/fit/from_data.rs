@@ -2,6 +2,7 @@
 
 use super::super::bench;
 use super::{Arguments, write};
+use crate::fit;
 use crate::fit::data::Data;
 use crate::fit::spline::{DataBranch, FromData, from_data};
 use model_tables::design_file::{Calibration, DataCurve, DesignFile};
@@ -49,6 +50,7 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
     if let Some(out) = &arguments.out {
         files::expect_folder(out, &[FILES[0], FILES[1], &stem])?;
     }
+    fit::check_shape(file, data).map_err(|error| Refusal::about(&arguments.data, &error))?;
     let found = from_data(data).map_err(|error| Refusal::about(&arguments.data, &error))?;
     let branches = branches(&found);
     let mut rows = Rows::new(COLUMNS);
@@ -147,9 +149,12 @@ fn with_tables(
         match generate::from_design(DesignFile::parse(&text, stem).map_err(Refusal::of)?) {
             Ok(generated) => {
                 let note = format!(
-                    "tables from this curve take {} bytes and end at {} mm",
+                    "tables from this curve take {} bytes and end at {} mm, a pressure rise of {} kPa and {} N: beyond, the chip \
+                     reports `saturated`",
                     generated.certified.tables.bytes(),
-                    digits(1e3 * generated.end.indentation)
+                    digits(1e3 * generated.end.indentation),
+                    digits(1e-3 * generated.end.pressure_rise),
+                    digits(generated.end.force)
                 );
                 return Ok((text, note));
             }
@@ -209,8 +214,7 @@ fn knots(found: &FromData, rest_pressure_kpa: f64) -> Option<DataCurve> {
 
 fn findings(found: &FromData, data: &Data) -> Vec<String> {
     let mut lines = vec![format!(
-        "calibrated for pressure rises of {} to {} kPa: beyond, the chip reports `saturated`; below, the curve runs to \
-         the origin, where nothing was measured",
+        "calibrated for pressure rises of {} to {} kPa: below, the curve runs to the origin, where nothing was measured",
         digits(1e-3 * found.start),
         digits(1e-3 * found.end)
     )];
