@@ -74,22 +74,21 @@ fn standing(rows: &[DataRow], quantity: Measured, upper: bool) -> Option<Vec<usi
     (others == 2 || (others == 1 && upper)).then_some(members)
 }
 
-/// Rows of one value away from an end, on average.
+/// Rows of one value away from an end: on average, or of the value next to the end if those are more.
 fn usual_ties(rows: &[DataRow], quantity: Measured, end: f64) -> f64 {
-    let mut values: Vec<u64> = rows
+    let mut values: Vec<f64> = rows
         .iter()
         .filter_map(|row| row.get(quantity))
         .filter(|value| value.to_bits() != end.to_bits())
-        .map(f64::to_bits)
         .collect();
     let count = values.len() as f64;
-    values.sort_unstable();
+    values.sort_by(|a, b| (a - end).abs().total_cmp(&(b - end).abs()));
+    let next = values
+        .iter()
+        .take_while(|value| value.to_bits() == values[0].to_bits())
+        .count();
     values.dedup();
-    if values.is_empty() {
-        1.0
-    } else {
-        count / values.len() as f64
-    }
+    (count / values.len().max(1) as f64).max(next as f64).max(1.0)
 }
 
 struct Range {
