@@ -10,6 +10,15 @@ const INTERRUPTED: i32 = 130;
 
 /// Files on their way.
 static PARTIAL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// Files that were read, and are not to be written over.
+static KEPT: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Keeps a file that was read: nothing is written over it from now on.
+pub fn keep(path: &Path) {
+    if let Ok(path) = path.canonicalize() {
+        KEPT.lock().unwrap_or_else(PoisonError::into_inner).push(path);
+    }
+}
 
 /// Has an interrupt remove what is on its way and end the program.
 pub fn clear_away_on_interrupt() {
@@ -46,9 +55,56 @@ pub fn write_one(path: &Path, content: Vec<u8>) -> Result<(), Refusal> {
 /// [`Refusal`] with the file or folder and the reason.
 pub fn expect_room(path: &Path) -> Result<(), Refusal> {
     let (folder, name) = place(path)?;
-    let probe = format!(".{name}.{}", std::process::id());
-    write_all(folder, &[(&probe, Vec::new())])?;
-    remove(&mut vec![folder.join(probe)]);
+    expect_folder(folder, &[name])
+}
+
+/// Refuses a folder that could not take these files, before the work for them starts. The folder need not be there yet.
+///
+/// # Errors
+/// [`Refusal`] with the file or folder and the reason.
+pub fn expect_folder(folder: &Path, names: &[&str]) -> Result<(), Refusal> {
+    for name in names {
+        expect_replaceable(&folder.join(name))?;
+    }
+    let there = folder.ancestors().find(|ancestor| ancestor.exists());
+    let there = there
+        .filter(|there| *there != Path::new(""))
+        .unwrap_or(Path::new("."));
+    let probe = there.join(format!(".{PROBE}.{}", std::process::id()));
+    PARTIAL
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .push(probe.clone());
+    let written = fs::write(&probe, PROBE).map_err(|error| cannot(there, &error));
+    remove(&mut PARTIAL.lock().unwrap_or_else(PoisonError::into_inner));
+    written
+}
+
+/// Content and part of the name of a file that is written to see whether one can be.
+const PROBE: &str = "room";
+
+fn cannot(path: &Path, error: &dyn std::fmt::Display) -> Refusal {
+    Refusal(format!(
+        "{} cannot be written: {error}; choose another --out",
+        path.display()
+    ))
+}
+
+/// Refuses what is no file, and a file that was read.
+fn expect_replaceable(path: &Path) -> Result<(), Refusal> {
+    let Ok(there) = path.canonicalize() else {
+        return Ok(());
+    };
+    if KEPT
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .contains(&there)
+    {
+        return Err(cannot(path, &"it is what was read"));
+    }
+    if !there.is_file() {
+        return Err(cannot(path, &"there is something of that name that is no file"));
+    }
     Ok(())
 }
 
@@ -70,16 +126,16 @@ fn place(path: &Path) -> Result<(&Path, &str), Refusal> {
 
 /// Writes every file beside its place first, then moves them all in; on failure removes what it wrote.
 ///
+/// The last file is the mark of a whole set: an older one is taken away before anything is moved in and the new one is moved
+/// in last, so that it never stands beside files of another set, whenever the program is killed.
+///
 /// # Errors
 /// [`Refusal`] with the file and the reason; nothing half-written is left.
 pub fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refusal> {
-    let cannot = |path: &Path, error: std::io::Error| {
-        Refusal(format!(
-            "{} cannot be written: {error}; choose another --out",
-            path.display()
-        ))
-    };
-    fs::create_dir_all(folder).map_err(|error| cannot(folder, error))?;
+    for (name, _) in contents {
+        expect_replaceable(&folder.join(name))?;
+    }
+    fs::create_dir_all(folder).map_err(|error| cannot(folder, &error))?;
     let places: Vec<(PathBuf, PathBuf)> = contents
         .iter()
         .map(|(name, _)| {
@@ -95,13 +151,84 @@ pub fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refu
         .iter()
         .zip(contents)
         .try_for_each(|((temporary, _), (_, content))| {
-            fs::write(temporary, content).map_err(|error| cannot(temporary, error))
+            fs::write(temporary, content).map_err(|error| cannot(temporary, &error))
         })
-        .and_then(|()| {
-            places.iter().try_for_each(|(temporary, place)| {
-                fs::rename(temporary, place).map_err(|error| cannot(place, error))
-            })
-        });
+        .and_then(|()| move_in(&places));
     remove(&mut PARTIAL.lock().unwrap_or_else(PoisonError::into_inner));
     written
+}
+
+/// Moves the files of a set to their places, the last one last.
+fn move_in(places: &[(PathBuf, PathBuf)]) -> Result<(), Refusal> {
+    if let [_, .., (_, mark)] = places
+        && mark.exists()
+    {
+        fs::remove_file(mark).map_err(|error| cannot(mark, &error))?;
+    }
+    places.iter().try_for_each(|(temporary, place)| {
+        fs::rename(temporary, place).map_err(|error| cannot(place, &error))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scratch(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("output-files-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("a folder");
+        folder
+    }
+
+    #[test]
+    fn a_set_that_cannot_be_moved_in_whole_has_no_mark() {
+        let folder = scratch("mark");
+        let set = |text: &str| {
+            [
+                ("a", text.as_bytes().to_vec()),
+                ("b", text.into()),
+                ("mark", text.into()),
+            ]
+        };
+        write_all(&folder, &set("old")).expect("a first set");
+        // Its place is taken while the new set is on its way: the moves stop before the mark.
+        let place = |name: &str| (folder.join(format!(".{name}")), folder.join(name));
+        fs::write(folder.join(".a"), "new").expect("a file");
+        let moved = move_in(&[place("a"), place("b"), place("mark")]);
+        assert!(moved.is_err());
+        assert_eq!(fs::read_to_string(folder.join("a")).expect("moved in"), "new");
+        assert!(!folder.join("mark").exists(), "an old mark beside a new file");
+        fs::remove_dir_all(&folder).expect("cleared away");
+    }
+
+    #[test]
+    fn what_was_read_is_not_written_over_and_what_is_no_file_is_left_alone() {
+        let folder = scratch("kept");
+        let kept = folder.join("design.toml");
+        fs::write(&kept, "mine").expect("a file");
+        keep(&kept);
+        fs::create_dir(folder.join("sub")).expect("a folder");
+        for (place, reason) in [
+            (&folder, "it is what was read"),
+            (&folder.join("sub").join(".."), "it is what was read"),
+        ] {
+            let set = [("other", Vec::new()), ("design.toml", Vec::new())];
+            let Refusal(found) = write_all(place, &set).expect_err("refused");
+            assert!(found.contains(reason), "{found}");
+            assert!(expect_folder(place, &["design.toml"]).is_err());
+        }
+        assert!(expect_folder(&folder, &["sub"]).is_err());
+        assert!(expect_folder(&folder.join("new").join("deeper"), &["a"]).is_ok());
+        assert!(!folder.join("new").exists());
+        // A file where a folder would have to be.
+        assert!(expect_folder(&kept, &["a"]).is_err());
+        assert_eq!(fs::read_to_string(&kept).expect("there"), "mine");
+        assert_eq!(
+            fs::read_dir(&folder).expect("there").count(),
+            2,
+            "nothing is left behind"
+        );
+        fs::remove_dir_all(&folder).expect("cleared away");
+    }
 }

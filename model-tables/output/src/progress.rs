@@ -2,6 +2,9 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal as _;
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::thread::JoinHandle;
+use std::time::Duration;
 
 /// Parts of the whole that are shown.
 const PARTS: u64 = 1000;
@@ -34,5 +37,40 @@ impl Progress {
     /// Away with it.
     pub fn finish(&self) {
         self.0.finish_and_clear();
+    }
+}
+
+/// How often [`Ticks`] tells.
+const EVERY: Duration = Duration::from_secs(1);
+
+/// A line each second on standard error, terminal or not, until it is dropped.
+pub struct Ticks {
+    stop: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Ticks {
+    /// Begins; `tell` gives the line of now.
+    pub fn begin(tell: impl Fn() -> String + Send + 'static) -> Self {
+        let (stop, stopped) = mpsc::channel::<()>();
+        let thread = std::thread::spawn(move || {
+            while stopped.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+                eprintln!("progress: {}", tell());
+            }
+        });
+        Self {
+            stop: Some(stop),
+            thread: Some(thread),
+        }
+    }
+}
+
+impl Drop for Ticks {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        if let Some(thread) = self.thread.take() {
+            // A thread that only prints: it can end in no other way.
+            let _ = thread.join();
+        }
     }
 }

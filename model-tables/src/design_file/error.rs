@@ -61,7 +61,13 @@ impl fmt::Display for Problem {
             Self::Unreadable(reason) => write!(f, "the design file cannot be read: {}", one_line(reason)),
             Self::Syntax(reason) => write!(f, "not valid TOML: {}", one_line(reason)),
             Self::Missing { key, allowed } => write!(f, "`{key}` is missing: needs {allowed}"),
-            Self::Unknown { key, allowed } => write!(f, "`{key}` is not a known key: allowed are {allowed}"),
+            Self::Unknown { key, allowed } => {
+                write!(f, "`{key}` is not a known key")?;
+                if let Some(nearest) = nearest(key, allowed) {
+                    write!(f, ", did you mean `{nearest}`?")?;
+                }
+                write!(f, ": allowed are {allowed}")
+            }
             Self::Value { key, found, allowed } => {
                 write!(f, "`{key}` is {}: must be {allowed}", one_line(found))
             }
@@ -70,6 +76,20 @@ impl fmt::Display for Problem {
 }
 
 impl core::error::Error for DesignFileError {}
+
+/// Likeness of two names from which on one is a slip of the other.
+const ALIKE: f64 = 0.85;
+
+/// The allowed name that a key is a slip of.
+fn nearest<'a>(key: &str, allowed: &'a str) -> Option<&'a str> {
+    let key = key.rsplit('.').next().unwrap_or(key);
+    allowed
+        .split(", ")
+        .map(|name| (strsim::jaro_winkler(key, name), name))
+        .filter(|(alike, _)| *alike > ALIKE)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, name)| name)
+}
 
 /// Line breaks and runs of spaces become single spaces.
 fn one_line(text: &str) -> String {

@@ -15,6 +15,16 @@ pub struct Bounds {
     high: f64,
     open_low: bool,
     unit: &'static str,
+    usual: Option<Usual>,
+}
+
+/// Numbers that a key has in practice, and what slips of its unit leave them.
+#[derive(Clone, Copy)]
+struct Usual {
+    low: f64,
+    high: f64,
+    /// Units that people write in its place, and what one of each is.
+    slips: &'static [(&'static str, f64)],
 }
 
 impl Bounds {
@@ -25,6 +35,7 @@ impl Bounds {
             high,
             open_low: true,
             unit,
+            usual: None,
         }
     }
 
@@ -35,7 +46,34 @@ impl Bounds {
             high,
             open_low: false,
             unit,
+            usual: None,
         }
+    }
+
+    /// Refuses a number out of `[low, high]` that would be in it in another unit: pairs of that unit and its size.
+    pub const fn usually(self, [low, high]: [f64; 2], slips: &'static [(&'static str, f64)]) -> Self {
+        Self {
+            usual: Some(Usual { low, high, slips }),
+            ..self
+        }
+    }
+
+    /// What a number would be in the units that it may have been written in by a slip.
+    fn slips(self, value: f64) -> Option<String> {
+        let usual = self.usual?;
+        let usually = |value: f64| (usual.low..=usual.high).contains(&value);
+        if usually(value) {
+            return None;
+        }
+        let meant: Vec<String> = usual
+            .slips
+            .iter()
+            .filter(|(_, size)| usually(value * size))
+            // Nine digits: a product without its rounding.
+            .filter_map(|(name, size)| Some((name, format!("{:.8e}", value * size).parse::<f64>().ok()?)))
+            .map(|(name, meant)| format!("{meant} {} if {value} is in {name}", self.unit))
+            .collect();
+        (!meant.is_empty()).then(|| meant.join(", "))
     }
 
     fn admits(self, value: f64) -> bool {
@@ -128,7 +166,11 @@ impl<'a> Section<'a> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
-        match to_number(value.get_ref()).filter(|number| bounds.admits(*number)) {
+        let number = to_number(value.get_ref());
+        if let Some(slips) = number.and_then(|number| bounds.slips(number)) {
+            return Err(self.refuse(key, &format!("in {}: {slips}", bounds.unit)));
+        }
+        match number.filter(|number| bounds.admits(*number)) {
             Some(number) => Ok(Some(number)),
             None => Err(self.refuse(key, &bounds.describe())),
         }

@@ -17,10 +17,15 @@ use crate::material::preset::{PRESETS, Preset};
 use crate::material::relaxation::Relaxation;
 use toml::de::DeTable;
 
-/// Lengths of a fingertip, from a hair to a hand.
-pub(super) const LENGTH: Bounds = Bounds::above(0.0, 1000.0, "mm");
-/// Elastic constants, up to that of steel.
-const STIFFNESS: Bounds = Bounds::above(0.0, 1e12, "Pa");
+/// Units that lengths are written in by a slip, millimetres.
+const LENGTH_SLIPS: &[(&str, f64)] = &[("m", 1e3), ("um", 1e-3)];
+/// Lengths of a fingertip, from a hair to a hand; walls and presses from a hundredth of a millimetre on.
+pub(super) const LENGTH: Bounds = Bounds::above(0.0, 1000.0, "mm").usually([0.01, 200.0], LENGTH_SLIPS);
+/// Semi-axes.
+const SEMI_AXIS: Bounds = Bounds::above(0.0, 1000.0, "mm").usually([0.2, 200.0], LENGTH_SLIPS);
+/// Elastic constants, up to that of steel; of soft walls from the softest gels to hard rubber.
+const STIFFNESS: Bounds =
+    Bounds::above(0.0, 1e12, "Pa").usually([1e3, 3e7], &[("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9)]);
 /// Pole stretches of a rest state.
 const STRETCH: Bounds = Bounds::above(1.0, 10.0, "(no stretch is 1)");
 /// Pressures, up to 100 bar.
@@ -114,8 +119,8 @@ fn name(root: &mut Section<'_>) -> Result<String, Fault> {
 
 fn membrane(mut section: Section<'_>) -> Result<MembraneSection, Fault> {
     let membrane = MembraneSection {
-        radial_semi_axis_mm: section.needed_number("radial_semi_axis_mm", LENGTH)?,
-        axial_semi_axis_mm: section.needed_number("axial_semi_axis_mm", LENGTH)?,
+        radial_semi_axis_mm: section.needed_number("radial_semi_axis_mm", SEMI_AXIS)?,
+        axial_semi_axis_mm: section.needed_number("axial_semi_axis_mm", SEMI_AXIS)?,
         thickness_mm: section.needed_number("thickness_mm", LENGTH)?,
     };
     let least = membrane.radial_semi_axis_mm.min(membrane.axial_semi_axis_mm);

@@ -328,9 +328,13 @@ fn names_an_unknown_key_and_its_line() {
          axial_semi_axis_mm, thickness_mm"
     );
     assert!(
-        error("[press]", "[pres]").starts_with("bad.toml:13: `pres` is not a known key: allowed are name")
+        error("[press]", "[pres]")
+            .starts_with("bad.toml:13: `pres` is not a known key, did you mean `press`?: allowed are name")
     );
-    assert!(error("pole_stretch", "pole_strech").contains("`rest.pole_strech` is not a known key"));
+    assert!(
+        error("pole_stretch", "pole_strech")
+            .contains("`rest.pole_strech` is not a known key, did you mean `pole_stretch`?")
+    );
     assert!(
         error("law = \"mooney-rivlin\"", "law = \"neo-hookean\"").contains("`material.c2_pa` is not a known")
     );
@@ -695,6 +699,30 @@ fn names_an_impossible_value_the_line_and_what_is_allowed() {
             "{text}"
         );
         assert!(text.starts_with("bad.toml:"), "{text}");
+    }
+}
+
+#[test]
+fn names_a_slip_of_the_unit() {
+    for (from, to, meant) in [
+        ("160_355.0", "0.16", "in Pa: 160000 Pa if 0.16 is in MPa"),
+        ("160_355.0", "160", "in Pa: 160000 Pa if 160 is in kPa"),
+        ("160_355.0", "1.6e-4", "in Pa: 160000 Pa if 0.00016 is in GPa"),
+        ("= 4.5", "= 0.0045", "in mm: 4.5 mm if 0.0045 is in m"),
+        ("= 4.5", "= 4500", "in mm: 4.5 mm if 4500 is in um"),
+        (
+            "thickness_mm = 1\n",
+            "thickness_mm = 0.001\n",
+            "in mm: 1 mm if 0.001 is in m",
+        ),
+        (
+            "max_indentation_mm = 2.5",
+            "max_indentation_mm = 0.0025",
+            "in mm: 2.5 mm if 0.0025 is in m",
+        ),
+    ] {
+        let text = error(from, to);
+        assert!(text.contains(meant), "{text}");
     }
 }
 

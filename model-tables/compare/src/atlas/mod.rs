@@ -4,7 +4,7 @@ mod cost;
 mod map;
 mod survey;
 
-use output::files::write_all;
+use output::files;
 use output::progress::Progress;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -29,6 +29,7 @@ pub struct AtlasArguments {
 /// # Errors
 /// [`Refusal`] where a design cannot be solved or a file not be written.
 pub fn run(arguments: &AtlasArguments) -> Result<CommandAnswer, Refusal> {
+    files::expect_folder(&arguments.out, &["cost.svg", "cost.csv"])?;
     let stride = arguments.stride as usize;
     let mut contents: Vec<(String, Vec<u8>)> = Vec::new();
     let mut rows = Rows::new(COLUMNS);
@@ -61,7 +62,7 @@ pub fn run(arguments: &AtlasArguments) -> Result<CommandAnswer, Refusal> {
         .iter()
         .map(|(name, content)| (name.as_str(), content.clone()))
         .collect();
-    write_all(&arguments.out, &files)?;
+    files::write_all(&arguments.out, &files)?;
     Ok(CommandAnswer {
         rows,
         notes: vec![format!(

@@ -7,7 +7,7 @@ mod tables;
 use crate::methods::approximations::{APPROXIMATIONS, MeasuredErrors, SAMPLES, Yardstick};
 use crate::methods::contest::{self, Contestant, DESIGNS, Sweep};
 use model_tables::membrane::TensionField;
-use output::files::write_all;
+use output::files;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
 use std::fmt::Write as _;
@@ -43,12 +43,13 @@ struct Measured {
 /// # Errors
 /// [`Refusal`] where a design cannot be solved or a file not be written.
 pub fn run(arguments: &ChartArguments) -> Result<CommandAnswer, Refusal> {
+    files::expect_folder(&arguments.out, &[])?;
     let contents = if arguments.tables {
         tables::contents()?
     } else {
         methods(arguments)?
     };
-    write_all(&arguments.out, &contents)?;
+    files::write_all(&arguments.out, &contents)?;
     let mut rows = Rows::new(COLUMNS);
     for (name, content) in &contents {
         rows.push(vec![

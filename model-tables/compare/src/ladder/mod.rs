@@ -7,7 +7,7 @@ use model_tables::model::choice::LADDER;
 use output::drawing::{
     Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, Panel, VERMILION, power,
 };
-use output::files::write_all;
+use output::files;
 use output::progress::Progress;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -50,6 +50,7 @@ pub struct LadderArguments {
 /// # Errors
 /// [`Refusal`] where a design cannot be solved or a file not be written.
 pub fn run(arguments: &LadderArguments) -> Result<CommandAnswer, Refusal> {
+    files::expect_folder(&arguments.out, &["ladder.csv", "ladder.svg", "LADDER.md"])?;
     let mut measured = Vec::new();
     let progress = Progress::new("random walls");
     // One after another: what is measured is time.
@@ -85,7 +86,7 @@ pub fn run(arguments: &LadderArguments) -> Result<CommandAnswer, Refusal> {
             page::markdown(&judged, measured.len() - judged.len(), &scaling).into_bytes(),
         ),
     ];
-    write_all(&arguments.out, &contents)?;
+    files::write_all(&arguments.out, &contents)?;
     let mut notes = vec![format!(
         "wrote LADDER.md, ladder.svg and ladder.csv to {}",
         arguments.out.display()

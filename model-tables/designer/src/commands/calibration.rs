@@ -55,6 +55,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     use Parameter::{
         Compliance, IndentationOffset, Material, PoleStretch, PressureGain, PressureOffset, Thickness,
     };
+    if let Some(out) = &arguments.out {
+        files::expect_room(out)?;
+    }
     let dome = dome_data();
     let case = |name: &'static str, text: &str, data: &Data, chosen: &[Parameter]| -> Result<Case, Refusal> {
         let file = DesignFile::parse(text, name).map_err(Refusal::of)?;

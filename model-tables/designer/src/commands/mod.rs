@@ -24,6 +24,7 @@ mod solve;
 mod table;
 mod time_rows;
 
+use crate::table_text::one_line;
 use clap::builder::PossibleValue;
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
@@ -212,11 +213,11 @@ fn completions(shell: clap_complete::Shell) -> Result<Vec<String>, Refusal> {
 }
 
 fn print(text: &str) -> Result<(), Refusal> {
-    match std::io::stdout().write_all(text.as_bytes()) {
-        // Whoever read it has seen enough.
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        written => written.map_err(|error| Refusal(format!("standard output: {error}"))),
-    }
+    let mut stdout = std::io::stdout();
+    stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+        .map_err(|error| Refusal(format!("standard output took only a part of the answer: {error}")))
 }
 
 /// One line of warning on standard error, about an answer that is given.
@@ -256,9 +257,16 @@ fn usage(error: &clap::Error) -> String {
         );
     }
     let text = error.to_string();
-    let first = text.split("\n\n").next().unwrap_or_default();
-    let first: Vec<&str> = first.trim_start_matches("error: ").split_whitespace().collect();
-    format!("{} (see `designer --help`)", first.join(" "))
+    let mut parts = text.split("\n\n").map(one_line);
+    let what = parts.next().unwrap_or_default();
+    // What clap takes a misspelt name for.
+    let tip = parts
+        .find_map(|part| part.strip_prefix("tip: ").map(|tip| format!("; {tip}")))
+        .unwrap_or_default();
+    format!(
+        "{}{tip} (see `designer --help`)",
+        what.trim_start_matches("error: ")
+    )
 }
 
 /// A solid has no tension field.
@@ -273,7 +281,20 @@ fn refuse_plain(file: &Path, field: Field) -> Result<(), Refusal> {
 }
 
 fn read(design: &Path) -> Result<DesignFile, Refusal> {
-    DesignFile::read(design).map_err(Refusal::of)
+    files::keep(design);
+    let file = DesignFile::read(design).map_err(Refusal::of)?;
+    let axes = &file.membrane;
+    if axes.axial_semi_axis_mm > axes.radial_semi_axis_mm {
+        warn(
+            design,
+            &format_args!(
+                "membrane.axial_semi_axis_mm, {}, is more than radial_semi_axis_mm, {}: a dome that is higher than it is wide; \
+                 are the two swapped?",
+                axes.axial_semi_axis_mm, axes.radial_semi_axis_mm
+            ),
+        );
+    }
+    Ok(file)
 }
 
 /// A finite number; `inf` and `nan` are words that a float would take.

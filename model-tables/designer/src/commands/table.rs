@@ -1,13 +1,15 @@
 //! `designer table`: writes the tables of a design.
 
 use super::{estimate, read};
-use output::files::write_all;
+use output::files;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
 use std::time::Instant;
 
 const COLUMNS: &[&str] = &["file", "size_bytes"];
+/// The files, the certificate last: it vouches for the others.
+const FILES: [&str; 4] = ["tables.rs", "tables.bin", "tables.csv", "certificate.toml"];
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -23,16 +25,18 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
+    let design = read(file)?;
+    files::expect_folder(&arguments.out, &FILES)?;
     let begun = Instant::now();
-    let generated = estimate::generated(file, read(file)?, arguments.allow_worse)?;
+    let generated = estimate::generated(file, design, arguments.allow_worse)?;
     let seconds = begun.elapsed().as_secs_f64();
     let contents: [(&str, Vec<u8>); 4] = [
-        ("tables.rs", generated.rust_source().into_bytes()),
-        ("tables.bin", generated.binary()),
-        ("tables.csv", generated.csv().into_bytes()),
-        ("certificate.toml", generated.certificate().into_bytes()),
+        (FILES[0], generated.rust_source().into_bytes()),
+        (FILES[1], generated.binary()),
+        (FILES[2], generated.csv().into_bytes()),
+        (FILES[3], generated.certificate().into_bytes()),
     ];
-    write_all(&arguments.out, &contents)?;
+    files::write_all(&arguments.out, &contents)?;
     let mut rows = Rows::new(COLUMNS);
     for (name, content) in &contents {
         rows.push(vec![

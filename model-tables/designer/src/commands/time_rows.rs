@@ -1,6 +1,6 @@
 //! Rows of a quantity over time, from a CSV file.
 
-use crate::table_text;
+use crate::table_text::{Decimal, Sheet, one_line};
 use output::Refusal;
 use std::path::Path;
 
@@ -31,11 +31,10 @@ pub(super) struct TimeRows {
 
 /// Reads `time_s` and exactly one of the columns that may be given, and `temperature_c` where it is there; other columns are left out.
 pub(super) fn read(file: &Path, given: &[&'static str]) -> Result<TimeRows, Refusal> {
-    let about = |reason: &str| Refusal::about(file, &table_text::one_line(reason));
-    let text = std::fs::read_to_string(file).map_err(|error| about(&format!("cannot be read: {error}")))?;
-    let mut reader = table_text::reader(&text);
-    let unreadable = |error: csv::Error| about(&format!("not a CSV file: {error}"));
-    let header = table_text::header(&mut reader).map_err(unreadable)?;
+    let about = |reason: &str| Refusal::about(file, &one_line(reason));
+    let bytes = std::fs::read(file).map_err(|error| about(&format!("cannot be read: {error}")))?;
+    let sheet = Sheet::read(&bytes).map_err(|reason| about(&reason))?;
+    let header = &sheet.header;
     let place = |name: &str| header.iter().position(|column| column == name);
     let time = place(TIME).ok_or_else(|| {
         about(&format!(
@@ -63,16 +62,25 @@ pub(super) fn read(file: &Path, given: &[&'static str]) -> Result<TimeRows, Refu
         }
     };
     let temperature = place(TEMPERATURE);
+    let places: Vec<usize> = [Some(time), Some(at), temperature]
+        .into_iter()
+        .flatten()
+        .collect();
+    let numbers = sheet
+        .rows
+        .iter()
+        .flat_map(|row| places.iter().map(|&at| (row.line, row.number_text(at))));
+    let decimal = Decimal::of(numbers).map_err(|reason| about(&reason))?;
     let mut rows: Vec<TimeRow> = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(unreadable)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let number = |at: usize, column: &str| match record.get(at).unwrap_or_default().parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(about(&format!(
-                "line {line}: `{column}` is {:?}: must be a finite number",
-                record.get(at).unwrap_or_default()
-            ))),
+    for record in &sheet.rows {
+        let line = record.line;
+        let number = |at: usize, column: &str| {
+            let text = record.number_text(at);
+            decimal.number(text).ok_or_else(|| {
+                about(&format!(
+                    "line {line}: `{column}` is {text:?}: must be a finite number"
+                ))
+            })
         };
         let row = TimeRow {
             time: number(time, TIME)?,

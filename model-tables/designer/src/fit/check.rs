@@ -8,6 +8,7 @@ use super::robust;
 use super::solve::{Task, Weighting, index};
 use model_tables::design_file::DesignFile;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// How far predictions are from measurements, in their unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +59,21 @@ pub(super) fn order(data: &Data, residuals: &[&Residual]) -> Option<f64> {
     sorted.sort_by(|a, b| data.rows[a.row].depth().total_cmp(&data.rows[b.row].depth()));
     let left: Vec<f64> = sorted.iter().map(|residual| residual.standardised).collect();
     robust::runs(&left)
+}
+
+/// Numbers of one sign so unlikely by chance, both sides together, are no chance.
+const BY_CHANCE: f64 = 1e-3;
+
+/// The share of what is left that is positive, where that is no chance (the sign test).
+pub(super) fn one_sided(residuals: &[&Residual]) -> Option<f64> {
+    let signs: Vec<bool> = residuals
+        .iter()
+        .filter(|residual| !residual.outlier)
+        .map(|residual| residual.standardised > 0.0)
+        .collect();
+    let positive = signs.iter().filter(|sign| **sign).count();
+    let count = signs.len();
+    (robust::sign_chance(positive, count) < BY_CHANCE).then(|| positive as f64 / count as f64)
 }
 
 /// Unloading less loading at equal depth.
@@ -188,6 +204,7 @@ pub(super) fn validate(
         ..
     } = *task;
     let kind = task.model.kind;
+    let work = task.model.work();
     let (fold_of, folds, by_trial) = folds(data);
     let pick = |fold: usize, held_out: bool| -> Vec<usize> {
         (0..targets.len())
@@ -197,9 +214,9 @@ pub(super) fn validate(
     let predicted: Option<Vec<Vec<Pair>>> = (0..folds)
         .into_par_iter()
         .map(|fold| {
-            let model = Model::new(kind, file, data, free);
+            let model = Model::sharing(kind, file, data, free, Arc::clone(&work));
             let kept = pick(fold, false);
-            if kept.len() <= free.len() {
+            if kept.len() <= free.len() || model.is_spent() {
                 return None;
             }
             let part = |members: &[usize]| -> Vec<Target> { members.iter().map(|&i| targets[i]).collect() };

@@ -2,8 +2,10 @@
 
 pub use super::data_error::DataError;
 
-use super::data_error::{FORCE, INDENTATION, PRESSURE};
-use crate::table_text;
+use super::clipping;
+use super::columns::{self, Columns};
+use super::heading::Measured;
+use crate::table_text::{Decimal, Sheet, SheetRow};
 
 /// Which way the plate moved.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -51,123 +53,189 @@ pub struct Data {
     pub trials: Vec<String>,
     /// Rows left out because fewer than two quantities were there.
     pub incomplete: usize,
+    /// How the file was read, and what was changed or left out, one line each.
+    pub notes: Vec<String>,
 }
 
 /// How columns are found and rows chosen.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct DataChoice {
-    /// Name of the column with the pressure rise, kilopascals.
-    pub pressure_column: String,
+    /// Pairs of a name of the contract and the file's name or number of that column.
+    pub columns: Vec<(String, String)>,
     /// Only rows whose column has this value.
     pub only: Vec<(String, String)>,
     /// Only rows of this direction.
     pub direction: Option<Direction>,
 }
 
-impl Default for DataChoice {
-    fn default() -> Self {
-        Self {
-            pressure_column: PRESSURE.to_owned(),
-            only: Vec::new(),
-            direction: None,
-        }
-    }
-}
-
 /// Rows that a fit takes at least.
 const LEAST_ROWS: usize = 3;
+/// Numbers of no bench, SI: a logger's mark of a missing value, or a slip.
+const LARGEST: f64 = 1e12;
 /// Rank correlation under which a quantity does not grow with another.
 const LEAST_CORRELATION: f64 = 0.5;
 /// A turn back by more than this part of the range of a trial changes the direction.
 const TURN: f64 = 0.15;
 
-/// A column's name, its values and the factor to its unit.
-type Column = (&'static str, fn(&DataRow) -> Option<f64>, f64);
+/// A quantity of the negative sign is so many times as large there as on the positive side.
+const NEGATIVE: f64 = 4.0;
+/// Cells that stand for a missing number, in lower case.
+const MISSING: [&str; 6] = ["", "nan", "na", "n/a", "-", "--"];
+
+impl DataRow {
+    /// One of the three quantities, SI.
+    pub fn get(&self, quantity: Measured) -> Option<f64> {
+        match quantity {
+            Measured::Indentation => self.indentation,
+            Measured::Force => self.force,
+            Measured::PressureRise => self.rise,
+        }
+    }
+
+    pub(super) fn set(&mut self, quantity: Measured, value: Option<f64>) {
+        match quantity {
+            Measured::Indentation => self.indentation = value,
+            Measured::Force => self.force = value,
+            Measured::PressureRise => self.rise = value,
+        }
+    }
+
+    pub(super) fn quantities(&self) -> usize {
+        Measured::ALL
+            .iter()
+            .filter(|quantity| self.get(**quantity).is_some())
+            .count()
+    }
+}
+
+/// How the cells of a file become numbers.
+struct Cells<'a> {
+    sheet: &'a Sheet,
+    columns: &'a Columns,
+    decimal: Decimal,
+}
+
+impl Cells<'_> {
+    /// A quantity of a row, SI; `None` where its cell is empty.
+    fn number(&self, row: &SheetRow, quantity: Measured) -> Result<Option<f64>, DataError> {
+        let Some(column) = self.columns.quantities[quantity as usize] else {
+            return Ok(None);
+        };
+        let text = row.number_text(column.at);
+        if MISSING.contains(&text.to_lowercase().as_str()) {
+            return Ok(None);
+        }
+        match self.decimal.number(text).map(|number| number * column.unit) {
+            Some(number) if number.abs() < LARGEST => Ok(Some(number)),
+            _ => Err(DataError::Cell {
+                line: row.line,
+                column: self.sheet.header[column.at].clone(),
+                found: text.to_owned(),
+                allowed: "a finite number of a bench, or empty",
+            }),
+        }
+    }
+}
 
 impl Data {
-    /// Reads CSV text; `name` is what reports call it.
+    /// Reads text; `name` is what reports call it.
     ///
     /// # Errors
     /// [`DataError`] for the first thing that is wrong.
     pub fn parse(text: &str, name: &str, choice: &DataChoice) -> Result<Self, DataError> {
-        let mut reader = table_text::reader(text);
-        let unreadable = |error: csv::Error| DataError::Unreadable(table_text::one_line(&error.to_string()));
-        let header = table_text::header(&mut reader).map_err(unreadable)?;
-        let place = |name: &str| header.iter().position(|column| column == name);
-        let needed = |name: &str| {
-            place(name).ok_or_else(|| DataError::Column {
-                missing: name.to_owned(),
-                found: header.join(", "),
-            })
-        };
-        let pressure = if choice.pressure_column == PRESSURE {
-            place(PRESSURE)
-        } else {
-            Some(needed(&choice.pressure_column)?)
-        };
-        let columns = [place(INDENTATION), place(FORCE), pressure];
-        if columns.iter().flatten().count() < 2 {
-            return Err(DataError::TooFewColumns {
-                found: header.join(", "),
-            });
-        }
+        Self::read(text.as_bytes(), name, choice)
+    }
+
+    /// Reads the bytes of a file; `name` is what reports call it.
+    ///
+    /// # Errors
+    /// [`DataError`] for the first thing that is wrong.
+    pub fn read(bytes: &[u8], name: &str, choice: &DataChoice) -> Result<Self, DataError> {
+        let sheet = Sheet::read(bytes).map_err(DataError::Unreadable)?;
         let only: Vec<(usize, &str)> = choice
             .only
             .iter()
-            .map(|(column, value)| Ok((needed(column)?, value.as_str())))
+            .map(|(column, value)| Ok((columns::place(&sheet, column)?, value.as_str())))
             .collect::<Result<_, DataError>>()?;
-        let (trial_column, direction_column) = (place("trial"), place("direction"));
+        let filters: Vec<usize> = only.iter().map(|(at, _)| *at).collect();
+        let columns = Columns::find(&sheet, &choice.columns, &filters)?;
+        let places: Vec<usize> = columns
+            .quantities
+            .iter()
+            .flatten()
+            .map(|column| column.at)
+            .collect();
+        let numbers = sheet
+            .rows
+            .iter()
+            .flat_map(|row| places.iter().map(|&at| (row.line, row.number_text(at))));
+        let decimal = Decimal::of(numbers).map_err(DataError::Unreadable)?;
         let mut data = Self {
             name: name.to_owned(),
             rows: Vec::new(),
             trials: Vec::new(),
             incomplete: 0,
+            notes: sheet.notes.iter().chain(&columns.notes).cloned().collect(),
         };
-        for record in reader.records() {
-            let record = record.map_err(unreadable)?;
-            let line = record.position().map_or(0, csv::Position::line);
-            let cell = |column: usize| record.get(column).unwrap_or_default();
-            if !only.iter().all(|&(column, value)| same(cell(column), value)) {
+        if decimal == Decimal::Comma {
+            data.notes.push("numbers have decimal commas".to_owned());
+        }
+        let cells = Cells {
+            sheet: &sheet,
+            columns: &columns,
+            decimal,
+        };
+        for row in &sheet.rows {
+            if !only
+                .iter()
+                .all(|&(column, value)| same(row.cell(column), value, decimal))
+            {
                 continue;
             }
-            let number = |which: usize, factor: f64| -> Result<Option<f64>, DataError> {
-                let Some(column) = columns[which] else {
-                    return Ok(None);
-                };
-                let text = cell(column);
-                if text.is_empty() {
-                    return Ok(None);
-                }
-                match text.parse::<f64>() {
-                    Ok(value) if value.is_finite() => Ok(Some(factor * value)),
-                    _ => Err(DataError::Cell {
-                        line,
-                        column: header[column].clone(),
-                        found: text.to_owned(),
-                        allowed: "a finite number or empty",
-                    }),
-                }
-            };
+            let of = |at: Option<usize>| at.map_or("", |at| row.cell(at));
             let row = DataRow {
-                line,
-                trial: data.trial(trial_column.map_or("", cell)),
-                direction: direction(direction_column.map_or("", cell), line)?,
-                indentation: number(0, 1e-3)?,
-                force: number(1, 1.0)?,
-                rise: number(2, 1e3)?,
+                line: row.line,
+                trial: data.trial(of(columns.trial)),
+                direction: direction(of(columns.direction), row.line)?,
+                indentation: cells.number(row, Measured::Indentation)?,
+                force: cells.number(row, Measured::Force)?,
+                rise: cells.number(row, Measured::PressureRise)?,
             };
-            if [row.indentation, row.force, row.rise].iter().flatten().count() < 2 {
+            if row.quantities() < 2 {
                 data.incomplete += 1;
             } else {
                 data.rows.push(row);
             }
         }
+        data.turn_signs();
         data.infer_directions();
         if let Some(direction) = choice.direction {
             data.rows.retain(|row| row.direction == direction);
         }
         data.check()?;
+        let clipped = clipping::take_out(&mut data);
+        if !clipped.is_empty() {
+            data.notes.extend(clipped);
+            data.check()?;
+        }
         Ok(data)
+    }
+
+    /// Turns the sign of indentations and forces that are negative in compression.
+    fn turn_signs(&mut self) {
+        for quantity in [Measured::Indentation, Measured::Force] {
+            let values = || self.rows.iter().filter_map(|row| row.get(quantity));
+            let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
+            if -low > NEGATIVE * high && values().count() >= LEAST_ROWS {
+                for row in &mut self.rows {
+                    let turned = row.get(quantity).map(|value| -value);
+                    row.set(quantity, turned);
+                }
+                self.notes.push(format!(
+                    "the {quantity} is negative in compression: its sign was turned"
+                ));
+            }
+        }
     }
 
     fn trial(&mut self, name: &str) -> usize {
@@ -210,27 +278,27 @@ impl Data {
                 needed: LEAST_ROWS,
             });
         }
-        let columns: [Column; 3] = [
-            (INDENTATION, |row| row.indentation, 1e3),
-            (FORCE, |row| row.force, 1.0),
-            (PRESSURE, |row| row.rise, 1e-3),
-        ];
-        for (column, of, unit) in columns {
-            let values: Vec<f64> = self.rows.iter().filter_map(of).collect();
+        for quantity in Measured::ALL {
+            let values: Vec<f64> = self.rows.iter().filter_map(|row| row.get(quantity)).collect();
             if let Some(&first) = values.first()
                 && values.iter().all(|value| value.to_bits() == first.to_bits())
             {
                 return Err(DataError::Constant {
-                    column: column.to_owned(),
-                    value: first * unit,
+                    column: quantity.column().to_owned(),
+                    value: first * quantity.per_si(),
                 });
             }
         }
-        for (a, b) in [(1, 0), (2, 0), (1, 2)] {
+        use Measured::{Force, Indentation, PressureRise};
+        for (a, b) in [
+            (Force, Indentation),
+            (PressureRise, Indentation),
+            (Force, PressureRise),
+        ] {
             let pairs: Vec<[f64; 2]> = self
                 .rows
                 .iter()
-                .filter_map(|row| Some([columns[b].1(row)?, columns[a].1(row)?]))
+                .filter_map(|row| Some([row.get(b)?, row.get(a)?]))
                 .collect();
             if pairs.len() < LEAST_ROWS {
                 continue;
@@ -238,8 +306,8 @@ impl Data {
             let correlation = rank_correlation(&pairs);
             if correlation < LEAST_CORRELATION {
                 return Err(DataError::NotGrowing {
-                    column: columns[a].0.to_owned(),
-                    with: columns[b].0.to_owned(),
+                    column: a.column().to_owned(),
+                    with: b.column().to_owned(),
                     correlation,
                 });
             }
@@ -250,23 +318,23 @@ impl Data {
 
 /// The direction that a cell names.
 fn direction(cell: &str, line: u64) -> Result<Direction, DataError> {
-    match cell {
+    match cell.to_lowercase().as_str() {
         "" => Ok(Direction::Unknown),
         "loading" => Ok(Direction::Loading),
         "unloading" => Ok(Direction::Unloading),
-        other => Err(DataError::Cell {
+        _ => Err(DataError::Cell {
             line,
             column: "direction".to_owned(),
-            found: other.to_owned(),
+            found: cell.to_owned(),
             allowed: "`loading`, `unloading` or empty",
         }),
     }
 }
 
 /// Whether a cell has a value: as a number if both are, else letter by letter.
-fn same(cell: &str, value: &str) -> bool {
-    match (cell.parse::<f64>(), value.parse::<f64>()) {
-        (Ok(a), Ok(b)) => (a - b).abs() <= 1e-9 * a.abs().max(b.abs()),
+fn same(cell: &str, value: &str, decimal: Decimal) -> bool {
+    match (decimal.number(cell), Decimal::Point.number(value)) {
+        (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs().max(b.abs()),
         _ => cell == value,
     }
 }

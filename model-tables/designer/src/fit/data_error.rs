@@ -1,17 +1,58 @@
 //! Why data cannot be used, in words.
 
+use super::heading::Measured;
 use std::fmt;
-
-// Columns of the file.
-pub(super) const INDENTATION: &str = "indentation_mm";
-pub(super) const FORCE: &str = "force_n";
-pub(super) const PRESSURE: &str = "pressure_rise_kpa";
 
 /// Why data cannot be used. `Display` is one line with the remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DataError {
-    /// The file is no CSV file.
+    /// The file is no table of numbers; the reason.
     Unreadable(String),
+    /// The file names no columns.
+    NoHeader {
+        /// How many columns there are.
+        columns: usize,
+    },
+    /// A name that is none of the contract's.
+    UnknownName {
+        /// The name.
+        name: String,
+    },
+    /// A column that is all but named like one that is missing.
+    NearMiss {
+        /// The column.
+        found: String,
+        /// The name that it resembles.
+        meant: &'static str,
+    },
+    /// Absolute pressures, where a rise is needed.
+    Absolute {
+        /// The column.
+        found: String,
+    },
+    /// Two columns of one quantity, which differ.
+    Several {
+        /// The name or quantity.
+        what: String,
+        /// The two.
+        columns: [String; 2],
+    },
+    /// A unit is missing, or is none of the quantity.
+    Unit {
+        /// The column.
+        column: String,
+        /// The unit.
+        unit: Option<String>,
+        /// What the column holds.
+        quantity: Measured,
+    },
+    /// Heading and row of units contradict each other.
+    TwoUnits {
+        /// The column.
+        column: String,
+        /// The unit of the heading, and of the row of units.
+        units: [String; 2],
+    },
     /// A column is missing.
     Column {
         /// The column.
@@ -63,14 +104,65 @@ pub enum DataError {
 impl fmt::Display for DataError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unreadable(reason) => write!(f, "not a CSV file: {reason}"),
+            Self::Unreadable(reason) => f.write_str(reason),
+            Self::NoHeader { columns } => write!(
+                f,
+                "the first line is all numbers, so the {columns} columns have no names: add a header, or name them by number, \
+                 as in --columns indentation_mm=1,force_n=2"
+            ),
+            Self::UnknownName { name } => write!(
+                f,
+                "--columns {name}=...: `{name}` is no quantity: name indentation_mm, force_n, pressure_rise_kpa, trial or \
+                 direction"
+            ),
+            Self::NearMiss { found, meant } => write!(
+                f,
+                "is the column `{found}` meant to be `{meant}`? Rename it, or say --columns {meant}={found}"
+            ),
+            Self::Absolute { found } => write!(
+                f,
+                "`{found}` is an absolute pressure, and a fit needs the rise over the untouched tip: subtract the untouched \
+                 reading, and name the column pressure_rise_kpa"
+            ),
+            Self::Several {
+                what,
+                columns: [a, b],
+            } => write!(
+                f,
+                "`{what}` can be {a}, or {b}, and they differ: leave one out, or name one with --columns by its number"
+            ),
+            Self::Unit {
+                column,
+                unit: None,
+                quantity,
+            } => write!(
+                f,
+                "the column `{column}` has no unit: write it into the header, or say --columns {}={column}",
+                quantity.column()
+            ),
+            Self::Unit {
+                column,
+                unit: Some(unit),
+                quantity,
+            } => write!(
+                f,
+                "`{unit}` of the column `{column}` is no unit of the {quantity}: write one of {}",
+                quantity.unit_names()
+            ),
+            Self::TwoUnits {
+                column,
+                units: [a, b],
+            } => write!(
+                f,
+                "the heading `{column}` says {a} and the row of units {b}: correct one of them"
+            ),
             Self::Column { missing, found } => {
                 write!(f, "there is no column `{missing}`: there are {found}")
             }
             Self::TooFewColumns { found } => write!(
                 f,
-                "needs at least two of the columns {INDENTATION}, {FORCE}, {PRESSURE}: there are {found}; rename them, or \
-                 name the pressure's with --pressure-column"
+                "needs at least two of the columns indentation_mm, force_n, pressure_rise_kpa: there are {found}; rename them, \
+                 or name them as in --columns force_n=Fz"
             ),
             Self::Cell {
                 line,

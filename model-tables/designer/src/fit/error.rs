@@ -3,6 +3,7 @@
 use super::model::DataQuantity;
 use super::parameter::Parameter;
 use model_tables::model::ModelError;
+use output::rows::significant;
 use std::fmt;
 
 /// Why there is no fit. `Display` is one line with the remedy.
@@ -17,6 +18,15 @@ pub enum FitError {
         /// Data over design.
         ratio: f64,
     },
+    /// The data go deeper than the tip is high.
+    TooDeep {
+        /// Deepest indentation, metres.
+        deepest: f64,
+        /// Height of the tip at rest, metres.
+        height: f64,
+    },
+    /// Force and pressure rise fit each other's place.
+    Swapped,
     /// There are fewer data than parameters.
     TooFew {
         /// Data.
@@ -37,6 +47,8 @@ pub enum FitError {
     },
     /// The method found no least squares.
     Lost,
+    /// The method did not come to an end.
+    Unsettled,
 }
 
 impl From<ModelError> for FitError {
@@ -51,8 +63,26 @@ impl fmt::Display for FitError {
             Self::Model(error) => error.fmt(f),
             Self::Units { quantity, ratio } => write!(
                 f,
-                "the {quantity} of the data is {ratio:.3} times what the design gives at the same places: check the units \
-                 (N, kPa, mm) and the design"
+                "the {quantity} of the data is {} times what the design gives at the same places: {}check the units (N, kPa, mm) \
+                 and the design",
+                significant(*ratio, 3),
+                slip(*quantity, *ratio)
+            ),
+            Self::TooDeep { deepest, height } => write!(
+                f,
+                "the data go {} mm deep, and the tip is {} mm high: {}",
+                significant(1e3 * deepest, 4),
+                significant(1e3 * height, 4),
+                if (0.02..0.9).contains(&(1e-3 * deepest / height)) {
+                    "are these micrometres? The column is indentation_mm"
+                } else {
+                    "give the indentation from first touch on, not the stage's position, in mm"
+                }
+            ),
+            Self::Swapped => write!(
+                f,
+                "force_n runs as the design's pressure rise and pressure_rise_kpa as its force: the two columns are swapped; \
+                 rename them, or say --columns force_n=pressure_rise_kpa,pressure_rise_kpa=force_n"
             ),
             Self::TooFew { data, parameters } => write!(
                 f,
@@ -68,12 +98,40 @@ impl fmt::Display for FitError {
                 "the data ask for {parameter} = {value:.4}, which no such device has: check units and design, fit other \
                  parameters, or use --from-data"
             ),
+            Self::Unsettled => write!(
+                f,
+                "no least squares after as many states of the model as a fit may take: the data do not run as a pressed tip's, whose \
+                 force grows ever faster with the indentation; check columns and zero, fit fewer parameters, or use --from-data"
+            ),
             Self::Lost => write!(
                 f,
                 "no values of the parameters come near the data: check units and design, or use --from-data"
             ),
         }
     }
+}
+
+/// Units that data come in by a slip, and what a column in them reads over one in the contract's.
+const SLIPS: [(DataQuantity, &str, f64); 7] = [
+    (DataQuantity::Rise, "Pa", 1e3),
+    (DataQuantity::Rise, "mbar or hPa", 10.0),
+    (DataQuantity::Rise, "bar", 1e-2),
+    (DataQuantity::Rise, "MPa", 1e-3),
+    (DataQuantity::Force, "mN", 1e3),
+    (DataQuantity::Force, "gram-force", 101.97),
+    (DataQuantity::Force, "kN", 1e-3),
+];
+/// Data are so many times off a slip at most.
+const NEAR: f64 = 4.0;
+
+/// The unit that the data may be in.
+fn slip(quantity: DataQuantity, ratio: f64) -> String {
+    let off = |size: f64| libm::fabs(libm::log(ratio / size));
+    SLIPS
+        .iter()
+        .filter(|(of, _, size)| *of == quantity && off(*size) < libm::log(NEAR))
+        .min_by(|a, b| off(a.2).total_cmp(&off(b.2)))
+        .map_or_else(String::new, |(_, unit, _)| format!("are they in {unit}? "))
 }
 
 impl core::error::Error for FitError {}

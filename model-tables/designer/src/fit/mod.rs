@@ -8,10 +8,14 @@
 //! Standard errors are those of noise alone, with what it costs that the weights are found in the same data (`widening`): they hold
 //! if the model is right, which [`Fit::systematic`] doubts where what is left has an order.
 
+mod bias;
 pub mod check;
+mod clipping;
+mod columns;
 pub mod data;
 mod data_error;
 mod error;
+mod heading;
 mod identify;
 mod model;
 mod noise;
@@ -36,9 +40,11 @@ use parameter::{Parameter, ParameterValues, Units};
 use search::Found;
 use solve::Task;
 
+pub use bias::Bias;
 pub use error::FitError;
+pub use heading::Measured;
 pub use identify::Unidentified;
-pub use model::DataQuantity;
+pub use model::{DataQuantity, states_solved};
 pub use noise::NoiseModel;
 
 /// Data so far from the design, as a factor, are in other units or of another device.
@@ -112,6 +118,10 @@ pub struct Fit {
     pub after: [Option<Misfit>; 2],
     /// Order in the signs of what is left, force and rise, in standard deviations: negative where they cluster.
     pub systematic: [Option<f64>; 2],
+    /// The sign that all, or nearly all, of what is left has: force and rise.
+    pub one_sided: [Option<f64>; 2],
+    /// Errors of the bench in what is left, the best founded first.
+    pub biases: Vec<Bias>,
     /// Loading against unloading, force and rise.
     pub hysteresis: [Option<Hysteresis>; 2],
     /// What the fit predicts of data it was not fitted to.
@@ -142,7 +152,9 @@ pub fn fit(file: &DesignFile, data: &Data, chosen: &[Parameter]) -> Result<Fit, 
     }
     let units = units(file, data);
     let model = Model::new(kind, file, data, &free);
+    check_depth(data, model.height()?)?;
     let before = model.predict(&start, data, &targets)?;
+    check_swapped(&targets, &before)?;
     check_units(&targets, &before)?;
     let found = search::search(&model, data, &targets, units, &start, free)?;
     let task = Task {
@@ -244,6 +256,18 @@ fn finish(
     Ok(Fit {
         before: misfit(|residual| residual.before),
         after: misfit(|residual| residual.fitted),
+        one_sided: both.each_ref().map(|residuals| check::one_sided(residuals)),
+        biases: bias::find(&bias::Left {
+            data,
+            targets: task.targets,
+            factors: &weighting.factors(),
+            jacobian: &jacobian,
+            residuals: &residuals
+                .iter()
+                .map(|r| r.measured - r.fitted)
+                .collect::<Vec<_>>(),
+            by_indentation: task.by_indentation(values, &predicted),
+        }),
         systematic: both.each_ref().map(|residuals| check::order(data, residuals)),
         hysteresis: both.each_ref().map(|residuals| Hysteresis::of(data, residuals)),
         noise: [0, 1].map(|k| (!both[k].is_empty()).then_some(weighting.noise[k])),
@@ -294,7 +318,68 @@ fn units(file: &DesignFile, data: &Data) -> Units {
         compliance: core::f64::consts::PI * radius * deepest * deepest / rise,
         indentation: 0.1 * deepest,
         rise: 0.1 * rise,
+        force: 0.1 * largest(|row| row.force),
     }
+}
+
+/// Refuses data that go deeper than the tip is high, metres.
+fn check_depth(data: &Data, height: f64) -> Result<(), FitError> {
+    let deepest = data
+        .rows
+        .iter()
+        .filter_map(|row| row.indentation)
+        .fold(0.0, f64::max);
+    if deepest > height {
+        return Err(FitError::TooDeep { deepest, height });
+    }
+    Ok(())
+}
+
+/// Height that a tip may have over a guess of it from its dimensions.
+const ROOM: f64 = 1.3;
+
+/// Refuses data that no press of the design's shape has, for curves that are made without its model.
+///
+/// # Errors
+/// [`FitError`].
+pub fn check_shape(file: &DesignFile, data: &Data) -> Result<(), FitError> {
+    let design = file.design();
+    let made = design.membrane.axial_semi_axis;
+    let height = match design.rest {
+        RestBy::Unstretched | RestBy::Pressure(_) => made,
+        RestBy::PoleStretch(stretch) => stretch * made,
+        RestBy::Height(height) => height,
+        RestBy::EquatorRadius(radius) => made * radius / design.membrane.radial_semi_axis,
+    };
+    check_depth(data, ROOM * height)
+}
+
+/// Part of what a straight line leaves of force and pressure as they are named, over which the other way round is no better.
+const SWAPPED: f64 = 0.5;
+
+/// Force and pressure rise in each other's columns: each then runs as the other does in the design, whatever its size and zero.
+fn check_swapped(targets: &[Target], predicted: &[f64]) -> Result<(), FitError> {
+    // Of each row that has both: measured and predicted force, then rise.
+    let mut rows: Vec<[[f64; 2]; 2]> = Vec::new();
+    for (i, force) in targets.iter().enumerate() {
+        if let Some(rise) = targets.get(i + 1)
+            && (force.quantity, rise.quantity) == (DataQuantity::Force, DataQuantity::Rise)
+            && force.row == rise.row
+        {
+            rows.push([[force.measured, predicted[i]], [rise.measured, predicted[i + 1]]]);
+        }
+    }
+    if rows.len() < robust::ENOUGH {
+        return Ok(());
+    }
+    let left = |measured: usize, by: usize| {
+        let pairs: Vec<[f64; 2]> = rows.iter().map(|row| [row[by][1], row[measured][0]]).collect();
+        robust::left_of_line(&pairs)
+    };
+    if left(0, 1) + left(1, 0) < SWAPPED * (left(0, 0) + left(1, 1)) {
+        return Err(FitError::Swapped);
+    }
+    Ok(())
 }
 
 /// Data of another unit or device are no work for a fit.

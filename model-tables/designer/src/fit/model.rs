@@ -20,6 +20,8 @@ use model_tables::solid::mesh::Elements;
 use std::cell::RefCell;
 use std::fmt;
 use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Gauss points an element.
 const STAGES: usize = 4;
@@ -39,6 +41,8 @@ const STEP: f64 = 1.3;
 const NEARLY: f64 = 0.9995;
 /// States of a curve at most: a press of any depth from a thousandth of it on.
 const MOST_STATES: usize = 64;
+/// States that a fit of a membrane, and of a solid, solves at most: many times what data of such a device take.
+const MOST_WORK: [usize; 2] = [60_000, 2_500];
 /// Curves that are kept.
 const KEPT: usize = 512;
 
@@ -217,11 +221,37 @@ pub(super) struct Model {
     shallowest: f64,
     largest_rise: f64,
     cache: RefCell<Vec<(Key, Solved)>>,
+    /// States solved, by this fit alone.
+    work: Arc<AtomicUsize>,
+}
+
+/// States solved by every fit of this process, for a line of progress.
+static SOLVED: AtomicUsize = AtomicUsize::new(0);
+
+/// States that all fits of this process have solved so far.
+pub fn states_solved() -> usize {
+    SOLVED.load(Ordering::Relaxed)
 }
 
 impl Model {
     /// Ready to predict the data; `free` parameters will be changed.
     pub(super) fn new(kind: Kind, file: &DesignFile, data: &Data, free: &[Parameter]) -> Self {
+        Self::sharing(kind, file, data, free, Arc::default())
+    }
+
+    /// The count of its work, for models that share it.
+    pub(super) fn work(&self) -> Arc<AtomicUsize> {
+        Arc::clone(&self.work)
+    }
+
+    /// As [`Model::new`], its work counted with that of others.
+    pub(super) fn sharing(
+        kind: Kind,
+        file: &DesignFile,
+        data: &Data,
+        free: &[Parameter],
+        work: Arc<AtomicUsize>,
+    ) -> Self {
         let mut nominal = file.clone();
         nominal.calibration = model_tables::design_file::Calibration::default();
         let design = nominal.design();
@@ -241,7 +271,30 @@ impl Model {
             largest_rise: largest(|row| row.indentation.map_or(row.rise, |_| None)),
             design,
             cache: RefCell::new(Vec::new()),
+            work,
         }
+    }
+
+    /// Whether the fit has solved as many states as it may.
+    pub(super) fn is_spent(&self) -> bool {
+        let most = if self.kind.is_cheap() {
+            MOST_WORK[0]
+        } else {
+            MOST_WORK[1]
+        };
+        self.work.load(Ordering::Relaxed) > most
+    }
+
+    /// Height of the design at rest, metres.
+    ///
+    /// # Errors
+    /// [`ModelError`] when there is no rest state.
+    pub(super) fn height(&self) -> Result<f64, ModelError> {
+        let design = Design {
+            rest: self.rest,
+            ..self.design
+        };
+        Ok(Ready::new(self.kind, &design)?.height())
     }
 
     /// What multiplies pressure and force, over that of the design: modulus, of a membrane times wall.
@@ -321,12 +374,17 @@ impl Model {
         let mut points: Vec<Contact> = Vec::new();
         let mut ends = false;
         while points.len() < MOST_STATES {
+            self.work.fetch_add(1, Ordering::Relaxed);
+            SOLVED.fetch_add(1, Ordering::Relaxed);
             match press.contact_at(indentation) {
                 Ok(point) => points.push(point),
                 Err(error) => {
                     let limit = error.beyond().ok_or(error)?;
                     ends = true;
                     let last = NEARLY * limit.indentation;
+                    if points.is_empty() {
+                        points.push(press.contact_at(last / STEP)?);
+                    }
                     if points.last().is_none_or(|point| point.indentation < last) {
                         points.push(press.contact_at(last)?);
                     }
@@ -383,6 +441,7 @@ impl Model {
         let gain = values.get(Parameter::PressureGain);
         let rise_offset = 1e3 * values.get(Parameter::PressureOffset);
         let offset = 1e-3 * values.get(Parameter::IndentationOffset);
+        let force_offset = values.get(Parameter::ForceOffset);
         Ok(targets
             .iter()
             .map(|target| {
@@ -390,12 +449,12 @@ impl Model {
                 if let Some(read) = row.indentation {
                     let contact = shape.at_indentation(read - offset);
                     match target.quantity {
-                        DataQuantity::Force => scale * contact.force,
+                        DataQuantity::Force => scale * contact.force + force_offset,
                         DataQuantity::Rise => gain * scale * contact.pressure_rise + rise_offset,
                     }
                 } else {
                     let rise = (row.rise.unwrap_or(0.0) - rise_offset) / gain;
-                    scale * shape.force_at_rise(rise / scale)
+                    scale * shape.force_at_rise(rise / scale) + force_offset
                 }
             })
             .collect())

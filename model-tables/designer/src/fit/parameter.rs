@@ -20,10 +20,12 @@ pub enum Parameter {
     IndentationOffset,
     /// What the pressure rise reads at rest, kilopascals.
     PressureOffset,
+    /// What the load cell reads without a load, newtons: the bench's alone, no part of the device.
+    ForceOffset,
 }
 
 /// Number of parameters.
-pub const COUNT: usize = 7;
+pub const COUNT: usize = 8;
 
 impl Parameter {
     /// All of them.
@@ -35,6 +37,7 @@ impl Parameter {
         Self::Thickness,
         Self::IndentationOffset,
         Self::PressureOffset,
+        Self::ForceOffset,
     ];
 
     /// What a fit changes unless told otherwise.
@@ -50,10 +53,11 @@ impl Parameter {
             Self::Thickness => "thickness",
             Self::IndentationOffset => "indentation-offset",
             Self::PressureOffset => "pressure-offset",
+            Self::ForceOffset => "force-offset",
         }
     }
 
-    /// Its key in `[calibration]`.
+    /// Its key in `[calibration]`; empty for what is no part of the device.
     pub fn key(self) -> &'static str {
         match self {
             Self::Material => "material_factor",
@@ -63,6 +67,7 @@ impl Parameter {
             Self::Thickness => "thickness_factor",
             Self::IndentationOffset => "indentation_offset_mm",
             Self::PressureOffset => "pressure_offset_kpa",
+            Self::ForceOffset => "",
         }
     }
 
@@ -78,7 +83,7 @@ impl Parameter {
             Self::PoleStretch => [1.0002, 5.0],
             Self::Compliance => [0.0, 1e5],
             Self::PressureGain => [0.1, 10.0],
-            Self::IndentationOffset | Self::PressureOffset => [-1000.0, 1000.0],
+            Self::IndentationOffset | Self::PressureOffset | Self::ForceOffset => [-1000.0, 1000.0],
         }
     }
 
@@ -90,6 +95,7 @@ impl Parameter {
             Self::Compliance => value / units.compliance,
             Self::IndentationOffset => value / units.indentation,
             Self::PressureOffset => value / units.rise,
+            Self::ForceOffset => value / units.force,
         }
     }
 
@@ -101,6 +107,7 @@ impl Parameter {
             Self::Compliance => coordinate * units.compliance,
             Self::IndentationOffset => coordinate * units.indentation,
             Self::PressureOffset => coordinate * units.rise,
+            Self::ForceOffset => coordinate * units.force,
         }
     }
 }
@@ -120,6 +127,8 @@ pub(super) struct Units {
     pub(super) indentation: f64,
     /// Kilopascals.
     pub(super) rise: f64,
+    /// Newtons.
+    pub(super) force: f64,
 }
 
 /// A value for every parameter, in the units of the design file.
@@ -141,6 +150,7 @@ impl ParameterValues {
                 Parameter::Thickness => calibration.thickness_factor,
                 Parameter::IndentationOffset => calibration.indentation_offset_mm,
                 Parameter::PressureOffset => calibration.pressure_offset_kpa,
+                Parameter::ForceOffset => 0.0,
             }
         }))
     }

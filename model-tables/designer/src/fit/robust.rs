@@ -68,6 +68,33 @@ pub(super) fn outliers(residuals: &[f64]) -> Vec<bool> {
     flags
 }
 
+/// The part of the variance of the second numbers that a straight line in the first ones leaves.
+pub(super) fn left_of_line(pairs: &[[f64; 2]]) -> f64 {
+    let count = pairs.len() as f64;
+    let mean = [0, 1].map(|k| pairs.iter().map(|pair| pair[k]).sum::<f64>() / count);
+    let product = |a: usize, b: usize| -> f64 {
+        pairs
+            .iter()
+            .map(|pair| (pair[a] - mean[a]) * (pair[b] - mean[b]))
+            .sum()
+    };
+    let square = product(0, 1) * product(0, 1) / (product(0, 0) * product(1, 1));
+    if square.is_finite() { 1.0 - square } else { 1.0 }
+}
+
+/// How likely it is by chance that so many of `count` signs are positive, or a split as uneven: twice the tail of the binomial
+/// distribution of equal shares.
+pub(super) fn sign_chance(positive: usize, count: usize) -> f64 {
+    let fewer = positive.min(count - positive);
+    let mut term = libm::exp2(-(count as f64));
+    let mut tail = term;
+    for k in 1..=fewer {
+        term *= (count - k + 1) as f64 / k as f64;
+        tail += term;
+    }
+    (2.0 * tail).min(1.0)
+}
+
 /// How unlike chance the order of signs is: the runs test of Wald and Wolfowitz, in standard deviations; negative where
 /// signs cluster. `None` where there are too few of one sign.
 pub(super) fn runs(residuals: &[f64]) -> Option<f64> {
@@ -110,6 +137,15 @@ mod tests {
         // A misfit that grows steadily is the model's, not the data's.
         let misfit: Vec<f64> = (0..30).map(|i| 0.1 * noise(i) + 0.01 * (i * i) as f64).collect();
         assert!(outliers(&misfit).iter().all(|outlier| !outlier));
+    }
+
+    #[test]
+    fn signs_of_one_kind_are_no_chance() {
+        // 2 (1 + 10 + 45) / 1024.
+        assert!((sign_chance(2, 10) - 112.0 / 1024.0).abs() < 1e-12);
+        assert!((sign_chance(8, 10) - 112.0 / 1024.0).abs() < 1e-12);
+        assert!((sign_chance(25, 25) / libm::exp2(-24.0) - 1.0).abs() < 1e-12);
+        assert!((sign_chance(5, 10) - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -170,8 +170,15 @@ fn best(task: &Task<'_>, start: &ParameterValues) -> Result<(ParameterValues, We
             found = Some((cost, values));
         }
     }
+    if task.model.is_spent() {
+        return Err(FitError::Unsettled);
+    }
     let (_, values) = found.ok_or(FitError::Lost)?;
-    Ok(task.settle(&values)?)
+    let settled = task.settle(&values)?;
+    if task.model.is_spent() {
+        return Err(FitError::Unsettled);
+    }
+    Ok(settled)
 }
 
 /// What a prediction has to be multiplied by to meet the data best.

@@ -187,6 +187,26 @@ impl Task<'_> {
         Ok(jacobian)
     }
 
+    /// Change of the predictions by a bench whose stage reads more, SI per metre; `None` where that is fitted, or no row has an
+    /// indentation.
+    pub(super) fn by_indentation(&self, values: &ParameterValues, predicted: &[f64]) -> Option<Vec<f64>> {
+        let offset = Parameter::IndentationOffset;
+        if self.free.contains(&offset) || self.data.rows.iter().all(|row| row.indentation.is_none()) {
+            return None;
+        }
+        let step = STEP * self.units.indentation;
+        let mut moved = *values;
+        moved.set(offset, values.get(offset) + step);
+        let moved = self.predict(&moved).ok()?;
+        Some(
+            moved
+                .iter()
+                .zip(predicted)
+                .map(|(moved, before)| (moved - before) / (1e-3 * step))
+                .collect(),
+        )
+    }
+
     /// The values of least squares from a start, with these weights.
     pub(super) fn minimise(
         &self,
@@ -214,6 +234,9 @@ impl Task<'_> {
         let mut weighting = Weighting::unknown(self.targets);
         let mut values = self.minimise(start, &weighting)?;
         for _ in 0..MOST_ROUNDS {
+            if self.model.is_spent() {
+                break;
+            }
             weighting =
                 Weighting::from_residuals(self.data, self.targets, &self.predict(&values)?, self.free.len());
             let next = self.minimise(&values, &weighting)?;
@@ -248,8 +271,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
             // A compliance may be asked for below zero: the model continues there.
             parameter == Parameter::Compliance || (low..=high).contains(&values.get(parameter))
         });
-        self.predicted = match self.task.predict(&values) {
-            Ok(predicted) if possible => predicted,
+        // Only then is there a device to solve: the way to a stretch of any size would have no end.
+        self.predicted = match possible.then(|| self.task.predict(&values)) {
+            Some(Ok(predicted)) => predicted,
             // Far away: the method comes back with a shorter step.
             _ => self
                 .task
@@ -266,6 +290,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, '_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
+        if self.task.model.is_spent() {
+            return None;
+        }
         Some(DVector::from_iterator(
             self.factors.len(),
             self.task

@@ -369,6 +369,7 @@ pub fn from_data(data: &Data) -> Result<FromData, NoCurve> {
     let rises = || {
         data.rows
             .iter()
+            .filter(both)
             .filter_map(|row| row.rise)
             .filter(|&rise| rise > 0.0)
     };

@@ -2,6 +2,7 @@
 
 use super::super::bench;
 use super::{Arguments, write};
+use crate::fit;
 use crate::fit::data::Data;
 use crate::fit::spline::{DataBranch, FromData, from_data};
 use model_tables::design_file::{Calibration, DataCurve, DesignFile};
@@ -28,6 +29,8 @@ const COLUMNS: &[&str] = &[
     "held_out_refused",
 ];
 
+/// What is written beside the design.
+const FILES: [&str; 2] = ["from-data.md", "from-data.svg"];
 /// Knots of a curve as it is written, and the power by which they crowd towards zero.
 const KNOTS: usize = 60;
 const CROWDING: f64 = 1.6;
@@ -43,6 +46,11 @@ fn digits(number: f64) -> String {
 }
 
 pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Result<CommandAnswer, Refusal> {
+    let stem = format!("{}-from-data.toml", file.name);
+    if let Some(out) = &arguments.out {
+        files::expect_folder(out, &[FILES[0], FILES[1], &stem])?;
+    }
+    fit::check_shape(file, data).map_err(|error| Refusal::about(&arguments.data, &error))?;
     let found = from_data(data).map_err(|error| Refusal::about(&arguments.data, &error))?;
     let branches = branches(&found);
     let mut rows = Rows::new(COLUMNS);
@@ -61,7 +69,8 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
             Cell::Count(branch.refused),
         ]);
     }
-    let mut notes = findings(&found, data);
+    let mut notes = data.notes.clone();
+    notes.extend(findings(&found, data));
     notes.extend(bench::caution(file));
     if let Some(out) = &arguments.out {
         if found.start > EMPTY * found.end && !arguments.to_zero {
@@ -101,7 +110,6 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
         );
         let refuse = |reason: String| Refusal::about(&arguments.design, &reason);
         let text = write::with_calibration(&text, &calibration, &comment).map_err(refuse)?;
-        let stem = format!("{}-from-data.toml", file.name);
         let (text, note) = with_tables(&text, &stem, deepest, &found)
             .map_err(|Refusal(reason)| Refusal::about(&arguments.design, &reason))?;
         notes.push(note);
@@ -112,10 +120,11 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
         for line in &notes {
             let _ = writeln!(page, "- {line}");
         }
+        // The design last: it stands for the set.
         let contents = [
+            (FILES[0], page.into_bytes()),
+            (FILES[1], draw(data, &found).into_bytes()),
             (stem.as_str(), text.into_bytes()),
-            ("from-data.md", page.into_bytes()),
-            ("from-data.svg", draw(data, &found).into_bytes()),
         ];
         files::write_all(out, &contents)?;
         notes.push(format!(
@@ -140,9 +149,12 @@ fn with_tables(
         match generate::from_design(DesignFile::parse(&text, stem).map_err(Refusal::of)?) {
             Ok(generated) => {
                 let note = format!(
-                    "tables from this curve take {} bytes and end at {} mm",
+                    "tables from this curve take {} bytes and end at {} mm, a pressure rise of {} kPa and {} N: beyond, the chip \
+                     reports `saturated`",
                     generated.certified.tables.bytes(),
-                    digits(1e3 * generated.end.indentation)
+                    digits(1e3 * generated.end.indentation),
+                    digits(1e-3 * generated.end.pressure_rise),
+                    digits(generated.end.force)
                 );
                 return Ok((text, note));
             }
@@ -202,8 +214,7 @@ fn knots(found: &FromData, rest_pressure_kpa: f64) -> Option<DataCurve> {
 
 fn findings(found: &FromData, data: &Data) -> Vec<String> {
     let mut lines = vec![format!(
-        "calibrated for pressure rises of {} to {} kPa: beyond, the chip reports `saturated`; below, the curve runs to \
-         the origin, where nothing was measured",
+        "calibrated for pressure rises of {} to {} kPa: below, the curve runs to the origin, where nothing was measured",
         digits(1e-3 * found.start),
         digits(1e-3 * found.end)
     )];

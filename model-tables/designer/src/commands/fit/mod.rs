@@ -8,9 +8,11 @@ mod write;
 use super::{bench, finite, read};
 use crate::fit::data::{Data, DataChoice, Direction};
 use crate::fit::parameter::Parameter;
-use crate::fit::{self, Fit, Held};
+use crate::fit::{self, Fit, Held, Measured};
+use model_tables::design_file::DesignFile;
 use model_tables::model::Fingertip;
 use output::files;
+use output::progress::Ticks;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
@@ -18,10 +20,15 @@ use std::time::Instant;
 
 const COLUMNS: &[&str] = &["parameter", "key", "start", "value", "standard_error", "state"];
 
+/// What is written beside the calibrated design.
+const FILES: [&str; 3] = ["fit.md", "fit.svg", "residuals.csv"];
+
 /// What `--help` says after the options.
 pub(super) const HELP: &str = "\
 DATA.csv has the columns indentation_mm, force_n and pressure_rise_kpa, of which any two suffice, and may have
-trial and direction (loading, unloading). Lines that begin with # are comments. Indentation is taken as exact.
+trial and direction (loading, unloading). Headings like `Force (kN)` or `Pressure (in bar)`, separators `;` and tab,
+decimal commas, a row of units, UTF-16 and Latin-1 are recognised, and said; --columns names what is not. Lines that
+begin with # are comments. Indentation is taken as exact.
 
 Parameters: material and thickness (factors), pole-stretch, compliance, pressure-gain, pressure-offset,
 indentation-offset. What the data cannot tell apart is held at the design's value, and said.
@@ -30,7 +37,7 @@ Examples:
   cargo designer fit index-fingertip.toml bench.csv --out calibrated/
   cargo designer fit index-fingertip.toml bench.csv --fit material,compliance,pressure-gain
   cargo designer fit tip.toml bench.csv --from-data --rest-pressure-kpa 0 --out calibrated/
-  cargo designer fit tip.toml bench.csv --pressure-column pressure_kpa --only position_mm=50";
+  cargo designer fit tip.toml bench.csv --columns force_n=Fz,pressure_rise_kpa=3 --only position_mm=50";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -54,9 +61,12 @@ pub(super) struct Arguments {
     /// What the transducer reads at rest, kilopascals, for --from-data [default: the model's]
     #[arg(long, value_name = "P", requires = "from_data", value_parser = finite, allow_hyphen_values = true)]
     rest_pressure_kpa: Option<f64>,
-    /// Column with the pressure rise, in kilopascals
-    #[arg(long, value_name = "NAME", default_value = "pressure_rise_kpa")]
-    pressure_column: String,
+    /// Which column of the file holds what, by its name or number, as in force_n=Fz,pressure_rise_kpa=3
+    #[arg(long, value_name = "NAME=COLUMN", value_delimiter = ',', value_parser = pair)]
+    columns: Vec<(String, String)>,
+    /// Column with the pressure rise, in kilopascals: --columns pressure_rise_kpa=NAME
+    #[arg(long, value_name = "NAME")]
+    pressure_column: Option<String>,
     /// Only rows whose column has this value; may be given several times
     #[arg(long, value_name = "COLUMN=VALUE", value_parser = pair)]
     only: Vec<(String, String)>,
@@ -87,43 +97,76 @@ fn pair(text: &str) -> Result<(String, String), String> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = read(&arguments.design)?;
+    let mut columns = arguments.columns.clone();
+    columns.extend(
+        arguments
+            .pressure_column
+            .iter()
+            .map(|name| (Measured::PressureRise.column().to_owned(), name.clone())),
+    );
     let choice = DataChoice {
-        pressure_column: arguments.pressure_column.clone(),
+        columns,
         only: arguments.only.clone(),
         direction: arguments.direction.map(|way| match way {
             Way::Loading => Direction::Loading,
             Way::Unloading => Direction::Unloading,
         }),
     };
-    let text = std::fs::read_to_string(&arguments.data)
+    files::keep(&arguments.data);
+    let bytes = std::fs::read(&arguments.data)
         .map_err(|error| Refusal::about(&arguments.data, &format!("the data cannot be read: {error}")))?;
     let name = arguments
         .data
         .file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let data = Data::parse(&text, &name, &choice).map_err(|error| Refusal::about(&arguments.data, &error))?;
+    let data = Data::read(&bytes, &name, &choice).map_err(|error| Refusal::about(&arguments.data, &error))?;
     if arguments.from_data {
         return from_data::run(arguments, &file, &data);
     }
+    let stem = format!("{}-calibrated.toml", file.name);
+    if let Some(out) = &arguments.out {
+        files::expect_folder(out, &[FILES[0], FILES[1], FILES[2], &stem])?;
+    }
     let start = Instant::now();
+    let ticks = Ticks::begin(move || {
+        format!(
+            "fit: {:.0} s, {} states of the model solved",
+            start.elapsed().as_secs_f64(),
+            fit::states_solved()
+        )
+    });
     let fit = fit::fit(&file, &data, &arguments.parameters)
         .map_err(|error| Refusal::about(&arguments.data, &error))?;
     let seconds = start.elapsed().as_secs_f64();
-    let mut notes = report::findings(&file, &data, &fit);
+    let mut notes = data.notes.clone();
+    notes.extend(report::findings(&file, &data, &fit));
     notes.extend(bench::caution(&file));
-    let mut tip = Fingertip::new(&file).map_err(|error| Refusal::about(&arguments.design, &error))?;
-    notes.push(super::model::note_of_error(&file, &mut tip, 0.0));
+    // What is written is the calibrated design, and its limits count.
+    let calibrated = DesignFile {
+        calibration: fit.values.calibration(&file, &fit.fitted),
+        ..file.clone()
+    };
+    let mut tip = Fingertip::new(&calibrated).map_err(|error| Refusal::about(&arguments.design, &error))?;
+    let deepest = data
+        .rows
+        .iter()
+        .filter_map(|row| row.indentation)
+        .fold(0.0, f64::max);
+    let deepest = calibrated.calibration.indentation_of(deepest);
+    notes.extend(bench::beyond_strain(&calibrated, &mut tip, deepest));
+    notes.push(super::model::note_of_error(&calibrated, &mut tip, 0.0));
+    drop(ticks);
     if let Some(out) = &arguments.out {
         let design_text = std::fs::read_to_string(&arguments.design)
             .map_err(|error| Refusal::about(&arguments.design, &error))?;
         let calibrated = write::calibrated(&design_text, &file, &data, &fit)
             .map_err(|reason| Refusal::about(&arguments.design, &reason))?;
-        let stem = format!("{}-calibrated.toml", file.name);
+        // The design last: it stands for the set.
         let contents = [
+            (FILES[0], report::markdown(&file, &data, &fit).into_bytes()),
+            (FILES[1], chart::draw(&file, &data, &fit).into_bytes()),
+            (FILES[2], write::residuals(&data, &fit).into_bytes()),
             (stem.as_str(), calibrated.into_bytes()),
-            ("fit.md", report::markdown(&file, &data, &fit).into_bytes()),
-            ("fit.svg", chart::draw(&file, &data, &fit).into_bytes()),
-            ("residuals.csv", write::residuals(&data, &fit).into_bytes()),
         ];
         files::write_all(out, &contents)?;
         notes.push(format!(

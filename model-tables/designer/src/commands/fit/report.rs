@@ -77,6 +77,13 @@ pub(super) fn findings(file: &DesignFile, data: &Data, fit: &Fit) -> Vec<String>
                  too few to see an order; try other parameters or --from-data"
             ));
         }
+        if let Some(positive) = fit.one_sided[k] {
+            lines.push(format!(
+                "what is left of the {name} has one sign in {:.0} % of the numbers: measured is {} than the fit",
+                100.0 * positive.max(1.0 - positive),
+                if positive > 0.5 { "more" } else { "less" }
+            ));
+        }
         if let Some(order) = fit.systematic[k]
             && order < ORDERED
         {
@@ -86,6 +93,7 @@ pub(super) fn findings(file: &DesignFile, data: &Data, fit: &Fit) -> Vec<String>
             ));
         }
     }
+    lines.extend(fit.biases.iter().map(ToString::to_string));
     let outliers = fit.residuals.iter().filter(|residual| residual.outlier).count();
     if outliers > 0 {
         lines.push(format!(
@@ -242,7 +250,7 @@ pub(super) fn markdown(file: &DesignFile, data: &Data, fit: &Fit) -> String {
             );
         }
     }
-    for line in findings(file, data, fit) {
+    for line in data.notes.iter().cloned().chain(findings(file, data, fit)) {
         let _ = writeln!(text, "- {line}");
     }
     if let Some(caution) = bench::caution(file) {

@@ -24,6 +24,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
+    if let Some(out) = &arguments.out {
+        files::expect_room(out)?;
+    }
     let paper = Paper::solve()?;
     let mut notes = Vec::new();
     if let Some(out) = &arguments.out {

@@ -8,7 +8,7 @@ mod page;
 mod shapes;
 mod words;
 
-use output::files::write_all;
+use output::files;
 use output::progress::Progress;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -26,6 +26,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
+    files::keep(&arguments.design);
+    files::expect_folder(&arguments.out, &[])?;
     let progress = Progress::new("report");
     let found = findings::gather(&arguments.design, &progress);
     progress.finish();
@@ -33,7 +35,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let name = format!("{}.html", found.file.name);
     let text = page::html(&found, &arguments.design);
     let size = text.len();
-    write_all(&arguments.out, &[(&name, text.into_bytes())])?;
+    files::write_all(&arguments.out, &[(&name, text.into_bytes())])?;
     let mut rows = Rows::new(COLUMNS);
     rows.push(vec![
         Cell::Text(arguments.out.join(name).display().to_string()),

@@ -63,7 +63,11 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
+    files::keep(&arguments.target);
     let target = Target::read(&arguments.target).map_err(Refusal::of)?;
+    if let Some(out) = &arguments.out {
+        files::expect_folder(out, &["size.svg"])?;
+    }
     let start = Instant::now();
     let progress = Progress::new("sizing");
     let mut sizing = size::size(&target, &|part| progress.set(part));

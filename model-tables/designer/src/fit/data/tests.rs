@@ -33,7 +33,7 @@ fn rows_in_no_order_have_no_direction() {
 fn chooses_rows_and_the_pressure_column() {
     let text = "position_mm,indentation_mm,p\n10,0.1,1\n50.0,0.2,2\n50,0.4,4\n50,0.6,6\n";
     let choice = DataChoice {
-        pressure_column: "p".to_owned(),
+        columns: vec![("pressure_rise_kpa".to_owned(), "p".to_owned())],
         only: vec![("position_mm".to_owned(), "50".to_owned())],
         direction: None,
     };
@@ -57,10 +57,13 @@ fn nonsense_is_refused_with_its_reason() {
             "`indentation_mm` is 0.1 in every row",
         ),
         (
-            "indentation_mm,force_n\n0.1,-1\n0.2,-2\n0.3,-3\n",
+            "indentation_mm,force_n\n0.1,3\n0.2,2\n0.3,1\n",
             "`force_n` does not grow with `indentation_mm` (rank correlation -1.00)",
         ),
-        ("indentation_mm,force_n\n0.1,1\n0.2\n", "not a CSV file"),
+        (
+            "indentation_mm,force_n\n0.1,1\n0.2,1\n0.3\n",
+            "line 4 has 1 cells and the header 2",
+        ),
         (
             "indentation_mm,force_n,direction\n0.1,1,sideways\n",
             "`direction` is `sideways`",
