@@ -219,7 +219,7 @@ impl Life {
                     }
                 }
                 11 => world.lose(0.5 * long * long),
-                12 => self.sag_in_a_grasp(&mut world, much, long),
+                12 => sag_in_a_grasp(&mut world, much, long),
                 13 if absolute => {
                     let climb = world.random.uniform(-1_000.0, 1_000.0);
                     if self.lifted_while_pressed {
@@ -239,19 +239,20 @@ impl Life {
         }
         tally
     }
+}
 
-    fn sag_in_a_grasp(&self, world: &mut World<'_>, much: f64, long: f64) {
-        let rise = if much < 0.3 { 0.0 } else { 9_000.0 * much };
-        world.run(0.2, |since| rise * since / 0.2);
-        world.run(1.0, |_| rise);
-        // Nobody is asked to leave it alone where the memory of the zero is lost too: only an untouched one may lose it.
-        world.sag(rise > 0.0 || long < 0.5);
-        world.run(1.0, |_| rise);
-        world.run(0.2, |since| rise * (1.0 - since / 0.2));
-        world.rest(3.0);
-        if long < 0.8 {
-            world.tare();
-        }
+/// The supply sags under a press or none.
+fn sag_in_a_grasp(world: &mut World<'_>, much: f64, long: f64) {
+    let rise = if much < 0.3 { 0.0 } else { 9_000.0 * much };
+    world.run(0.2, |since| rise * since / 0.2);
+    world.run(1.0, |_| rise);
+    // Nobody is asked to leave it alone where the memory of the zero is lost too: only an untouched one may lose it.
+    world.sag(rise > 0.0 || long < 0.5);
+    world.run(1.0, |_| rise);
+    world.run(0.2, |since| rise * (1.0 - since / 0.2));
+    world.rest(3.0);
+    if long < 0.8 {
+        world.tare();
     }
 }
 

@@ -68,7 +68,7 @@ pub struct World<'a> {
     remains: f64,
     crept: f64,
     deepest: f64,
-    gaussian: Box<[f64; NORMALS]>,
+    gaussian: Box<[f64]>,
     /// True rises and noise of the last samples, newest first.
     truth: [f64; 3],
     noise: [f64; 3],
@@ -86,10 +86,7 @@ const SLOW: u32 = 16;
 impl<'a> World<'a> {
     /// A fingertip that is switched on untouched, and told so.
     pub fn new(tip: Tip, motions: Motions, mut random: Random, tally: &'a mut Tally) -> Self {
-        let mut gaussian = Box::new([0.0; NORMALS]);
-        for deviate in &mut *gaussian {
-            *deviate = random.normal();
-        }
+        let gaussian = (0..NORMALS).map(|_| random.normal()).collect();
         let absolute = tip.parameters().constants.transducer.quantity == Quantity::Absolute;
         let air = if absolute {
             random.uniform(66_000.0, 104_000.0)
@@ -330,10 +327,8 @@ impl<'a> World<'a> {
         let until = self.now + (seconds * 1e6) as u64;
         while self.now < until {
             self.now += self.period;
-            let lost = self
-                .pipeline
+            self.pipeline
                 .step(Microseconds(self.now), Err(Fault::SamplesLost));
-            assert!(lost.outcome.is_err());
             self.tally.no_reading += 1;
         }
     }
