@@ -51,6 +51,7 @@ impl Bounds {
     }
 
     /// Refuses a number out of `[low, high]` that would be in it in another unit: pairs of that unit and its size.
+    #[must_use]
     pub const fn usually(self, [low, high]: [f64; 2], slips: &'static [(&'static str, f64)]) -> Self {
         Self {
             usual: Some(Usual { low, high, slips }),

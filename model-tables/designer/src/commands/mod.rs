@@ -285,13 +285,12 @@ fn read(design: &Path) -> Result<DesignFile, Refusal> {
     let file = DesignFile::read(design).map_err(Refusal::of)?;
     let axes = &file.membrane;
     if axes.axial_semi_axis_mm > axes.radial_semi_axis_mm {
-        warn(
-            design,
-            &format_args!(
-                "membrane.axial_semi_axis_mm, {}, is more than radial_semi_axis_mm, {}: a dome that is higher than it is wide; \
-                 are the two swapped?",
-                axes.axial_semi_axis_mm, axes.radial_semi_axis_mm
-            ),
+        eprintln!(
+            "note: {}: membrane.axial_semi_axis_mm, {}, is more than radial_semi_axis_mm, {}: a dome that is higher than it is \
+             wide; are the two swapped?",
+            design.display(),
+            axes.axial_semi_axis_mm,
+            axes.radial_semi_axis_mm
         );
     }
     Ok(file)
