@@ -1,6 +1,7 @@
 //! The fingertips that live: one of each kind of transducer, with straight lines for tables.
 
 use fingertip::signal::design::{Design, Parameters};
+use fingertip::signal::wall::Elastic;
 use fingertip::signal::zero::surroundings::Surroundings;
 use model_tables::constants::{DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions};
 use model_tables::table::Reading;
@@ -96,6 +97,7 @@ impl Tip {
 }
 
 impl Design for Tip {
+    type Wall = Elastic;
     type Around = [Surroundings; 1];
 
     fn parameters(&self) -> &Parameters {
