@@ -41,6 +41,7 @@ fn shipped() -> Vec<Vec<u8>> {
                 words: golden::$design::TABLES.segments.as_flattened(),
                 name: golden::$design::NAME,
                 calibration: $calibration,
+                object: None,
             }
             .write()
         };

@@ -35,7 +35,7 @@ pub fn contact(design: &impl Design, rise: PressureRise, warnings: Warnings) -> 
 // On its own: woven into the reading's own lookup it takes the registers that this one needs.
 #[inline(never)]
 pub fn through_tables(design: &impl Design, rise: PressureRise, at: &Contact, sigma: PressureRise) -> Sigma {
-    let last = design.parameters().last_rise.0;
+    let last = design.last_rise().0;
     let rise = rise.0.clamp(0, last);
     let above = rise.saturating_add(sigma.0);
     let other = if above > last {

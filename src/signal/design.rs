@@ -13,7 +13,10 @@ use model_tables::block::read::TipBlock;
 use model_tables::block::section::SectionKind;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
+use model_tables::table::blend::BlendedTables;
+use model_tables::table::law::Touched;
 use model_tables::table::loaded::LoadedTables;
+use model_tables::table::objects::LoadedObjects;
 use model_tables::units::PressureRise;
 
 /// A design with its tables.
@@ -23,7 +26,25 @@ pub trait Design {
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     fn lookup(&self, rise: PressureRise) -> Reading;
+
+    /// The last rise that the lookup covers now.
+    #[inline]
+    fn last_rise(&self) -> PressureRise {
+        self.parameters().last_rise
+    }
+
+    /// Something else is touched from now on. A design without `[object]` has tables of the plate alone.
+    ///
+    /// # Errors
+    /// [`NoSuchObject`]; what was touched before still is.
+    fn touch(&mut self, _touched: Touched) -> Result<(), NoSuchObject> {
+        Err(NoSuchObject)
+    }
 }
+
+/// There are no tables of an object: the design has none, or its radius is tighter than what was solved.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct NoSuchObject;
 
 /// What the stages need of a design, each in its own form, worked out once: by the compiler for an image.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -86,6 +107,9 @@ impl Parameters {
 pub struct LoadedDesign<'a> {
     parameters: Parameters,
     tables: LoadedTables<'a>,
+    objects: Option<LoadedObjects<'a>>,
+    /// Of what is touched, unless that is a plate.
+    blended: Option<BlendedTables>,
 }
 
 impl<'a> LoadedDesign<'a> {
@@ -104,10 +128,17 @@ impl<'a> LoadedDesign<'a> {
         };
         let layout = tip.tables.layout();
         let end = PressureRise(layout.maximum);
-        let design = Self {
+        let mut design = Self {
             parameters: Parameters::of(tip.constants, layout.pressure_fraction_bits, end),
             tables: tip.tables,
+            objects: tip.objects,
+            blended: None,
         };
+        if let Some(objects) = &tip.objects {
+            design
+                .touch(objects.start)
+                .map_err(|NoSuchObject| BlockError::Value(SectionKind::Object, "start"))?;
+        }
         Ok((design, calibration))
     }
 }
@@ -118,6 +149,25 @@ impl Design for LoadedDesign<'_> {
     }
 
     fn lookup(&self, rise: PressureRise) -> Reading {
-        self.tables.lookup(rise)
+        match &self.blended {
+            Some(tables) => tables.lookup(rise),
+            None => self.tables.lookup(rise),
+        }
+    }
+
+    fn last_rise(&self) -> PressureRise {
+        match &self.blended {
+            Some(tables) => tables.last_rise(),
+            None => self.parameters.last_rise,
+        }
+    }
+
+    fn touch(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
+        let objects = self.objects.as_ref().ok_or(NoSuchObject)?;
+        self.blended = match touched {
+            Touched::Plate => None,
+            touched => Some(objects.blended(touched).ok_or(NoSuchObject)?),
+        };
+        Ok(())
     }
 }

@@ -66,6 +66,7 @@ mod tests {
             words: TABLES.segments.as_flattened(),
             name: NAME,
             calibration: None,
+            object: None,
         }
         .write();
         let (loaded, _) = LoadedDesign::read(&block).expect("the image's tables can be loaded");

@@ -2,6 +2,7 @@
 //! once, in order, to a [`Visit`]: the reader, the writer, and whoever prints them.
 
 use crate::constants::{Quantity, TransducerKind};
+use crate::table::law::Touched;
 use crate::table::{Constant, Powers};
 #[cfg(feature = "std")]
 use std::fmt::{self, Write};
@@ -68,12 +69,15 @@ integer! {
     u64, "{:#018x}"; // hashes
 }
 
-impl<T: Field> Field for [T; 2] {
-    const LENGTH: usize = 2 * T::LENGTH;
+impl<T: Field, const N: usize> Field for [T; N] {
+    const LENGTH: usize = N * T::LENGTH;
 
     fn get(bytes: &[u8]) -> Option<Self> {
-        let (first, second) = bytes.split_at_checked(T::LENGTH)?;
-        Some([T::get(first)?, T::get(second)?])
+        let mut values = [T::get(bytes.get(..T::LENGTH)?)?; N];
+        for (value, own) in values.iter_mut().zip(bytes.chunks_exact(T::LENGTH)) {
+            *value = T::get(own)?;
+        }
+        Some(values)
     }
 
     #[cfg(feature = "std")]
@@ -85,11 +89,13 @@ impl<T: Field> Field for [T; 2] {
 
     #[cfg(feature = "std")]
     fn spell(&self, out: &mut String) -> fmt::Result {
-        let [first, second] = self;
         out.push('[');
-        first.spell(out)?;
-        out.push_str(", ");
-        second.spell(out)?;
+        for (at, value) in self.iter().enumerate() {
+            if at > 0 {
+                out.push_str(", ");
+            }
+            value.spell(out)?;
+        }
         out.push(']');
         Ok(())
     }
@@ -169,5 +175,38 @@ impl Field for TransducerKind {
     #[cfg(feature = "std")]
     fn spell(&self, out: &mut String) -> fmt::Result {
         write!(out, "model_tables::constants::TransducerKind::{self:?}")
+    }
+}
+
+/// A code, then the radius in micrometres, 0 of a plate.
+impl Field for Touched {
+    const LENGTH: usize = 8;
+
+    fn get(bytes: &[u8]) -> Option<Self> {
+        let (code, radius) = bytes.split_at_checked(4)?;
+        match (u32::get(code)?, i32::get(radius)?) {
+            (0, 0) => Some(Self::Plate),
+            (1, radius) if radius > 0 => Some(Self::Ball(radius)),
+            (2, radius) if radius > 0 => Some(Self::Cup(radius)),
+            (3, radius) if radius > 0 => Some(Self::Cylinder(radius)),
+            _ => None,
+        }
+    }
+
+    #[cfg(feature = "std")]
+    fn put(&self, out: &mut Vec<u8>) {
+        let (code, radius): (u32, i32) = match *self {
+            Self::Plate => (0, 0),
+            Self::Ball(radius) => (1, radius),
+            Self::Cup(radius) => (2, radius),
+            Self::Cylinder(radius) => (3, radius),
+        };
+        code.put(out);
+        radius.put(out);
+    }
+
+    #[cfg(feature = "std")]
+    fn spell(&self, out: &mut String) -> fmt::Result {
+        write!(out, "model_tables::table::law::Touched::{self:?}")
     }
 }

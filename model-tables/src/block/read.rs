@@ -7,7 +7,9 @@ use super::{
     BlockError, ENTRY, HEAD, LAYOUT_VERSION, LONGEST_NAME, MAGIC, StoredCalibration, aligned, check,
 };
 use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
+use crate::table::law::{BlendLaw, Touched};
 use crate::table::loaded::LoadedTables;
+use crate::table::objects::LoadedObjects;
 use crate::table::{Constant, Layout, Powers};
 
 /// Widest range of a transducer, pascals: in millipascals it fits a word.
@@ -24,6 +26,8 @@ pub struct TipBlock<'a> {
     pub name: &'a str,
     /// What is known of this one fingertip, if anything.
     pub calibration: Option<StoredCalibration>,
+    /// Tables of other objects, if there are any.
+    pub objects: Option<LoadedObjects<'a>>,
 }
 
 impl<'a> TipBlock<'a> {
@@ -71,13 +75,34 @@ impl<'a> TipBlock<'a> {
         }
         // Last, because it takes the most work.
         let tables = LoadedTables::new(layout, words)?;
+        let objects = match sections.of_kind(SectionKind::Object) {
+            None => None,
+            Some(own) => Some(objects(own, tables)?),
+        };
         Ok(Self {
             constants,
             tables,
             name,
             calibration,
+            objects,
         })
     }
+}
+
+/// The section of other objects, beside the tables of the plate.
+fn objects<'a>(mut own: Cursor<'a>, plate: LoadedTables<'a>) -> Result<LoadedObjects<'a>, BlockError> {
+    let (mut start, mut law) = (Touched::Plate, NO_LAW);
+    section::object(&mut start, &mut law, &mut own)?;
+    let (words, []) = own.bytes.as_chunks::<4>() else {
+        return Err(BlockError::SectionLength(SectionKind::Object));
+    };
+    if let Some(field) = law.out_of_range(plate.layout().maximum) {
+        return Err(BlockError::Value(SectionKind::Object, field));
+    }
+    if law.weights(start).is_none() {
+        return Err(BlockError::Value(SectionKind::Object, "start"));
+    }
+    Ok(LoadedObjects::new(start, law, plate, words)?)
 }
 
 /// The bytes of a block that is of this layout, complete and unchanged, and its head from the identity on.
@@ -113,7 +138,7 @@ fn whole(bytes: &[u8]) -> Result<(&[u8], Cursor<'_>), BlockError> {
 }
 
 /// The directory: sections in the order of their numbers, one after the other without gaps but those that align them.
-struct Sections<'a>([Option<&'a [u8]>; SectionKind::ALL.len()]);
+struct Sections<'a>([Option<&'a [u8]>; SectionKind::HIGHEST]);
 
 impl<'a> Sections<'a> {
     fn of(block: &'a [u8], head: &mut Cursor<'_>) -> Result<Self, BlockError> {
@@ -127,7 +152,7 @@ impl<'a> Sections<'a> {
         if block.get(6..8) != Some(&u16::try_from(end).unwrap_or_default().to_le_bytes()) {
             return Err(BlockError::Directory);
         }
-        let mut sections = [None; SectionKind::ALL.len()];
+        let mut sections = [None; SectionKind::HIGHEST];
         let mut last = 0;
         for entry in directory.as_chunks::<ENTRY>().0 {
             let mut entry = Cursor {
@@ -260,4 +285,14 @@ const NO_LAYOUT: Layout = Layout {
     first_index: 0,
     force_shift: 0,
     indentation_shift: 0,
+};
+
+/// To be filled.
+const NO_LAW: BlendLaw = BlendLaw {
+    reference: 0,
+    offset: 0,
+    least: [0; 2],
+    last: [0; 2],
+    force: [[0; 3]; 2],
+    indentation: [[0; 3]; 2],
 };

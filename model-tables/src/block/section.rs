@@ -4,6 +4,7 @@ use super::StoredCalibration;
 use super::field::Visit;
 use crate::constants::{DesignConstants, Transducer};
 use crate::table::Layout;
+use crate::table::law::{BlendLaw, Touched};
 
 /// The kinds of sections, by their number.
 #[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
@@ -16,15 +17,26 @@ pub enum SectionKind {
     Calibration = 3,
     /// The design's name.
     Name = 4,
+    /// The reference ball's tables, and how much of it other objects have.
+    Object = 6,
 }
 
-/// Numbers that later layouts give to the wall's relaxation, other objects than a plate, and the feedback membrane. A block with
-/// one of these is for newer firmware: without them its readings would be wrong.
-pub const RESERVED: [u16; 3] = [5, 6, 7];
+/// Numbers that later layouts give to the wall's relaxation and the feedback membrane. A block with one of these is for newer
+/// firmware: without them its readings would be wrong.
+pub const RESERVED: [u16; 2] = [5, 7];
 
 impl SectionKind {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Constants, Self::Tables, Self::Calibration, Self::Name];
+    pub const ALL: [Self; 5] = [
+        Self::Constants,
+        Self::Tables,
+        Self::Calibration,
+        Self::Name,
+        Self::Object,
+    ];
+
+    /// The highest number.
+    pub const HIGHEST: usize = Self::Object as usize;
 
     /// The only version of it so far.
     pub const VERSION: u16 = 1;
@@ -41,6 +53,7 @@ impl SectionKind {
             Self::Tables => "tables",
             Self::Calibration => "calibration",
             Self::Name => "name",
+            Self::Object => "object",
         }
     }
 }
@@ -102,4 +115,18 @@ pub fn calibration<V: Visit>(value: &mut StoredCalibration, visit: &mut V) -> Re
     visit.field("temperature", &mut value.temperature)?;
     visit.field("coefficient", &mut value.coefficient)?;
     visit.field("gain", &mut value.gain)
+}
+
+/// Of the objects: what is touched at the start, and the law of the weights; the words of the reference ball follow.
+///
+/// # Errors
+/// The visitor's.
+pub fn object<V: Visit>(start: &mut Touched, law: &mut BlendLaw, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("start", start)?;
+    visit.field("reference", &mut law.reference)?;
+    visit.field("offset", &mut law.offset)?;
+    visit.field("least", &mut law.least)?;
+    visit.field("last", &mut law.last)?;
+    visit.field("force", &mut law.force)?;
+    visit.field("indentation", &mut law.indentation)
 }

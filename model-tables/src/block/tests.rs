@@ -4,6 +4,7 @@ use super::section::{self, SectionKind};
 use super::write::{TipData, sign};
 use super::*;
 use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind};
+use crate::table::law::{BlendLaw, Touched};
 use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
 use std::collections::BTreeSet;
@@ -60,12 +61,23 @@ const CALIBRATION: StoredCalibration = StoredCalibration {
     gain: 1_000,
 };
 
+/// Of straight lines over `t`.
+const LAW: BlendLaw = BlendLaw {
+    reference: 8_000,
+    offset: 2_000,
+    least: [3_000, 20_000],
+    last: [11, 11],
+    force: [[4096, 0, 0], [2048, 0, 0]],
+    indentation: [[4096, 0, 0], [2048, 0, 0]],
+};
+
 const DATA: TipData<'_> = TipData {
     constants: CONSTANTS,
     layout: LAYOUT,
     words: &WORDS,
     name: "a-tip_1",
     calibration: Some(CALIBRATION),
+    object: None,
 };
 
 fn error(block: &[u8]) -> BlockError {
@@ -230,6 +242,9 @@ fn the_page_lists_every_field_where_it_lies() {
     let Ok(()) = section::layout(&mut layout, &mut rows);
     let mut rows = Rows(0);
     let Ok(()) = section::calibration(&mut calibration, &mut rows);
+    let mut rows = Rows(0);
+    let (mut start, mut law) = (Touched::Plate, LAW);
+    let Ok(()) = section::object(&mut start, &mut law, &mut rows);
     let numbers: BTreeSet<String> = SectionKind::ALL
         .iter()
         .map(|&kind| format!("| {} | {} |", kind as u16, kind.word()))

@@ -5,6 +5,7 @@ use super::section::{self, SectionKind};
 use super::{CHECK_AT, ENTRY, HEAD, LAYOUT_VERSION, MAGIC, StoredCalibration, aligned, check};
 use crate::constants::DesignConstants;
 use crate::table::Layout;
+use crate::table::law::{BlendLaw, Touched};
 use core::convert::Infallible;
 
 /// What a block is made of.
@@ -20,6 +21,19 @@ pub struct TipData<'a> {
     pub name: &'a str,
     /// What is known of this one fingertip, if anything.
     pub calibration: Option<StoredCalibration>,
+    /// Tables of other objects, if there are any.
+    pub object: Option<ObjectData<'a>>,
+}
+
+/// Tables of other objects than a plate.
+#[derive(Clone, Copy, Debug)]
+pub struct ObjectData<'a> {
+    /// What is touched at the start.
+    pub start: Touched,
+    /// The weights over the radius.
+    pub law: BlendLaw,
+    /// The reference ball's words.
+    pub words: &'a [i32],
 }
 
 /// Adds the bytes of each field.
@@ -48,6 +62,7 @@ impl TipData<'_> {
             mut constants,
             mut layout,
             mut calibration,
+            object,
             ..
         } = *self;
         let identity = described(|visit| section::identity(&mut constants, visit));
@@ -63,9 +78,7 @@ impl TipData<'_> {
                 SectionKind::Tables,
                 described(|visit| {
                     section::layout(&mut layout, visit)?;
-                    self.words
-                        .iter()
-                        .try_for_each(|&word| visit.field("word", &mut { word }))
+                    all(self.words, visit)
                 }),
             ),
         ];
@@ -74,8 +87,22 @@ impl TipData<'_> {
             sections.push((SectionKind::Calibration, bytes));
         }
         sections.push((SectionKind::Name, self.name.as_bytes().to_vec()));
+        if let Some(mut object) = object {
+            let bytes = described(|visit| {
+                section::object(&mut object.start, &mut object.law, visit)?;
+                all(object.words, visit)
+            });
+            sections.push((SectionKind::Object, bytes));
+        }
         block(&identity, &sections)
     }
+}
+
+/// Words of tables.
+fn all(words: &[i32], visit: &mut Bytes) -> Result<(), Infallible> {
+    words
+        .iter()
+        .try_for_each(|&word| visit.field("word", &mut { word }))
 }
 
 /// Head, directory, sections, each from a multiple of four on.

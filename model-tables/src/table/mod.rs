@@ -14,8 +14,11 @@
 //!
 //! The tables of a design are a constant, so the compiler folds everything but the coefficients.
 
+pub mod blend;
 pub mod error;
+pub mod law;
 pub mod loaded;
+pub mod objects;
 mod rising;
 mod segments;
 
