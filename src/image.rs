@@ -12,11 +12,29 @@ pub mod generated {
 }
 use generated::{DESIGN, TABLES};
 
-/// The design of the image: no bytes, as all of it folds into the code.
+/// Whether the design has an `[object]`.
+pub const HAS_OBJECT: bool = cfg!(object);
+
+#[cfg(object)]
+mod object;
+#[cfg(object)]
+pub use object::ObjectDesign as FirmwareDesign;
+
+/// What the firmware runs on.
+#[cfg(not(object))]
+pub type FirmwareDesign = ImageDesign;
+
+/// The design of the image, against its plate: no bytes, as all of it folds into the code.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageDesign;
 
 impl ImageDesign {
+    /// The same, to begin with.
+    #[cfg(not(object))]
+    pub const fn start() -> Self {
+        Self
+    }
+
     /// The design beside its tables.
     pub const CONSTANTS: DesignConstants = DESIGN;
 

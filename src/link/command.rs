@@ -5,8 +5,10 @@
 
 use crate::link::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, unstuff};
 use crate::signal::calibration::LARGEST_GAIN;
+use crate::signal::design::NoSuchObject;
 use crate::signal::zero::estimator::TareRefusal;
 use crate::status::{code_of, named_by};
+use model_tables::table::law::Touched;
 
 const HEADER: usize = 4;
 
@@ -36,6 +38,8 @@ pub enum Command {
     },
     /// Store that nothing is stored: the next zero is a first one.
     Forget,
+    /// Something else is touched from now on.
+    Object(Touched),
 }
 
 /// Which command, without what goes with it.
@@ -55,11 +59,13 @@ pub enum CommandKind {
     Rate,
     /// [`Command::Forget`].
     Forget,
+    /// [`Command::Object`].
+    Object,
 }
 
 impl CommandKind {
     /// Every kind with its code on the wire.
-    pub const CODES: [(Self, u8); 7] = [
+    pub const CODES: [(Self, u8); 8] = [
         (Self::Tare, 0x81),
         (Self::Undo, 0x82),
         (Self::Save, 0x83),
@@ -67,6 +73,7 @@ impl CommandKind {
         (Self::SelfTest, 0x85),
         (Self::Rate, 0x86),
         (Self::Forget, 0x87),
+        (Self::Object, 0x88),
     ];
 
     /// Its code.
@@ -91,6 +98,7 @@ impl Command {
             Self::SelfTest { .. } => CommandKind::SelfTest,
             Self::Rate { .. } => CommandKind::Rate,
             Self::Forget => CommandKind::Forget,
+            Self::Object(_) => CommandKind::Object,
         }
     }
 }
@@ -116,11 +124,13 @@ pub enum Outcome {
     ZeroUnverified,
     /// The memory did not take it; what served before still serves.
     MemoryFailed,
+    /// There are no tables of such an object.
+    NoSuchObject,
 }
 
 impl Outcome {
     /// Every outcome with its code on the wire.
-    pub const CODES: [(Self, u8); 9] = [
+    pub const CODES: [(Self, u8); 10] = [
         (Self::Done, 0),
         (Self::Touched, 1),
         (Self::Restless, 2),
@@ -130,7 +140,14 @@ impl Outcome {
         (Self::NothingToUndo, 6),
         (Self::ZeroUnverified, 7),
         (Self::MemoryFailed, 8),
+        (Self::NoSuchObject, 9),
     ];
+}
+
+impl From<NoSuchObject> for Outcome {
+    fn from(NoSuchObject: NoSuchObject) -> Self {
+        Self::NoSuchObject
+    }
 }
 
 impl From<TareRefusal> for Outcome {
@@ -166,6 +183,11 @@ pub fn encode(request: &Request) -> Encoded {
         Command::Save { gain } => body.put(gain.unwrap_or(i32::MIN).to_le_bytes()),
         Command::SelfTest { indentation } => body.put(indentation.to_le_bytes()),
         Command::Rate { every } => body.put(every.to_le_bytes()),
+        Command::Object(touched) => {
+            let (code, radius) = touched.code();
+            body.put([code]);
+            body.put(radius.to_le_bytes());
+        }
     }
     body.finish();
     body
@@ -184,6 +206,15 @@ pub fn decode(stuffed: &[u8]) -> Result<Request, DecodeError> {
 /// # Errors
 /// As [`decode`].
 pub fn read_body(body: &[u8]) -> Result<Request, DecodeError> {
+    read_known_body::<true>(body)
+}
+
+/// The same for a board with `[object]` in its design, or without: there [`Command::Object`] is no command.
+///
+/// # Errors
+/// As [`decode`].
+#[inline]
+pub fn read_known_body<const OBJECT: bool>(body: &[u8]) -> Result<Request, DecodeError> {
     if body.len() < HEADER {
         return Err(DecodeError::Short);
     }
@@ -222,6 +253,12 @@ pub fn read_body(body: &[u8]) -> Result<Request, DecodeError> {
             }
             Command::Rate { every }
         }
+        CommandKind::Object if OBJECT => {
+            let [shape] = fields.take()?;
+            let radius = i32::from_le_bytes(fields.take()?);
+            Command::Object(Touched::of(shape, radius).ok_or(DecodeError::Field(4))?)
+        }
+        CommandKind::Object => return Err(DecodeError::Kind(code)),
     };
     if fields.0.is_empty() {
         Ok(Request { sequence, command })
@@ -295,17 +332,26 @@ mod tests {
             (&[2, 0x86, 0, 0, 0, 0], DecodeError::Field(4)),
             (&[2, 0x86, 0, 0, 0xE9, 3], DecodeError::Field(4)),
             (&[2, 0x85, 0, 0, 0, 0, 0, 0x80], DecodeError::Field(4)),
+            // A plate has no radius, a ball has one.
+            (&[2, 0x88, 0, 0, 0, 1, 0, 0, 0], DecodeError::Field(4)),
+            (&[2, 0x88, 0, 0, 1, 0, 0, 0, 0], DecodeError::Field(4)),
+            (&[2, 0x88, 0, 0, 4, 1, 0, 0, 0], DecodeError::Field(4)),
             // 100 001 parts in a million.
             (&[2, 0x83, 0, 0, 0xA1, 0x86, 1, 0], DecodeError::Field(4)),
         ] {
             assert_eq!(read_body(body), Err(error), "{body:?}");
         }
         assert!(read_body(&[2, 0x86, 0, 0, 0xE8, 3]).is_ok());
+        // Of 8 mm; no command where the design has no [object].
+        let ball = [2, 0x88, 0, 0, 1, 0x40, 0x1F, 0, 0];
+        let command = read_body(&ball).map(|request| request.command);
+        assert_eq!(command, Ok(Command::Object(Touched::Ball(8_000))));
+        assert_eq!(read_known_body::<false>(&ball), Err(DecodeError::Kind(0x88)));
     }
 
     proptest! {
         #[test]
-        fn a_request_survives_the_wire(sequence in any::<u16>(), which in 0..7, argument in any::<i32>()) {
+        fn a_request_survives_the_wire(sequence in any::<u16>(), which in 0..8, argument in any::<i32>()) {
             let command = match which {
                 0 => Command::Tare,
                 1 => Command::Undo,
@@ -313,7 +359,8 @@ mod tests {
                 3 => Command::Info,
                 4 => Command::SelfTest { indentation: argument & i32::MAX },
                 5 => Command::Rate { every: (argument.unsigned_abs() % 1000 + 1) as u16 },
-                _ => Command::Forget,
+                6 => Command::Forget,
+                _ => Command::Object(Touched::Ball((argument & i32::MAX).max(1))),
             };
             let request = Request { sequence, command };
             let encoded = encode(&request);
@@ -322,7 +369,7 @@ mod tests {
         }
 
         #[test]
-        fn no_body_makes_the_reader_panic(mut body in prop::collection::vec(any::<u8>(), 0..20), kind in 0x80_u8..0x89) {
+        fn no_body_makes_the_reader_panic(mut body in prop::collection::vec(any::<u8>(), 0..20), kind in 0x80_u8..0x8A) {
             if let Some([a, b]) = body.first_chunk_mut() {
                 *a = PROTOCOL_VERSION;
                 *b = kind;

@@ -2,7 +2,7 @@
 
 use crate::signal::calibration::{Calibration, Gain};
 use crate::signal::contact::{contact, through_tables};
-use crate::signal::design::{Design, Parameters};
+use crate::signal::design::{Design, NoSuchObject, Parameters};
 use crate::signal::filter::{Filter, GROUP_DELAY};
 use crate::signal::fluid::Fluid;
 use crate::signal::report::{Measurement, Report};
@@ -14,6 +14,7 @@ use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, Touch, Warnings};
 use crate::transducer::driver::Sample;
 use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
+use model_tables::table::law::Touched;
 use model_tables::units::{Nanometres, PressureRise};
 
 /// The signal path of one fingertip.
@@ -254,6 +255,14 @@ impl<D: Design> Pipeline<D> {
     #[cfg(test)]
     fn fluid_suspicions(&self) -> Warnings {
         self.fluid.suspicions()
+    }
+
+    /// Something else is touched from now on.
+    ///
+    /// # Errors
+    /// [`NoSuchObject`]; readings stay those of what was touched before.
+    pub fn touch_object(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
+        self.design.touch(touched)
     }
 
     /// Wild samples replaced so far.

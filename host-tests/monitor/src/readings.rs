@@ -240,6 +240,7 @@ fn name(kind: CommandKind) -> &'static str {
         CommandKind::SelfTest => "self-test",
         CommandKind::Rate => "rate",
         CommandKind::Forget => "forget",
+        CommandKind::Object => "object",
     }
 }
 
@@ -254,6 +255,7 @@ fn words(answer: &Answer) -> String {
         Outcome::NothingToUndo => "refused: there is nothing to undo",
         Outcome::ZeroUnverified => "refused: no verified zero; tare first",
         Outcome::MemoryFailed => "failed: the memory did not take it",
+        Outcome::NoSuchObject => "refused: the design has no tables of such an object",
     };
     let findings = match (answer.command, answer.findings) {
         (CommandKind::SelfTest, 0) => ", nothing found".to_owned(),

@@ -184,24 +184,13 @@ impl Field for Touched {
 
     fn get(bytes: &[u8]) -> Option<Self> {
         let (code, radius) = bytes.split_at_checked(4)?;
-        match (u32::get(code)?, i32::get(radius)?) {
-            (0, 0) => Some(Self::Plate),
-            (1, radius) if radius > 0 => Some(Self::Ball(radius)),
-            (2, radius) if radius > 0 => Some(Self::Cup(radius)),
-            (3, radius) if radius > 0 => Some(Self::Cylinder(radius)),
-            _ => None,
-        }
+        Self::of(u8::try_from(u32::get(code)?).ok()?, i32::get(radius)?)
     }
 
     #[cfg(feature = "std")]
     fn put(&self, out: &mut Vec<u8>) {
-        let (code, radius): (u32, i32) = match *self {
-            Self::Plate => (0, 0),
-            Self::Ball(radius) => (1, radius),
-            Self::Cup(radius) => (2, radius),
-            Self::Cylinder(radius) => (3, radius),
-        };
-        code.put(out);
+        let (code, radius) = self.code();
+        u32::from(code).put(out);
         radius.put(out);
     }
 

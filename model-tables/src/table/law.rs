@@ -16,6 +16,29 @@ pub enum Touched {
     Cylinder(i32),
 }
 
+impl Touched {
+    /// Code and radius; a plate's is 0.
+    pub const fn code(self) -> (u8, i32) {
+        match self {
+            Self::Plate => (0, 0),
+            Self::Ball(radius) => (1, radius),
+            Self::Cup(radius) => (2, radius),
+            Self::Cylinder(radius) => (3, radius),
+        }
+    }
+
+    /// What has a code and a radius.
+    pub const fn of(code: u8, radius: i32) -> Option<Self> {
+        match code {
+            0 if radius == 0 => Some(Self::Plate),
+            1 if radius > 0 => Some(Self::Ball(radius)),
+            2 if radius > 0 => Some(Self::Cup(radius)),
+            3 if radius > 0 => Some(Self::Cylinder(radius)),
+            _ => None,
+        }
+    }
+}
+
 impl core::fmt::Display for Touched {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let millimetres = |radius: i32| f64::from(radius) * 1e-3;
