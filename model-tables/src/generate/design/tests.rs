@@ -123,7 +123,17 @@ fn against(object: &str) -> DesignFile {
 fn blended_tables_of_balls_give_their_force_and_indentation() {
     let generated = from_design(against("radius_mm = 8.0")).expect("tables");
     let object = generated.certified.object.as_ref().expect("of balls");
-    println!("{}", generated.certificate());
+    let balls = object.errors.iter().filter(|error| error.radius_mm > 0.0);
+    assert_eq!(balls.clone().filter(|error| !error.fitted).count(), 1);
+    for error in balls {
+        let allowed = if error.radius_mm < 4.0 { 2.5 } else { 1.5 };
+        let pressed = error.pressed;
+        assert!(pressed.last > 15_000.0);
+        assert!(
+            pressed.force_percent < allowed && pressed.indentation_percent < allowed,
+            "{error:?}"
+        );
+    }
     let plate = &generated.certified.tables;
     let bits = plate.layout.pressure_fraction_bits;
     for (radius, pressure, force, indentation) in [
