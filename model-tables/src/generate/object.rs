@@ -19,6 +19,9 @@ pub use solved::{NoObjects, SolvedObject, SolvedObjects};
 /// What the tables of the reference ball are held to, as a multiple of what those of the plate are: its share of a blend's error.
 const BALL_ACCURACY: f64 = 3.0;
 
+/// A law may lie so much beyond its ends, in units of a weight.
+const MARGIN: i32 = 1 << (WEIGHT_BITS - 5);
+
 /// Tables of the reference ball, and what a blend of them and the plate's is worth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectTables {
@@ -190,8 +193,6 @@ fn rises(plate: &OwnedTables, ball: &OwnedTables, law: &BlendLaw) -> bool {
     let ends = [Touched::Ball(law.least[0]), Touched::Cup(law.least[1])]
         .into_iter()
         .filter_map(|tightest| law.weights(tightest));
-    // A law may lie a little beyond its ends.
-    const MARGIN: i32 = 1 << (WEIGHT_BITS - 5);
     let (mut least, mut most) = ([-MARGIN; 2], [MARGIN; 2]);
     for weights in ends {
         for (output, weight) in [weights.force, weights.indentation].into_iter().enumerate() {

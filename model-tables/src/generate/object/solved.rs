@@ -29,6 +29,9 @@ const DEEPER: f64 = 1.06;
 /// Pressure rises that errors are looked at.
 const RISES: usize = 60;
 
+/// From where to its end a curve's powers are taken with which it is continued, over that end's pressure.
+const BACK: f64 = 0.95;
+
 /// Coefficients of a law: of `t`, `t^2`, `t^3`.
 pub(super) type Coefficients = [f64; 3];
 
@@ -222,7 +225,10 @@ impl SolvedObjects {
         }
         let offset = 2.0 * design.design_to(Axes::Outer).membrane.thickness;
         let mut found = Self {
-            reference_beyond: beyond(&reference, curve)?,
+            reference_beyond: beyond(&reference, curve).map_err(|reason| NoObjects::Curve {
+                radius_mm: reference_radius * 1e3,
+                reason,
+            })?,
             objects,
             reference_radius,
             offset,
@@ -410,7 +416,7 @@ impl Solver<'_> {
 
 /// A curve that goes on to where another ends, its outputs over the other's continued as powers of the pressure. What lies there
 /// is not read; it lets the tables of both be of one layout.
-fn beyond(curve: &Curve, other: &Curve) -> Result<Curve, NoObjects> {
+fn beyond(curve: &Curve, other: &Curve) -> Result<Curve, CurveError> {
     let (end, last) = (curve.end(), other.end());
     let mut points = curve.points().to_vec();
     if end.pressure_rise < last.pressure_rise {
@@ -421,7 +427,6 @@ fn beyond(curve: &Curve, other: &Curve) -> Result<Curve, NoObjects> {
                 libm::log(own.indentation / other.indentation),
             ]
         };
-        const BACK: f64 = 0.95;
         let (from, to) = (over(BACK * end.pressure_rise), over(end.pressure_rise));
         let steps = 12;
         let whole = libm::log(last.pressure_rise / end.pressure_rise);
@@ -440,8 +445,5 @@ fn beyond(curve: &Curve, other: &Curve) -> Result<Curve, NoObjects> {
             });
         }
     }
-    Curve::new(points).map_err(|reason| NoObjects::Curve {
-        radius_mm: 0.0,
-        reason,
-    })
+    Curve::new(points)
 }
