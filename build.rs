@@ -23,6 +23,7 @@ fn main() {
     println!(
         "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
     );
+    println!("cargo::rustc-check-cfg=cfg(object)");
     if let Err(reason) = build() {
         println!("cargo::error={}", reason.replace('\n', " "));
     }
@@ -100,6 +101,10 @@ fn tables(design: &Path) -> Result<String, String> {
     if generated.wall().is_some() {
         // The wall's memory, which an elastic one has not.
         println!("cargo::rustc-cfg=relaxation");
+    }
+    if generated.certified.object.is_some() {
+        // Tables of other objects than a plate, and the command that says which.
+        println!("cargo::rustc-cfg=object");
     }
     if generated.limits() != [Limit::Accuracy; 2] {
         println!("cargo::warning={}: {}", design.display(), generated.choice());

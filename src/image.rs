@@ -22,11 +22,29 @@ use generated::{DESIGN, TABLES};
 #[cfg(relaxation)]
 use model_tables::material::series::WallSeries;
 
-/// The design of the image: no bytes, as all of it folds into the code.
+/// Whether the design has an `[object]`.
+pub const HAS_OBJECT: bool = cfg!(object);
+
+#[cfg(object)]
+mod object;
+#[cfg(object)]
+pub use object::ObjectDesign as FirmwareDesign;
+
+/// What the firmware runs on.
+#[cfg(not(object))]
+pub type FirmwareDesign = ImageDesign;
+
+/// The design of the image, against its plate: no bytes, as all of it folds into the code.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageDesign;
 
 impl ImageDesign {
+    /// The same, to begin with.
+    #[cfg(not(object))]
+    pub const fn start() -> Self {
+        Self
+    }
+
     /// The design beside its tables.
     pub const CONSTANTS: DesignConstants = DESIGN;
 
@@ -43,13 +61,13 @@ impl Design for ImageDesign {
     type Wall = Elastic;
     #[cfg(relaxation)]
     type Wall = Memory<{ RELAXATION.step.count }>;
+    type Around = [Surroundings; Self::PARAMETERS.rates.places()];
 
     #[cfg(relaxation)]
     #[inline]
     fn series(&self) -> Option<&WallSeries> {
         const { Some(&RELAXATION) }
     }
-    type Around = [Surroundings; Self::PARAMETERS.rates.places()];
 
     #[inline]
     fn parameters(&self) -> &Parameters {

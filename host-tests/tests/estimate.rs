@@ -5,7 +5,8 @@ use fingertip::image::ImageDesign;
 use fingertip::link::command::Command;
 use fingertip::link::telemetry::Message;
 use fingertip::signal::contact::contact;
-use fingertip::signal::design::{Design, LoadedDesign, Parameters};
+use fingertip::signal::design::{Design, NoSuchObject, Parameters};
+use fingertip::signal::loaded_design::LoadedDesign;
 use fingertip::signal::report::Report;
 use fingertip::signal::wall::Memory;
 use fingertip::signal::zero::surroundings::Surroundings;
@@ -14,9 +15,11 @@ use fingertip::transducer::driver::Sample;
 use fingertip::units::Millipascals;
 use host_tests::design;
 use host_tests::world::{World, Xorshift, full_scale, rest, sample};
+use model_tables::design_file::DesignFile;
 use model_tables::generate::{self, Generated};
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
+use model_tables::table::law::Touched;
 use model_tables::units::PressureRise;
 
 /// The default design, unless the image was built for another one.
@@ -150,4 +153,51 @@ fn same_lives<D: Design + Copy>(block: &[u8], image: D) {
         let readings = chip.0.iter().filter(|report| report.outcome.is_ok()).count();
         assert!(readings > 10_000, "seed {seed}: {readings} readings");
     }
+}
+
+/// The default design with a ball of 8 mm.
+fn with_object() -> Generated {
+    let text = std::fs::read_to_string(design("index-fingertip")).expect("a shipped design");
+    let text = format!("{text}\n[object]\nradius_mm = 8.0\n");
+    let file = DesignFile::parse(&text, "object.toml").expect("a design");
+    generate::from_design(file).expect("tables")
+}
+
+/// What the generator certifies of an object is what the loaded design answers, and a design without `[object]` refuses.
+#[test]
+fn what_is_touched_changes_the_answers_bit_for_bit() {
+    let generated = with_object();
+    let objects = generated.certified.object.as_ref().expect("of balls");
+    let plate = &generated.certified.tables;
+    let block = generated.binary();
+    let mut loaded = loaded(&block);
+    for touched in [
+        None,
+        Some(Touched::Ball(5_000)),
+        Some(Touched::Cylinder(5_000)),
+        Some(Touched::Plate),
+    ] {
+        if let Some(touched) = touched {
+            loaded.touch(touched).expect("an object that it has");
+        }
+        let touched = touched.unwrap_or(Touched::Ball(8_000));
+        let expected = objects.blended(plate, touched).expect("an object that it has");
+        for count in (0..plate.layout.maximum).step_by(997) {
+            let rise = PressureRise(count);
+            assert_eq!(loaded.lookup(rise), expected.lookup(rise), "{touched} {count}");
+        }
+    }
+    // A pen and a ball of one radius are not the same, nor is a ball a plate.
+    let force = |touched| {
+        let tables = objects.blended(plate, touched).expect("an object that it has");
+        tables.lookup(PressureRise(plate.layout.maximum / 4)).force
+    };
+    let [ball, pen, flat] = [Touched::Ball(5_000), Touched::Cylinder(5_000), Touched::Plate].map(force);
+    assert!(ball < pen && pen < flat, "{ball:?} {pen:?} {flat:?}");
+    // Tighter than what was solved: what was touched before still is.
+    assert_eq!(loaded.touch(Touched::Ball(1_000)), Err(NoSuchObject));
+    let rise = PressureRise(plate.layout.maximum / 4);
+    assert_eq!(loaded.lookup(rise).force, flat);
+    let mut image = ImageDesign;
+    assert_eq!(image.touch(Touched::Plate), Err(NoSuchObject));
 }

@@ -4,7 +4,8 @@
 use fingertip::link::command::{Command, Outcome};
 use fingertip::link::telemetry::Message;
 use fingertip::signal::contact::contact;
-use fingertip::signal::design::{Design, LoadedDesign};
+use fingertip::signal::design::Design;
+use fingertip::signal::loaded_design::LoadedDesign;
 use fingertip::signal::report::{Measurement, Report};
 use fingertip::status::{Status, Touch, Warnings};
 use host_tests::design;

@@ -4,7 +4,8 @@
 //! `TIP_BLOCKS=20000000 cargo test --release --package host-tests --test tip_block` draws more of them.
 
 use fingertip::signal::contact::contact;
-use fingertip::signal::design::{Design, LoadedDesign};
+use fingertip::signal::design::Design;
+use fingertip::signal::loaded_design::LoadedDesign;
 use fingertip::status::Warnings;
 use host_tests::world::Xorshift;
 use model_tables::block::write::{TipData, sign};
@@ -42,6 +43,7 @@ fn shipped() -> Vec<Vec<u8>> {
                 name: golden::$design::NAME,
                 calibration: $calibration,
                 relaxation: $relaxation,
+                object: None,
             }
             .write()
         };

@@ -252,6 +252,10 @@ impl<D: Design> Station<D> {
                 found = self.self_test(indentation);
                 Outcome::Done
             }
+            Command::Object(touched) => self
+                .pipeline
+                .touch_object(touched)
+                .map_or_else(Outcome::from, |()| Outcome::Done),
             Command::Rate { every } => {
                 self.every = every;
                 self.hello.report_period = u32::from(every) * self.pipeline.parameters().period;

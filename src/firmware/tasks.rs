@@ -15,8 +15,8 @@ use embassy_time::{Delay, Duration, with_timeout};
 use fingertip::board::{self, Board, Clock, Ears, Line, Memory, SLOT, Watchdog};
 use fingertip::device::station::{Beginning, Station, ToStore};
 use fingertip::device::supervisor::{Breadcrumb, GOOD_RUN, Roster, Stage};
-use fingertip::image::ImageDesign;
 use fingertip::image::generated::NAME;
+use fingertip::image::{self, FirmwareDesign, ImageDesign};
 use fingertip::link::command::{self, Request};
 use fingertip::link::outbox::Outbox;
 use fingertip::link::telemetry::Message;
@@ -156,7 +156,7 @@ async fn signal(
     mut watchdog: Watchdog,
     beginning: &Beginning,
 ) -> ! {
-    let mut station = Station::new(ImageDesign, beginning);
+    let mut station = Station::new(FirmwareDesign::start(), beginning);
     let mut crumb = Breadcrumb {
         detail: Stage::Running as u32,
         ..beginning.start.crumb
@@ -252,7 +252,7 @@ async fn listen(mut ears: Ears, clock: Clock) {
         for &byte in heard {
             let taken = match deframer.push(byte) {
                 None => continue,
-                Some(body) => body.and_then(|body| command::read_body(&body)),
+                Some(body) => body.and_then(|body| command::read_known_body::<{ image::HAS_OBJECT }>(&body)),
             };
             if !taken.is_ok_and(|request| REQUESTS.try_send(request).is_ok()) {
                 refuse();

@@ -5,9 +5,11 @@
 
 use crate::link::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, unstuff};
 use crate::signal::calibration::LARGEST_GAIN;
+use crate::signal::design::NoSuchObject;
 use crate::signal::zero::estimator::TareRefusal;
 use crate::signal::zero::surroundings::AirRefusal;
 use crate::status::{code_of, named_by};
+use model_tables::table::law::Touched;
 
 const HEADER: usize = 4;
 
@@ -42,6 +44,8 @@ pub enum Command {
         /// Pascals absolute.
         pascals: i32,
     },
+    /// Something else is touched from now on.
+    Object(Touched),
 }
 
 /// Which command, without what goes with it.
@@ -63,11 +67,13 @@ pub enum CommandKind {
     Forget,
     /// [`Command::Air`].
     Air,
+    /// [`Command::Object`].
+    Object,
 }
 
 impl CommandKind {
     /// Every kind with its code on the wire.
-    pub const CODES: [(Self, u8); 8] = [
+    pub const CODES: [(Self, u8); 9] = [
         (Self::Tare, 0x81),
         (Self::Undo, 0x82),
         (Self::Save, 0x83),
@@ -75,6 +81,7 @@ impl CommandKind {
         (Self::SelfTest, 0x85),
         (Self::Rate, 0x86),
         (Self::Forget, 0x87),
+        (Self::Object, 0x88),
         (Self::Air, 0x8A),
     ];
 
@@ -101,6 +108,7 @@ impl Command {
             Self::Rate { .. } => CommandKind::Rate,
             Self::Forget => CommandKind::Forget,
             Self::Air { .. } => CommandKind::Air,
+            Self::Object(_) => CommandKind::Object,
         }
     }
 }
@@ -128,11 +136,13 @@ pub enum Outcome {
     MemoryFailed,
     /// The design in the image has no use for it.
     NotInImage,
+    /// There are no tables of such an object.
+    NoSuchObject,
 }
 
 impl Outcome {
     /// Every outcome with its code on the wire.
-    pub const CODES: [(Self, u8); 10] = [
+    pub const CODES: [(Self, u8); 11] = [
         (Self::Done, 0),
         (Self::Touched, 1),
         (Self::Restless, 2),
@@ -142,6 +152,7 @@ impl Outcome {
         (Self::NothingToUndo, 6),
         (Self::ZeroUnverified, 7),
         (Self::MemoryFailed, 8),
+        (Self::NoSuchObject, 9),
         (Self::NotInImage, 14),
     ];
 }
@@ -152,6 +163,12 @@ impl From<AirRefusal> for Outcome {
             AirRefusal::NotInDesign => Self::NotInImage,
             AirRefusal::OutOfBounds => Self::OutOfBounds,
         }
+    }
+}
+
+impl From<NoSuchObject> for Outcome {
+    fn from(NoSuchObject: NoSuchObject) -> Self {
+        Self::NoSuchObject
     }
 }
 
@@ -189,6 +206,11 @@ pub fn encode(request: &Request) -> Encoded {
         Command::SelfTest { indentation } => body.put(indentation.to_le_bytes()),
         Command::Rate { every } => body.put(every.to_le_bytes()),
         Command::Air { pascals } => body.put(pascals.to_le_bytes()),
+        Command::Object(touched) => {
+            let (code, radius) = touched.code();
+            body.put([code]);
+            body.put(radius.to_le_bytes());
+        }
     }
     body.finish();
     body
@@ -207,6 +229,15 @@ pub fn decode(stuffed: &[u8]) -> Result<Request, DecodeError> {
 /// # Errors
 /// As [`decode`].
 pub fn read_body(body: &[u8]) -> Result<Request, DecodeError> {
+    read_known_body::<true>(body)
+}
+
+/// The same for a board with `[object]` in its design, or without: there [`Command::Object`] is no command.
+///
+/// # Errors
+/// As [`decode`].
+#[inline]
+pub fn read_known_body<const OBJECT: bool>(body: &[u8]) -> Result<Request, DecodeError> {
     if body.len() < HEADER {
         return Err(DecodeError::Short);
     }
@@ -248,6 +279,12 @@ pub fn read_body(body: &[u8]) -> Result<Request, DecodeError> {
             }
             Command::Rate { every }
         }
+        CommandKind::Object if OBJECT => {
+            let [shape] = fields.take()?;
+            let radius = i32::from_le_bytes(fields.take()?);
+            Command::Object(Touched::of(shape, radius).ok_or(DecodeError::Field(4))?)
+        }
+        CommandKind::Object => return Err(DecodeError::Kind(code)),
     };
     if fields.0.is_empty() {
         Ok(Request { sequence, command })
@@ -332,16 +369,26 @@ mod tests {
             (&[2, 0x86, 0, 0, 0, 0], DecodeError::Field(4)),
             (&[2, 0x86, 0, 0, 0xE9, 3], DecodeError::Field(4)),
             (&[2, 0x85, 0, 0, 0, 0, 0, 0x80], DecodeError::Field(4)),
-            (&[2, 0x83, 0, 0, 0xA1, 0x86, 1, 0], DecodeError::Field(4)), // 100 001 parts in a million
+            // A plate has no radius, a ball has one.
+            (&[2, 0x88, 0, 0, 0, 1, 0, 0, 0], DecodeError::Field(4)),
+            (&[2, 0x88, 0, 0, 1, 0, 0, 0, 0], DecodeError::Field(4)),
+            (&[2, 0x88, 0, 0, 4, 1, 0, 0, 0], DecodeError::Field(4)),
+            // 100 001 parts in a million.
+            (&[2, 0x83, 0, 0, 0xA1, 0x86, 1, 0], DecodeError::Field(4)),
         ] {
             assert_eq!(read_body(body), Err(error), "{body:?}");
         }
         assert!(read_body(&[2, 0x86, 0, 0, 0xE8, 3]).is_ok());
+        // Of 8 mm; no command where the design has no [object].
+        let ball = [2, 0x88, 0, 0, 1, 0x40, 0x1F, 0, 0];
+        let command = read_body(&ball).map(|request| request.command);
+        assert_eq!(command, Ok(Command::Object(Touched::Ball(8_000))));
+        assert_eq!(read_known_body::<false>(&ball), Err(DecodeError::Kind(0x88)));
     }
 
     proptest! {
         #[test]
-        fn a_request_survives_the_wire(sequence in any::<u16>(), which in 0..8, argument in any::<i32>()) {
+        fn a_request_survives_the_wire(sequence in any::<u16>(), which in 0..9, argument in any::<i32>()) {
             let command = match which {
                 0 => Command::Tare,
                 1 => Command::Undo,
@@ -350,6 +397,7 @@ mod tests {
                 4 => Command::SelfTest { indentation: argument & i32::MAX },
                 5 => Command::Rate { every: (argument.unsigned_abs() % 1000 + 1) as u16 },
                 6 => Command::Air { pascals: argument },
+                7 => Command::Object(Touched::Ball((argument & i32::MAX).max(1))),
                 _ => Command::Forget,
             };
             let request = Request { sequence, command };

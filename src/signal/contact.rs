@@ -1,20 +1,9 @@
 //! Pressure rise -> force and indentation with their 1-sigma, through the tables of the design.
 
 use crate::signal::design::Design;
-use crate::signal::report::Sigma;
+use crate::signal::report::{Contact, Sigma};
 use crate::status::Warnings;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
-
-/// What the tables say of a rise.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub struct Contact {
-    /// Force on the fingertip.
-    pub force: Micronewtons,
-    /// Indentation of its pole.
-    pub indentation: Nanometres,
-    /// What qualifies both.
-    pub warnings: Warnings,
-}
 
 /// Force and indentation at a rise, with what the tables add to the warnings. Below zero both are 0; below
 /// [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) that is flagged.
@@ -35,7 +24,7 @@ pub fn contact(design: &impl Design, rise: PressureRise, warnings: Warnings) -> 
 // On its own: woven into the reading's own lookup it takes the registers that this one needs.
 #[inline(never)]
 pub fn through_tables(design: &impl Design, rise: PressureRise, at: &Contact, sigma: PressureRise) -> Sigma {
-    let last = design.parameters().last_rise.0;
+    let last = design.last_rise().0;
     let rise = rise.0.clamp(0, last);
     let above = rise.saturating_add(sigma.0);
     let other = if above > last {

@@ -1,22 +1,19 @@
-//! The fingertip that a signal path is for: folded into the code of an image, or loaded at run time.
+//! The fingertip that a signal path is for: folded into the code of an image, or [loaded](crate::signal::loaded_design) at run time.
 
-use crate::signal::calibration::Calibration;
 use crate::signal::filter::Leaps;
 use crate::signal::fluid::Fall;
+use crate::signal::report::{Contact, Sigma};
 use crate::signal::scale::Scale;
 use crate::signal::touch::Thresholds;
 use crate::signal::uncertainty::Uncertainty;
-use crate::signal::wall::{Memory, Wall};
 use crate::signal::zero::limits::{Limits, Rates};
-use crate::signal::zero::surroundings::{Around, Surroundings};
-use model_tables::block::BlockError;
-use model_tables::block::read::TipBlock;
-use model_tables::block::section::SectionKind;
+use crate::signal::zero::surroundings::Around;
+use crate::status::Warnings;
+use crate::units::Microseconds;
 use model_tables::constants::DesignConstants;
-use model_tables::material::relaxation::MAX_TERMS;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
-use model_tables::table::loaded::LoadedTables;
+use model_tables::table::law::Touched;
 use model_tables::units::PressureRise;
 
 /// A design with its tables.
@@ -41,7 +38,56 @@ pub trait Design {
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     fn lookup(&self, rise: PressureRise) -> Reading;
+
+    /// The last rise that the lookup covers now.
+    #[inline]
+    fn last_rise(&self) -> PressureRise {
+        self.parameters().last_rise
+    }
+
+    /// Something else is touched from now on. A design without `[object]` has tables of the plate alone.
+    ///
+    /// # Errors
+    /// [`NoSuchObject`]; what was touched before still is.
+    fn touch(&mut self, _touched: Touched) -> Result<(), NoSuchObject> {
+        Err(NoSuchObject)
+    }
 }
+
+/// A pressure rise to be read.
+#[derive(Clone, Copy, Debug)]
+pub struct Rise {
+    /// When it was.
+    pub time: Microseconds,
+    /// The rise.
+    pub rise: PressureRise,
+    /// Its 1-sigma.
+    pub sigma: PressureRise,
+    /// What qualifies it.
+    pub warnings: Warnings,
+}
+
+/// What a wall remembers of its past.
+pub trait Wall: Clone + core::fmt::Debug {
+    /// A wall of whose past nothing is known.
+    const NEW: Self;
+
+    /// Force and indentation at a rise, with their 1-sigma.
+    fn read(&mut self, design: &impl Design, rise: Rise) -> (Contact, Sigma);
+
+    /// Whether its memory lowers the pressure so that this says nothing of the zero.
+    fn lowers_the_pressure(&self) -> bool;
+
+    /// The zero moved, and with it every rise so far, by so many counts.
+    fn shift(&mut self, design: &impl Design, by: PressureRise);
+
+    /// What happened since the last reading is not known.
+    fn lose_track(&mut self);
+}
+
+/// There are no tables of an object: the design has none, or its radius is tighter than what was solved.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct NoSuchObject;
 
 /// What the stages need of a design, each in its own form, worked out once: by the compiler for an image.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -102,55 +148,5 @@ impl Parameters {
     /// Two samples further apart than this are not next to each other, microseconds.
     pub const fn gap(&self) -> u64 {
         20 * self.period as u64
-    }
-}
-
-/// A design that is known at run time only.
-#[derive(Clone, Copy, Debug)]
-pub struct LoadedDesign<'a> {
-    parameters: Parameters,
-    tables: LoadedTables<'a>,
-    relaxation: Option<WallSeries>,
-}
-
-impl<'a> LoadedDesign<'a> {
-    /// The design in a block of a tip's data, with what is stored there of the one fingertip.
-    ///
-    /// # Errors
-    /// [`BlockError`].
-    pub fn read(block: &'a [u8]) -> Result<(Self, Option<Calibration>), BlockError> {
-        let tip = TipBlock::read(block)?;
-        let calibration = match &tip.calibration {
-            None => None,
-            Some(stored) => Some(
-                Calibration::stored(stored, tip.constants.transducer.range)
-                    .ok_or(BlockError::Value(SectionKind::Calibration, "a value"))?,
-            ),
-        };
-        let layout = tip.tables.layout();
-        let end = PressureRise(layout.maximum);
-        let design = Self {
-            parameters: Parameters::of(tip.constants, layout.pressure_fraction_bits, end),
-            tables: tip.tables,
-            relaxation: tip.relaxation,
-        };
-        Ok((design, calibration))
-    }
-}
-
-impl Design for LoadedDesign<'_> {
-    type Wall = Memory<MAX_TERMS>;
-
-    fn series(&self) -> Option<&WallSeries> {
-        self.relaxation.as_ref()
-    }
-    type Around = [Surroundings; 1];
-
-    fn parameters(&self) -> &Parameters {
-        &self.parameters
-    }
-
-    fn lookup(&self, rise: PressureRise) -> Reading {
-        self.tables.lookup(rise)
     }
 }

@@ -7,6 +7,7 @@ pub mod contact;
 pub mod design;
 pub mod filter;
 pub mod fluid;
+pub mod loaded_design;
 pub mod pipeline;
 pub mod relaxation;
 pub mod report;

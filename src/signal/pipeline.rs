@@ -1,14 +1,13 @@
 //! The stages, called in order.
 
 use crate::signal::calibration::{Calibration, Gain};
-use crate::signal::design::{Design, Parameters};
+use crate::signal::design::{Design, NoSuchObject, Parameters, Rise, Wall};
 use crate::signal::filter::{Filter, GROUP_DELAY};
 use crate::signal::fluid::Fluid;
 use crate::signal::report::{Measurement, Report};
 use crate::signal::stuck::StuckDetector;
 use crate::signal::temperature::Temperature;
 use crate::signal::touch::TouchDetector;
-use crate::signal::wall::{Rise, Wall};
 use crate::signal::zero::estimator::{Estimator, TareRefusal};
 use crate::signal::zero::surroundings::{AirRefusal, Around as _};
 use crate::signal::zero::{StartUp, Zero};
@@ -16,6 +15,7 @@ use crate::status::{Fault, Touch, Warnings};
 use crate::transducer::driver::Sample;
 use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
 use model_tables::constants::AIR;
+use model_tables::table::law::Touched;
 use model_tables::units::{Nanometres, PressureRise};
 
 /// The signal path of one fingertip.
@@ -357,6 +357,14 @@ impl<D: Design> Pipeline<D> {
     #[cfg(test)]
     fn fluid_suspicions(&self) -> Warnings {
         self.fluid.suspicions()
+    }
+
+    /// Something else is touched from now on.
+    ///
+    /// # Errors
+    /// [`NoSuchObject`]; readings stay those of what was touched before.
+    pub fn touch_object(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
+        self.design.touch(touched)
     }
 
     /// Wild samples replaced so far.

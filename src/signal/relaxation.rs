@@ -19,8 +19,8 @@
 //!
 //! All states are 64-bit integers. A change of pressure, of at most 2^57, is shared, and nothing that the terms hold grows beyond it.
 
-use crate::signal::contact::Contact;
 use crate::signal::design::Design;
+use crate::signal::report::Contact;
 use crate::status::Warnings;
 use model_tables::material::series::{Factor, SeriesStep};
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
@@ -178,7 +178,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     ) -> i64 {
         let parameters = design.parameters();
         let below_count = FRACTION_BITS - parameters.pressure_fraction_bits;
-        let last = i64::from(parameters.last_rise.0) << below_count;
+        let last = i64::from(design.last_rise().0) << below_count;
         let place = self.elastic.clamp(last >> AREA_SHIFT, last);
         let force = if place == self.elastic {
             at.force

@@ -47,6 +47,17 @@ pub struct Sigma {
     pub indentation: Nanometres,
 }
 
+/// Force and indentation at a pressure rise.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Contact {
+    /// Force on the fingertip.
+    pub force: Micronewtons,
+    /// Indentation of its pole.
+    pub indentation: Nanometres,
+    /// What qualifies both.
+    pub warnings: Warnings,
+}
+
 /// One report of the signal path.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Report {

@@ -5,10 +5,10 @@
 //! then bracket it: one goes on as if no time had passed (at the start: as if just pressed), the other is that of a wall that has settled at
 //! this pressure. Values are the middle of both, half of what they are apart is in the 1-sigma, until they have come together.
 
-use crate::signal::contact::{Contact, contact, through_tables};
-use crate::signal::design::Design;
+use crate::signal::contact::{contact, through_tables};
+use crate::signal::design::{Design, Rise, Wall};
 use crate::signal::relaxation::{RelaxedReading, Relaxing};
-use crate::signal::report::Sigma;
+use crate::signal::report::{Contact, Sigma};
 use crate::signal::uncertainty::hypotenuse;
 use crate::status::Warnings;
 use crate::units::Microseconds;
@@ -17,37 +17,6 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// What two states differ by, over the 1-sigma, where they count as one: as a divisor.
 const TOGETHER: i32 = 4;
-
-/// A pressure rise to be read.
-#[derive(Clone, Copy, Debug)]
-pub struct Rise {
-    /// When it was.
-    pub time: Microseconds,
-    /// The rise.
-    pub rise: PressureRise,
-    /// Its 1-sigma.
-    pub sigma: PressureRise,
-    /// What qualifies it.
-    pub warnings: Warnings,
-}
-
-/// What a wall remembers of its past.
-pub trait Wall: Clone + core::fmt::Debug {
-    /// A wall of whose past nothing is known.
-    const NEW: Self;
-
-    /// Force and indentation at a rise, with their 1-sigma.
-    fn read(&mut self, design: &impl Design, rise: Rise) -> (Contact, Sigma);
-
-    /// Whether its memory lowers the pressure so that this says nothing of the zero.
-    fn lowers_the_pressure(&self) -> bool;
-
-    /// The zero moved, and with it every rise so far, by so many counts.
-    fn shift(&mut self, design: &impl Design, by: PressureRise);
-
-    /// What happened since the last reading is not known.
-    fn lose_track(&mut self);
-}
 
 /// A wall without a memory.
 #[derive(Clone, Copy, Debug)]

@@ -241,6 +241,7 @@ fn name(kind: CommandKind) -> &'static str {
         CommandKind::Rate => "rate",
         CommandKind::Forget => "forget",
         CommandKind::Air => "air",
+        CommandKind::Object => "object",
     }
 }
 
@@ -256,6 +257,7 @@ fn words(answer: &Answer) -> String {
         Outcome::ZeroUnverified => "refused: no verified zero; tare first",
         Outcome::MemoryFailed => "failed: the memory did not take it",
         Outcome::NotInImage => "refused: the design in the image has no use for it",
+        Outcome::NoSuchObject => "refused: the design has no tables of such an object",
     };
     let findings = match (answer.command, answer.findings) {
         (CommandKind::SelfTest, 0) => ", nothing found".to_owned(),

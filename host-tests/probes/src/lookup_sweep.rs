@@ -1,8 +1,9 @@
 //! The inputs with which the chip's lookup is compared with the host's: 12 292 of them, everywhere in and around the
 //! tables of a design.
 
-use fingertip::signal::contact::{Contact, contact};
+use fingertip::signal::contact::contact;
 use fingertip::signal::design::{Design, Parameters};
+use fingertip::signal::report::Contact;
 use fingertip::signal::report::Measurement;
 use fingertip::status::Warnings;
 use fingertip::units::Pressure;
@@ -55,7 +56,7 @@ mod tests {
     use super::*;
     use fingertip::image::ImageDesign;
     use fingertip::image::generated::{NAME, TABLES};
-    use fingertip::signal::design::LoadedDesign;
+    use fingertip::signal::loaded_design::LoadedDesign;
     use model_tables::block::write::TipData;
 
     #[test]
@@ -67,6 +68,7 @@ mod tests {
             name: NAME,
             calibration: None,
             relaxation: None,
+            object: None,
         }
         .write();
         let (loaded, _) = LoadedDesign::read(&block).expect("the image's tables can be loaded");

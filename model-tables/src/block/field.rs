@@ -3,6 +3,7 @@
 
 use crate::constants::{AirReference, Quantity, TransducerKind};
 use crate::material::series::{Factor, TermStep};
+use crate::table::law::Touched;
 use crate::table::{Constant, Powers};
 #[cfg(feature = "std")]
 use std::fmt::{self, Write};
@@ -69,12 +70,15 @@ integer! {
     u64, "{:#018x}"; // hashes
 }
 
-impl<T: Field> Field for [T; 2] {
-    const LENGTH: usize = 2 * T::LENGTH;
+impl<T: Field, const N: usize> Field for [T; N] {
+    const LENGTH: usize = N * T::LENGTH;
 
     fn get(bytes: &[u8]) -> Option<Self> {
-        let (first, second) = bytes.split_at_checked(T::LENGTH)?;
-        Some([T::get(first)?, T::get(second)?])
+        let mut values = [T::get(bytes.get(..T::LENGTH)?)?; N];
+        for (value, own) in values.iter_mut().zip(bytes.chunks_exact(T::LENGTH)) {
+            *value = T::get(own)?;
+        }
+        Some(values)
     }
 
     #[cfg(feature = "std")]
@@ -86,11 +90,13 @@ impl<T: Field> Field for [T; 2] {
 
     #[cfg(feature = "std")]
     fn spell(&self, out: &mut String) -> fmt::Result {
-        let [first, second] = self;
         out.push('[');
-        first.spell(out)?;
-        out.push_str(", ");
-        second.spell(out)?;
+        for (at, value) in self.iter().enumerate() {
+            if at > 0 {
+                out.push_str(", ");
+            }
+            value.spell(out)?;
+        }
         out.push(']');
         Ok(())
     }
@@ -220,5 +226,27 @@ impl Field for TransducerKind {
     #[cfg(feature = "std")]
     fn spell(&self, out: &mut String) -> fmt::Result {
         write!(out, "model_tables::constants::TransducerKind::{self:?}")
+    }
+}
+
+/// A code, then the radius in micrometres, 0 of a plate.
+impl Field for Touched {
+    const LENGTH: usize = 8;
+
+    fn get(bytes: &[u8]) -> Option<Self> {
+        let (code, radius) = bytes.split_at_checked(4)?;
+        Self::of(u8::try_from(u32::get(code)?).ok()?, i32::get(radius)?)
+    }
+
+    #[cfg(feature = "std")]
+    fn put(&self, out: &mut Vec<u8>) {
+        let (code, radius) = self.code();
+        u32::from(code).put(out);
+        radius.put(out);
+    }
+
+    #[cfg(feature = "std")]
+    fn spell(&self, out: &mut String) -> fmt::Result {
+        write!(out, "model_tables::table::law::Touched::{self:?}")
     }
 }

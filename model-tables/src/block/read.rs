@@ -8,7 +8,9 @@ use super::{
 };
 use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions};
 use crate::material::series::{SeriesStep, WallSeries};
+use crate::table::law::{BlendLaw, Touched};
 use crate::table::loaded::LoadedTables;
+use crate::table::objects::LoadedObjects;
 use crate::table::{Constant, Layout, Powers};
 
 /// Widest range of a transducer, pascals: in millipascals it fits a word.
@@ -30,6 +32,8 @@ pub struct TipBlock<'a> {
     pub calibration: Option<StoredCalibration>,
     /// The wall in time, if it relaxes.
     pub relaxation: Option<WallSeries>,
+    /// Tables of other objects, if there are any.
+    pub objects: Option<LoadedObjects<'a>>,
 }
 
 impl<'a> TipBlock<'a> {
@@ -86,12 +90,17 @@ impl<'a> TipBlock<'a> {
         }
         // Last, because it takes the most work.
         let tables = LoadedTables::new(layout, words)?;
+        let objects = match sections.of_kind(SectionKind::Object) {
+            None => None,
+            Some(own) => Some(objects(own, tables)?),
+        };
         Ok(Self {
             constants,
             tables,
             name,
             calibration,
             relaxation,
+            objects,
         })
     }
 }
@@ -121,6 +130,22 @@ fn relaxation(mut own: Cursor<'_>) -> Result<WallSeries, BlockError> {
         return Err(value("term"));
     }
     Ok(wall)
+}
+
+/// The section of other objects, beside the tables of the plate.
+fn objects<'a>(mut own: Cursor<'a>, plate: LoadedTables<'a>) -> Result<LoadedObjects<'a>, BlockError> {
+    let (mut start, mut law) = (Touched::Plate, NO_LAW);
+    section::object(&mut start, &mut law, &mut own)?;
+    let (words, []) = own.bytes.as_chunks::<4>() else {
+        return Err(BlockError::SectionLength(SectionKind::Object));
+    };
+    if let Some(field) = law.out_of_range(plate.layout().maximum) {
+        return Err(BlockError::Value(SectionKind::Object, field));
+    }
+    if law.weights(start).is_none() {
+        return Err(BlockError::Value(SectionKind::Object, "start"));
+    }
+    Ok(LoadedObjects::new(start, law, plate, words)?)
 }
 
 /// The bytes of a block that is of this layout, complete and unchanged, and its head from the identity on.
@@ -324,4 +349,14 @@ const NO_LAYOUT: Layout = Layout {
     first_index: 0,
     force_shift: 0,
     indentation_shift: 0,
+};
+
+/// To be filled.
+const NO_LAW: BlendLaw = BlendLaw {
+    reference: 0,
+    offset: 0,
+    least: [0; 2],
+    last: [0; 2],
+    force: [[0; 3]; 2],
+    indentation: [[0; 3]; 2],
 };

@@ -5,6 +5,7 @@ use super::field::Visit;
 use crate::constants::{DesignConstants, Transducer, ZeroAssumptions};
 use crate::material::series::WallSeries;
 use crate::table::Layout;
+use crate::table::law::{BlendLaw, Touched};
 
 /// The kinds of sections, by their number.
 #[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
@@ -19,22 +20,25 @@ pub enum SectionKind {
     Name = 4,
     /// The wall in time.
     Relaxation = 5,
+    /// The reference ball's tables, and how much of it other objects have.
+    Object = 6,
     /// What the design states of its zero, if anything.
     Zero = 8,
 }
 
-/// Numbers that later layouts give to other objects than a plate, and the feedback membrane. A block with one of these is for newer
-/// firmware: without them its readings would be wrong.
-pub const RESERVED: [u16; 2] = [6, 7];
+/// The number that a later layout gives to the feedback membrane. A block with it is for newer firmware: without it its readings
+/// would be wrong.
+pub const RESERVED: [u16; 1] = [7];
 
 impl SectionKind {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Constants,
         Self::Tables,
         Self::Calibration,
         Self::Name,
         Self::Relaxation,
+        Self::Object,
         Self::Zero,
     ];
 
@@ -58,6 +62,7 @@ impl SectionKind {
             Self::Name => "name",
             Self::Relaxation => "relaxation",
             Self::Zero => "zero",
+            Self::Object => "object",
         }
     }
 }
@@ -143,4 +148,18 @@ pub fn relaxation<V: Visit>(value: &mut WallSeries, visit: &mut V) -> Result<(),
     visit.field("remaining_permille", &mut value.remaining_permille)?;
     visit.field("stiffness", &mut value.step.stiffness)?;
     visit.field("settled", &mut value.step.settled)
+}
+
+/// Of the objects: what is touched at the start, and the law of the weights; the words of the reference ball follow.
+///
+/// # Errors
+/// The visitor's.
+pub fn object<V: Visit>(start: &mut Touched, law: &mut BlendLaw, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("start", start)?;
+    visit.field("reference", &mut law.reference)?;
+    visit.field("offset", &mut law.offset)?;
+    visit.field("least", &mut law.least)?;
+    visit.field("last", &mut law.last)?;
+    visit.field("force", &mut law.force)?;
+    visit.field("indentation", &mut law.indentation)
 }

@@ -7,6 +7,7 @@ use crate::constants::{
     AirReference, DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions,
 };
 use crate::material::series::{Factor, SeriesStep, TermStep, WallSeries};
+use crate::table::law::{BlendLaw, Touched};
 use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
 use std::collections::BTreeSet;
@@ -64,6 +65,16 @@ const CALIBRATION: StoredCalibration = StoredCalibration {
     gain: 1_000,
 };
 
+/// Of straight lines over `t`.
+const LAW: BlendLaw = BlendLaw {
+    reference: 8_000,
+    offset: 2_000,
+    least: [3_000, 20_000],
+    last: [11, 11],
+    force: [[4096, 0, 0], [2048, 0, 0]],
+    indentation: [[4096, 0, 0], [2048, 0, 0]],
+};
+
 const DATA: TipData<'_> = TipData {
     constants: CONSTANTS,
     layout: LAYOUT,
@@ -71,6 +82,7 @@ const DATA: TipData<'_> = TipData {
     name: "a-tip_1",
     calibration: Some(CALIBRATION),
     relaxation: None,
+    object: None,
 };
 
 /// A half of a term is lost, and it takes a tenth of a change.
@@ -338,6 +350,9 @@ fn the_page_lists_every_field_where_it_lies() {
     let Ok(()) = section::relaxation(&mut wall(1), &mut rows);
     let mut rows = Rows(0);
     let Ok(()) = section::zero(&mut constants.zero, &mut rows);
+    let mut rows = Rows(0);
+    let (mut start, mut law) = (Touched::Plate, LAW);
+    let Ok(()) = section::object(&mut start, &mut law, &mut rows);
     let numbers: BTreeSet<String> = SectionKind::ALL
         .iter()
         .map(|&kind| format!("| {} | {} |", kind as u16, kind.word()))

@@ -6,6 +6,7 @@ use super::{CHECK_AT, ENTRY, HEAD, LAYOUT_VERSION, MAGIC, StoredCalibration, ali
 use crate::constants::{DesignConstants, ZeroAssumptions};
 use crate::material::series::WallSeries;
 use crate::table::Layout;
+use crate::table::law::{BlendLaw, Touched};
 use core::convert::Infallible;
 
 /// What a block is made of.
@@ -23,6 +24,19 @@ pub struct TipData<'a> {
     pub calibration: Option<StoredCalibration>,
     /// The wall in time, if it relaxes.
     pub relaxation: Option<WallSeries>,
+    /// Tables of other objects, if there are any.
+    pub object: Option<ObjectData<'a>>,
+}
+
+/// Tables of other objects than a plate.
+#[derive(Clone, Copy, Debug)]
+pub struct ObjectData<'a> {
+    /// What is touched at the start.
+    pub start: Touched,
+    /// The weights over the radius.
+    pub law: BlendLaw,
+    /// The reference ball's words.
+    pub words: &'a [i32],
 }
 
 /// Adds the bytes of each field.
@@ -52,6 +66,7 @@ impl TipData<'_> {
             mut layout,
             mut calibration,
             mut relaxation,
+            object,
             ..
         } = *self;
         let identity = described(|visit| section::identity(&mut constants, visit));
@@ -67,9 +82,7 @@ impl TipData<'_> {
                 SectionKind::Tables,
                 described(|visit| {
                     section::layout(&mut layout, visit)?;
-                    self.words
-                        .iter()
-                        .try_for_each(|&word| visit.field("word", &mut { word }))
+                    all(self.words, visit)
                 }),
             ),
         ];
@@ -86,12 +99,26 @@ impl TipData<'_> {
             });
             sections.push((SectionKind::Relaxation, bytes));
         }
+        if let Some(mut object) = object {
+            let bytes = described(|visit| {
+                section::object(&mut object.start, &mut object.law, visit)?;
+                all(object.words, visit)
+            });
+            sections.push((SectionKind::Object, bytes));
+        }
         if constants.zero != ZeroAssumptions::NONE {
             let bytes = described(|visit| section::zero(&mut constants.zero, visit));
             sections.push((SectionKind::Zero, bytes));
         }
         block(&identity, &sections)
     }
+}
+
+/// Words of tables.
+fn all(words: &[i32], visit: &mut Bytes) -> Result<(), Infallible> {
+    words
+        .iter()
+        .try_for_each(|&word| visit.field("word", &mut { word }))
 }
 
 /// Head, directory, sections, each from a multiple of four on.

@@ -72,9 +72,10 @@ impl Candidate<'_> {
                 Shifts::Largest => most.max(1),
                 Shifts::Every => 1,
             };
-            let (shift, sums) = std::iter::once(0)
-                .chain((least..=most).rev())
-                .find_map(|shift| Some((shift, self.integers(&layout, output, shift, accuracy)?)))?;
+            let (shift, sums) = std::iter::once(0).chain((least..=most).rev()).find_map(|shift| {
+                let spans = &self.segmentation.spans;
+                Some((shift, self.integers(&layout, output, shift, accuracy, spans, 0)?))
+            })?;
             found.push((shift, sums));
         }
         if shifts != Shifts::None && found.iter().all(|&(shift, _)| shift == 0) {
@@ -82,6 +83,24 @@ impl Candidate<'_> {
         }
         (layout.force_shift, layout.indentation_shift) = (found[0].0, found[1].0);
         Some(assemble(layout, &found[0].1, &found[1].1))
+    }
+
+    /// Tables of this candidate's curve in the layout of others, with their lowest segment.
+    pub(super) fn beside(&self, others: &OwnedTables, accuracy: &Accuracy) -> Option<OwnedTables> {
+        let layout = others.layout;
+        let (lowest, spans) = self.segmentation.spans.split_first()?;
+        let end = others.lookup(PressureRise(lowest.end - 1));
+        let integers = |output: usize, shift: u32, before: i32| {
+            if self.spare_bits(output)? < shift {
+                return None;
+            }
+            self.integers(&layout, output, shift, accuracy, spans, before)
+        };
+        let force = integers(0, layout.force_shift, end.force.0)?;
+        let indentation = integers(1, layout.indentation_shift, end.indentation.0)?;
+        let mut tables = assemble(layout, &force, &indentation);
+        tables.words.extend(others.segment(spans.len()));
+        Some(tables)
     }
 
     /// Bits that an output's sums could be larger by, `None` if they do not fit a word as they are.
@@ -100,16 +119,25 @@ impl Candidate<'_> {
         (room >= 1.0).then(|| libm::floor(libm::log2(room)) as u32)
     }
 
-    /// The integers of one output, segments upwards.
+    /// The integers of one output, segments upwards, from an output of at least `before` on.
     fn integers(
         &self,
         layout: &Layout,
         output: usize,
         shift: u32,
         accuracy: &Accuracy,
+        spans: &[Span],
+        before: i32,
     ) -> Option<Vec<Coefficients>> {
         let tolerance = Tolerance::both(self.truth, accuracy)[output];
-        let spans = &self.segmentation.spans;
+        let rising = Rising {
+            layout,
+            output,
+            shift,
+            tolerance,
+            spans,
+            before,
+        };
         // Where real coefficients do not serve, rounding is not tried: the last segment's are the largest, those of the first have
         // the fewest digits.
         for span in [spans.last()?, spans.first()?] {
@@ -120,7 +148,7 @@ impl Candidate<'_> {
         }
         let mut found = Err(Failed::Falls);
         for closest in 0..CLOSER.len() {
-            found = self.rising(layout, output, shift, tolerance, closest);
+            found = self.rising(&rising, closest);
             if !matches!(found, Err(Failed::Falls)) {
                 break;
             }
@@ -130,16 +158,15 @@ impl Candidate<'_> {
 
     /// The same, each segment fitted to a part of the tolerance, a closer one or else a wider one, with which it rises on from the
     /// segment below.
-    fn rising(
-        &self,
-        layout: &Layout,
-        output: usize,
-        shift: u32,
-        tolerance: Tolerance,
-        first: usize,
-    ) -> Result<Vec<Coefficients>, Failed> {
-        let spans = &self.segmentation.spans;
-        let mut before = 0;
+    fn rising(&self, rising: &Rising<'_>, first: usize) -> Result<Vec<Coefficients>, Failed> {
+        let &Rising {
+            layout,
+            output,
+            shift,
+            tolerance,
+            spans,
+            mut before,
+        } = rising;
         let mut all = Vec::with_capacity(spans.len());
         for span in spans {
             let fitted = |closer: &f64, before: i32| {
@@ -214,6 +241,16 @@ impl Candidate<'_> {
         }
         Some(samples)
     }
+}
+
+/// Segments of an output that are to rise from an output of at least `before` on.
+struct Rising<'a> {
+    layout: &'a Layout,
+    output: usize,
+    shift: u32,
+    tolerance: Tolerance,
+    spans: &'a [Span],
+    before: i32,
 }
 
 /// Why there are no integers for a segmentation.

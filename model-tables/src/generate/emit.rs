@@ -4,11 +4,12 @@
 
 use super::TABLE_VERSION;
 use super::design::{Generated, Limit, integer};
+use super::object::ObjectTables;
 use super::owned::OwnedTables;
 use super::tally::Errors;
 use crate::block::field::{Field, Visit};
 use crate::block::section;
-use crate::block::write::TipData;
+use crate::block::write::{ObjectData, TipData};
 use crate::constants::{DesignConstants, ZeroAssumptions};
 use crate::material::series::{SeriesStep, WallSeries};
 use crate::model::own_error::OwnError;
@@ -53,6 +54,11 @@ impl Generated {
             name: &self.design.name,
             calibration: None,
             relaxation: self.wall(),
+            object: self.certified.object.as_ref().map(|object| ObjectData {
+                start: object.start,
+                law: object.law,
+                words: &object.ball.words,
+            }),
         }
         .write()
     }
@@ -145,10 +151,11 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     )?;
     section::layout(&mut tables.layout.clone(), &mut Source { out, indent: 8 })?;
     writeln!(out, "    }},\n    segments: [")?;
-    for index in 0..tables.segments() {
-        writeln!(out, "        {:?},", tables.segment(index))?;
-    }
+    write_segments(tables, 8, out)?;
     writeln!(out, "    ],\n}};")?;
+    if let Some(object) = &generated.certified.object {
+        write_objects(object, out)?;
+    }
     match generated.wall() {
         Some(wall) => write_wall(wall, out),
         None => Ok(()),
@@ -176,6 +183,32 @@ fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
         writeln!(out, ",")?;
     }
     writeln!(out, "        ],\n    }},\n}};")
+}
+
+fn write_segments(tables: &OwnedTables, indent: usize, out: &mut String) -> fmt::Result {
+    for index in 0..tables.segments() {
+        writeln!(out, "{:indent$}{:?},", "", tables.segment(index))?;
+    }
+    Ok(())
+}
+
+fn write_objects(object: &ObjectTables, out: &mut String) -> fmt::Result {
+    let (ball, law) = (&object.ball, &object.law);
+    writeln!(
+        out,
+        "\n/// Segments of the reference ball.\npub const BALL: [[i32; {}]; {}] = [",
+        ball.layout.words(),
+        ball.segments()
+    )?;
+    write_segments(ball, 4, out)?;
+    writeln!(
+        out,
+        "];\n\n/// How much of it other objects have.\n\
+         pub const LAW: model_tables::table::law::BlendLaw = model_tables::table::law::{law:?};\n\n\
+         /// What is touched at the start.\n\
+         pub const START: model_tables::table::law::Touched = model_tables::table::law::Touched::{:?};",
+        object.start
+    )
 }
 
 /// A line of Rust source for each field.
@@ -339,7 +372,61 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     let asked = generated.asked_percent();
     write_errors("force", "un", asked[0], &certificate.force, out)?;
     write_errors("indentation", "nm", asked[1], &certificate.indentation, out)?;
+    if let Some(object) = &generated.certified.object {
+        write_blend(object, out)?;
+    }
     write_transducer(generated, out)
+}
+
+/// What a blend of the plate's tables and the reference ball's is worth.
+fn write_blend(object: &ObjectTables, out: &mut String) -> fmt::Result {
+    let law = &object.law;
+    let bits = object.ball.layout.pressure_fraction_bits;
+    let millimetres = |micrometres: i32| f64::from(micrometres) * 1e-3;
+    writeln!(
+        out,
+        "\n[object] # tables blended of the plate's and a reference ball's, as the chip blends them. A cylinder takes half the weights\n\
+         # of a ball: quoted, not solved.\n\
+         start = \"{}\"\n\
+         reference_ball_mm = {:?}\n\
+         bytes = {}\n\
+         least_ball_mm = {:?}",
+        object.start,
+        millimetres(law.reference),
+        2 * object.ball.bytes(),
+        millimetres(law.least[0]),
+    )?;
+    if law.least[1] > 0 {
+        writeln!(out, "least_cup_mm = {:?}", millimetres(law.least[1]))?;
+    }
+    let [ball, cup] = law.last.map(|last| PressureRise(last).pascals(bits));
+    writeln!(
+        out,
+        "last_rise_of_balls_pa = {ball:?}\n\
+         last_rise_of_cups_pa = {cup:?}\n\
+         errors_from_pa = {:.1}",
+        object.from
+    )?;
+    for error in &object.errors {
+        writeln!(
+            out,
+            "\n[[object.error]] # largest, against the solved object, percent of reading: as deep as the design is pressed, and up to\n\
+             # the last pressure rise that is answered\n\
+             radius_mm = {:.3}\n\
+             fitted = {}",
+            error.radius_mm, error.fitted
+        )?;
+        for (name, errors) in [("pressed", error.pressed), ("answered", error.answered)] {
+            writeln!(
+                out,
+                "{name}_to_pa = {:.1}\n\
+                 {name}_force_percent = {:.2}\n\
+                 {name}_indentation_percent = {:.2}",
+                errors.last, errors.force_percent, errors.indentation_percent
+            )?;
+        }
+    }
+    Ok(())
 }
 
 /// What the transducer leaves undecided, beside which the errors of the tables are to be seen.

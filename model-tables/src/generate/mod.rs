@@ -9,6 +9,7 @@ mod certify;
 mod design;
 mod emit;
 pub mod minimax;
+pub mod object;
 mod owned;
 mod quantise;
 mod search;
@@ -19,6 +20,7 @@ mod truth;
 use crate::curve::{Contact, Curve};
 use crate::design_file::Accuracy;
 use candidate::Work;
+use object::{ObjectTables, SolvedObjects};
 use truth::Truth;
 
 pub use certify::Certificate;
@@ -56,6 +58,8 @@ pub struct Certified {
     pub tables: OwnedTables,
     /// What holds of them on every input.
     pub certificate: Certificate,
+    /// Tables of other objects, where the design has an `[object]`.
+    pub object: Option<ObjectTables>,
     /// Segmentations looked at before these tables were found to be the smallest.
     pub tried: usize,
     /// Half of what the transducer tells apart, in percent of reading of force and indentation, where that is least. Tables are
@@ -114,14 +118,35 @@ pub fn tables(
     accuracy: &Accuracy,
     resolution: f64,
 ) -> Result<Certified, NoTables> {
+    tables_with(curve, end, accuracy, resolution, None)
+}
+
+/// The same, with tables of other objects in the same layout.
+///
+/// # Errors
+/// [`NoTables`], with the numbers.
+pub fn tables_with(
+    curve: &Curve,
+    end: Contact,
+    accuracy: &Accuracy,
+    resolution: f64,
+    objects: Option<&SolvedObjects>,
+) -> Result<Certified, NoTables> {
     let resolvable = resolvable_percent(curve, end, accuracy, resolution);
     let accuracy = &held_to(accuracy, resolvable);
     let found = search(curve, end, accuracy, resolution, |tables, truth| {
-        certify::certify(tables, curve, truth, accuracy).filter(Certificate::holds)
+        let object = match objects {
+            None => None,
+            Some(objects) => Some(objects.tables(tables, end, truth, accuracy)?),
+        };
+        let certificate = certify::certify(tables, curve, truth, accuracy).filter(Certificate::holds)?;
+        Some((certificate, object))
     })?;
+    let (certificate, object) = found.accepted;
     Ok(Certified {
         tables: found.tables,
-        certificate: found.accepted,
+        certificate,
+        object,
         tried: found.tried,
         resolvable_percent: resolvable,
     })

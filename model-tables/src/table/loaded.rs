@@ -53,6 +53,11 @@ impl<'a> LoadedTables<'a> {
         &self.0.layout
     }
 
+    /// Their words.
+    pub const fn words(&self) -> &'a [[u8; 4]] {
+        self.0.words
+    }
+
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     pub fn lookup(&self, rise: PressureRise) -> Reading {
         self.0.lookup(rise)

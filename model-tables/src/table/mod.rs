@@ -14,8 +14,11 @@
 //!
 //! The tables of a design are a constant, so the compiler folds everything but the coefficients.
 
+pub mod blend;
 pub mod error;
+pub mod law;
 pub mod loaded;
+pub mod objects;
 mod rising;
 mod segments;
 
@@ -223,6 +226,20 @@ impl Layout {
         sums
     }
 
+    /// Force and indentation at a pressure rise, from the segments of this layout.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // so that the layout folds into the code of the one call site
+    pub fn lookup_in<const SEGMENTS: usize, const WORDS: usize>(
+        &self,
+        segments: &[[i32; WORDS]; SEGMENTS],
+        rise: PressureRise,
+    ) -> Reading {
+        let place = self.place(rise);
+        // The index is in range for every input of a generated table, as the compiler sees; the limit keeps panics out.
+        let index = place.number.wrapping_sub(self.first_index) as usize;
+        self.reading(rise, place, &segments[index.min(SEGMENTS - 1)])
+    }
+
     /// The outputs at a place, from its segment's words.
     #[inline(always)]
     #[allow(clippy::inline_always)] // part of the lookup
@@ -264,11 +281,7 @@ impl<const SEGMENTS: usize, const WORDS: usize> Tables<SEGMENTS, WORDS> {
     #[inline(always)]
     #[allow(clippy::inline_always)] // so that the layout folds into the code of the one call site
     pub fn lookup(&self, rise: PressureRise) -> Reading {
-        let place = self.layout.place(rise);
-        // The index is in range for every input of a generated table, as the compiler sees; the limit keeps panics out.
-        let index = place.number.wrapping_sub(self.layout.first_index) as usize;
-        self.layout
-            .reading(rise, place, &self.segments[index.min(SEGMENTS - 1)])
+        self.layout.lookup_in(&self.segments, rise)
     }
 }
 

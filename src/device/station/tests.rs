@@ -3,6 +3,7 @@ use crate::device::supervisor::Breadcrumb;
 use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::Touch;
 use crate::units::{Millipascals, Pressure};
+use model_tables::table::law::Touched;
 use proptest::prelude::*;
 
 const BEGINNING: Beginning = Beginning {
@@ -385,4 +386,19 @@ fn a_supply_that_sags_in_a_grasp_keeps_the_zero_and_ends_with_a_reason() {
         (hello.reset_cause, hello.resets_in_a_row),
         (ResetCause::BrownOut, 6)
     );
+}
+
+#[test]
+fn an_object_is_refused_by_a_design_that_has_none() {
+    let mut bench = Bench::zeroed();
+    bench.ask(Command::Object(Touched::Ball(8_000)));
+    let outcomes: Vec<Outcome> = bench
+        .said
+        .iter()
+        .filter_map(|message| match message {
+            Message::Answer(answer) => Some(answer.outcome),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(outcomes, [Outcome::NoSuchObject]);
 }

@@ -2,7 +2,8 @@
 
 use super::{estimate_in_time, finite, read};
 use fingertip::signal::contact::contact;
-use fingertip::signal::design::{Design, LoadedDesign};
+use fingertip::signal::design::Design;
+use fingertip::signal::loaded_design::LoadedDesign;
 use fingertip::status::{Status, Warnings};
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{GenerateError, Generated, from_design, from_design_or_worse};

@@ -4,6 +4,7 @@ use crate::constants::BELOW_ZERO_DEVIATIONS;
 use crate::curve::CurveFailure;
 use crate::design_file::DesignFileError;
 use crate::generate::NoTables;
+use crate::generate::object::NoObjects;
 use crate::model::ModelError;
 use std::fmt;
 
@@ -68,6 +69,8 @@ pub enum GenerateError {
         /// The deepest one of the data, millimetres.
         deepest: f64,
     },
+    /// There are no tables of other objects than a plate.
+    Objects(NoObjects),
     /// No tables meet the accuracy.
     NoTables(NoTables),
 }
@@ -160,6 +163,7 @@ impl fmt::Display for GenerateError {
                 "press.max_indentation_mm = {asked} is beyond the data in [calibration], which end at {deepest} mm: \
                  ask for less, or measure deeper"
             ),
+            Self::Objects(error) => error.fmt(f),
             Self::NoTables(error) => error.fmt(f),
         }
     }

@@ -6,12 +6,13 @@ mod limit;
 pub use error::{GenerateError, State};
 pub use limit::Limit;
 
-use super::{Certified, NoTables, tables};
+use super::object::{NoObjects, SolvedObjects, plate_of};
+use super::{Certified, NoTables, tables_with};
 use crate::constants::{AirReference, BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{
-    DataCurve, DesignFile, ModelSection, RestSection, Supply, TransducerKindSection, TransducerSection,
-    Transfer,
+    DataCurve, DesignFile, ModelSection, RestSection, ShapeSection, Supply, TransducerKindSection,
+    TransducerSection, Transfer,
 };
 use crate::model::own_error::{Comparison, OwnError};
 use crate::model::{Fingertip, Kind};
@@ -97,20 +98,33 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
     let missing = |section| GenerateError::MissingSection { section };
     is_convolved(&design)?;
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
+    if design.object.is_some_and(|object| object.unknown) {
+        return Err(GenerateError::UnknownObject);
+    }
+    // A punch is no ball: its tables are of itself alone.
+    let blends = design
+        .object
+        .is_some_and(|object| !matches!(object.shape, ShapeSection::Punch { .. }));
+    let touching = if blends { plate_of(&design) } else { design.clone() };
     let Solved {
         transducer,
         rest_pressure,
         curve,
         end,
         rung,
-    } = solve(&design)?;
+    } = solve(&touching)?;
+    let objects = match &rung {
+        _ if !blends => None,
+        None => return Err(GenerateError::Objects(NoObjects::Data)),
+        Some(rung) => Some(SolvedObjects::solve(&design, rung, &curve, end)?),
+    };
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let (mut model_error, mut membrane_error) = (None, None);
     let kind = rung.as_ref().map(Fingertip::kind);
     if let Some(mut rung) = rung {
-        model_error = convergence(&design, &rung, &curve, end, from);
+        model_error = convergence(&touching, &rung, &curve, end, from);
         if matches!(rung, Fingertip::Membrane(_)) {
-            membrane_error = Some(OwnError::of(&mut rung, &design, end.indentation, from));
+            membrane_error = Some(OwnError::of(&mut rung, &touching, end.indentation, from));
         }
     }
     is_near_enough(
@@ -121,7 +135,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
     let mut allowed = accuracy;
     let mut doubled = 0;
     let certified = loop {
-        match tables(&curve, end, &allowed, transducer.resolution_pa) {
+        match tables_with(&curve, end, &allowed, transducer.resolution_pa, objects.as_ref()) {
             Err(NoTables::Inaccurate { .. }) if doubled < doublings => {
                 allowed.force_percent_of_reading *= 2.0;
                 allowed.indentation_percent_of_reading *= 2.0;

@@ -5,6 +5,7 @@ use crate::design_file::RestSection;
 use crate::generate::{OwnedTables, tables as make_tables};
 use crate::membrane::TensionField;
 use crate::membrane::press::Press;
+use crate::table::law::Touched;
 use crate::table::{Reading, Tables};
 use crate::units::PressureRise;
 
@@ -117,46 +118,65 @@ fn against(object: &str) -> DesignFile {
     DesignFile::parse(&format!("{text}\n[object]\n{object}\n"), "object.toml").expect("a design")
 }
 
-/// Tables of a ball of 8 mm radius, held to states of it by an independent finite-element code (`tests/reference/object.json`): pressure in
-/// kilopascals, force in newtons, indentation in millimetres.
+/// Blended tables of balls, held to states of them by an independent finite-element code (`tests/reference/object.json`): radius in
+/// millimetres, pressure in kilopascals, force in newtons, indentation in millimetres.
 #[test]
-fn tables_of_a_ball_give_its_force_and_indentation() {
+fn blended_tables_of_balls_give_their_force_and_indentation() {
     let generated = from_design(against("radius_mm = 8.0")).expect("tables");
-    let tables = &generated.certified.tables;
-    let bits = tables.layout.pressure_fraction_bits;
-    for (pressure, force, indentation) in [
-        (1.388_41, 0.138_377, 0.5),
-        (3.924_68, 0.311_663, 1.0),
-        (8.498_38, 0.625_282, 1.5),
-        (15.962_5, 1.243_54, 2.0),
+    let object = generated.certified.object.as_ref().expect("of balls");
+    let balls = object.errors.iter().filter(|error| error.radius_mm > 0.0);
+    assert_eq!(balls.clone().filter(|error| !error.fitted).count(), 1);
+    for error in balls {
+        let allowed = if error.radius_mm < 4.0 { 2.5 } else { 1.5 };
+        let pressed = error.pressed;
+        assert!(pressed.last > 15_000.0);
+        assert!(
+            pressed.force_percent < allowed && pressed.indentation_percent < allowed,
+            "{error:?}"
+        );
+    }
+    let plate = &generated.certified.tables;
+    let bits = plate.layout.pressure_fraction_bits;
+    for (radius, pressure, force, indentation) in [
+        (5_000, 1.319_01, 0.132_129, 0.5),
+        (5_000, 3.548_23, 0.279_473, 1.0),
+        (5_000, 7.267_72, 0.507_036, 1.5),
+        (5_000, 13.057_7, 0.916_671, 2.0),
+        (5_000, 21.250_7, 1.615_51, 2.5),
+        (8_000, 1.388_41, 0.138_377, 0.5),
+        (8_000, 3.924_68, 0.311_663, 1.0),
+        (8_000, 8.498_38, 0.625_282, 1.5),
+        (8_000, 15.962_5, 1.243_54, 2.0),
     ] {
+        let tables = object
+            .blended(plate, Touched::Ball(radius))
+            .expect("a ball that it has");
         let reading = tables.lookup(PressureRise::from_pascals(1e3 * pressure, bits));
         let (by_force, by_depth) = (
             reading.force.newtons() / force - 1.0,
             1e3 * reading.indentation.metres() / indentation - 1.0,
         );
+        println!("{radius} {pressure}: {by_force:+.4} {by_depth:+.4}");
         assert!(
-            by_force.abs() < 0.005 && by_depth.abs() < 0.005,
-            "{pressure}: {by_force} {by_depth}"
+            by_force.abs() < 0.015 && by_depth.abs() < 0.015,
+            "{radius} {pressure}: {by_force} {by_depth}"
         );
     }
 }
 
 #[test]
 fn what_has_no_tables_is_refused_by_its_key() {
-    let refused = |object: &str| solve(&against(object)).expect_err("no tables").to_string();
+    let refused = |object: &str| from_design(against(object)).expect_err("no tables").to_string();
     for (object, says) in [
         ("unknown = true", "`object.unknown` is true"),
         (
-            "shape = \"cylinder\"\nradius_mm = 5",
-            "object.shape = \"cylinder\" has no axial symmetry",
+            "radius_mm = 2.5",
+            "object.radius_mm = 2.5 is tighter than the objects that were solved",
         ),
         (
-            "radius_mm = -10",
-            "a cup of radius 10.000000 mm touches the tip beside its pole first",
+            "radius_mm = -20",
+            "object.radius_mm = -20 is tighter than the objects that were solved",
         ),
-        // A cup takes far more pressure than a plate.
-        ("radius_mm = -20", "beyond the limit of"),
     ] {
         let text = refused(object);
         assert!(text.contains(says) && text.lines().count() == 1, "{text}");

@@ -1,0 +1,215 @@
+//! Tables of other objects than a plate: those of a reference ball, and the law that says how much of it an object has.
+
+use super::candidate::{Candidate, Work};
+use super::owned::OwnedTables;
+use super::shape::Segmentation;
+use super::truth::Truth;
+use crate::curve::Contact;
+use crate::design_file::Accuracy;
+use crate::table::blend::{MOST_WORDS, WEIGHT_BITS, blend};
+use crate::table::law::{BlendLaw, LAW_BITS, Touched, Weights};
+use crate::table::loaded::LoadedTables;
+use crate::units::PressureRise;
+
+mod solved;
+
+pub(super) use solved::plate_of;
+pub use solved::{NoObjects, SolvedObject, SolvedObjects};
+
+/// What the tables of the reference ball are held to, as a multiple of what those of the plate are: its share of a blend's error.
+const BALL_ACCURACY: f64 = 3.0;
+
+/// A law may lie so much beyond its ends, in units of a weight.
+const MARGIN: i32 = 1 << (WEIGHT_BITS - 5);
+
+/// Tables of the reference ball, and what a blend of them and the plate's is worth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectTables {
+    /// The reference ball's, of the layout of the plate's.
+    pub ball: OwnedTables,
+    /// The weights over the radius.
+    pub law: BlendLaw,
+    /// What the design says is touched, until a command says otherwise.
+    pub start: Touched,
+    /// Errors are of pressure rises from here on, pascals.
+    pub from: f64,
+    /// The blend against every solved object.
+    pub errors: Vec<BlendError>,
+}
+
+/// A blend of integers, as the chip has it, against a solved object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlendError {
+    /// The object's radius, millimetres; of a cup negative.
+    pub radius_mm: f64,
+    /// Whether the law was fitted to it.
+    pub fitted: bool,
+    /// As deep as the design is pressed.
+    pub pressed: BlendErrors,
+    /// Up to the last pressure rise that is answered, which balls reach deeper.
+    pub answered: BlendErrors,
+}
+
+/// Largest errors of a blend up to a pressure rise, percent of reading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlendErrors {
+    /// The last pressure rise compared, pascals.
+    pub last: f64,
+    /// Of the force.
+    pub force_percent: f64,
+    /// Of the indentation.
+    pub indentation_percent: f64,
+}
+
+impl ObjectTables {
+    /// The tables of an object, as the chip blends them; nothing for one that the law refuses.
+    pub fn blended(&self, plate: &OwnedTables, touched: Touched) -> Option<OwnedTables> {
+        let weights = self.law.weights(touched)?;
+        Some(blended(plate, &self.ball, &weights))
+    }
+}
+
+fn blended(plate: &OwnedTables, ball: &OwnedTables, weights: &Weights) -> OwnedTables {
+    let mut words = vec![0; plate.words.len()];
+    blend(&plate.layout, &plate.words, &ball.words, weights, &mut words);
+    OwnedTables {
+        layout: plate.layout,
+        words,
+    }
+}
+
+impl SolvedObjects {
+    /// The reference ball's tables in the layout of the plate's, if there are some with which no blend ever falls.
+    pub(super) fn tables(
+        &self,
+        plate: &OwnedTables,
+        end: Contact,
+        truth: &Truth,
+        accuracy: &Accuracy,
+    ) -> Option<ObjectTables> {
+        if plate.layout.halvings > 0 || plate.words.len() > MOST_WORDS {
+            return None;
+        }
+        let accuracy = Accuracy {
+            force_percent_of_reading: BALL_ACCURACY * accuracy.force_percent_of_reading,
+            indentation_percent_of_reading: BALL_ACCURACY * accuracy.indentation_percent_of_reading,
+            ..*accuracy
+        };
+        let work = Work::default();
+        let own = Truth::new(&self.reference_beyond, end, truth.fraction_bits, truth.maximum);
+        let candidate = Candidate {
+            truth: &own,
+            segmentation: Segmentation::of(plate.layout)?,
+            error: 0.0,
+            work: &work,
+        };
+        let ball = candidate.beside(plate, &accuracy)?;
+        let law = self.law(truth.fraction_bits, truth.maximum);
+        // A blend for a tight cup can fall where one for balls does not.
+        let without_cups = BlendLaw {
+            least: [law.least[0], 0],
+            ..law
+        };
+        let law = [law, without_cups]
+            .into_iter()
+            .find(|law| rises(plate, &ball, law))?;
+        law.weights(self.start)?;
+        let errors = self
+            .objects
+            .iter()
+            .filter_map(|object| {
+                let weights = law.weights(object.touched)?;
+                let tables = blended(plate, &ball, &weights);
+                Some(self.error(&tables, &weights, object))
+            })
+            .collect();
+        Some(ObjectTables {
+            ball,
+            law,
+            start: self.start,
+            from: self.from,
+            errors,
+        })
+    }
+
+    /// The law in integers.
+    fn law(&self, fraction_bits: u32, maximum: i32) -> BlendLaw {
+        let counts = |rise: f64| {
+            PressureRise::from_pascals(rise, fraction_bits)
+                .0
+                .clamp(1, maximum)
+        };
+        let unit = f64::from(1 << LAW_BITS);
+        let coefficients = |real: [f64; 3]| {
+            let [sum, second, third] =
+                [real.iter().sum::<f64>(), real[1], real[2]].map(|real| libm::round(real * unit) as i32);
+            [sum - second - third, second, third]
+        };
+        let both = |of: [solved::Coefficients; 2]| of.map(coefficients);
+        BlendLaw {
+            reference: solved::micrometres(self.reference_radius),
+            offset: solved::micrometres(self.offset),
+            least: self.least.map(solved::micrometres),
+            last: self.last.map(counts),
+            force: both(self.force),
+            indentation: both(self.indentation),
+        }
+    }
+
+    fn error(&self, tables: &OwnedTables, weights: &Weights, object: &SolvedObject) -> BlendError {
+        let bits = tables.layout.pressure_fraction_bits;
+        let last = PressureRise(weights.maximum.min(tables.layout.maximum)).pascals(bits);
+        let last = last.min(object.curve.end().pressure_rise);
+        let errors = |last: f64| {
+            let mut found = BlendErrors {
+                last,
+                force_percent: 0.0,
+                indentation_percent: 0.0,
+            };
+            for rise in solved::rises(self.from, last) {
+                let read = tables.lookup(PressureRise::from_pascals(rise, bits));
+                let truth = object.curve.at_pressure_rise(rise);
+                let percent = |got: f64, truth: f64| 100.0 * (got / truth - 1.0).abs();
+                found.force_percent = found
+                    .force_percent
+                    .max(percent(read.force.newtons(), truth.force));
+                found.indentation_percent = found
+                    .indentation_percent
+                    .max(percent(read.indentation.metres(), truth.indentation));
+            }
+            found
+        };
+        BlendError {
+            radius_mm: object.radius * 1e3,
+            fitted: object.fitted,
+            pressed: errors(object.fitted_to.min(last)),
+            answered: errors(last),
+        }
+    }
+}
+
+/// Whether neither output falls with any weight that the law gives.
+fn rises(plate: &OwnedTables, ball: &OwnedTables, law: &BlendLaw) -> bool {
+    let ends = [Touched::Ball(law.least[0]), Touched::Cup(law.least[1])]
+        .into_iter()
+        .filter_map(|tightest| law.weights(tightest));
+    let (mut least, mut most) = ([-MARGIN; 2], [MARGIN; 2]);
+    for weights in ends {
+        for (output, weight) in [weights.force, weights.indentation].into_iter().enumerate() {
+            least[output] = least[output].min(weight - MARGIN);
+            most[output] = most[output].max(weight + MARGIN);
+        }
+    }
+    let widest = (most[0] - least[0]).max(most[1] - least[1]);
+    (0..=widest).all(|step| {
+        let [force, indentation] = [0, 1].map(|output| (least[output] + step).min(most[output]));
+        let weights = Weights {
+            force,
+            indentation,
+            maximum: i32::MAX,
+        };
+        let tables = blended(plate, ball, &weights);
+        let bytes: Vec<[u8; 4]> = tables.words.iter().map(|word| word.to_le_bytes()).collect();
+        LoadedTables::new(tables.layout, &bytes).is_ok()
+    })
+}

@@ -1,0 +1,449 @@
+//! The objects that a law of weights is fitted to, solved by the design's own model.
+
+use crate::curve::{Contact, Curve, CurveError};
+use crate::design_file::{Axes, DesignFile, ObjectSection, ShapeSection};
+use crate::generate::GenerateError;
+use crate::model::{Fingertip, Kind, ModelError};
+use crate::table::law::Touched;
+use std::fmt;
+
+/// Radius of the reference ball over that of the dome at its pole, `a^2 / b` of the state of rest.
+const REFERENCE: f64 = 0.7;
+/// The other balls, the same: those that the law is fitted to, and one that it is not.
+const BALLS: [(f64, bool); 5] = [
+    (0.26, true),
+    (0.43, true),
+    (1.04, false),
+    (1.73, true),
+    (4.3, true),
+];
+/// The cups, the same; those that touch beside the pole first, or have no press, are left out.
+const CUPS: [f64; 2] = [2.6, 5.2];
+/// The smallest part of the last pressure rise that counts: of less, objects are told apart by less than what tables are off.
+const FROM: f64 = 1.0 / 128.0;
+/// States of an object's curve, and its first one over the last.
+const STATES: usize = 72;
+const RANGE: f64 = 300.0;
+/// How much deeper an object is pressed at a time until it has the plate's last pressure.
+const DEEPER: f64 = 1.06;
+/// Pressure rises that errors are looked at.
+const RISES: usize = 60;
+
+/// From where to its end a curve's powers are taken with which it is continued, over that end's pressure.
+const BACK: f64 = 0.95;
+
+/// Coefficients of a law: of `t`, `t^2`, `t^3`.
+pub(super) type Coefficients = [f64; 3];
+
+/// An object with its press.
+#[derive(Clone, Debug)]
+pub struct SolvedObject {
+    /// What it is.
+    pub touched: Touched,
+    /// Its radius, metres; of a cup negative.
+    pub radius: f64,
+    /// Whether the law is fitted to it.
+    pub fitted: bool,
+    /// Its press, as the transducer reads it, until it has the plate's last pressure or ends.
+    pub curve: Curve,
+    /// Pressure rise where it is as deep as the design is pressed, or the plate's last, pascals: the law is fitted up to there.
+    pub fitted_to: f64,
+}
+
+/// Solved objects and the law of their weights.
+#[derive(Clone, Debug)]
+pub struct SolvedObjects {
+    pub(super) objects: Vec<SolvedObject>,
+    /// The reference ball's curve, continued to where the plate's ends.
+    pub(super) reference_beyond: Curve,
+    /// Lengths in metres.
+    pub(super) reference_radius: f64,
+    pub(super) offset: f64,
+    /// Smallest radii of balls and of cups; 0: none.
+    pub(super) least: [f64; 2],
+    /// Last pressure rises of balls and of cups, pascals.
+    pub(super) last: [f64; 2],
+    pub(super) force: [Coefficients; 2],
+    pub(super) indentation: [Coefficients; 2],
+    pub(super) start: Touched,
+    pub(super) from: f64,
+}
+
+/// Why there are no blended tables.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoObjects {
+    /// The reference ball, or one of those that the law is fitted to, has no press.
+    Ball {
+        /// Its radius, millimetres.
+        radius_mm: f64,
+        /// Why.
+        reason: ModelError,
+    },
+    /// Its curve does not rise.
+    Curve {
+        /// Its radius, millimetres.
+        radius_mm: f64,
+        /// Where.
+        reason: CurveError,
+    },
+    /// The radius is smaller than those that were solved.
+    Radius {
+        /// As the design has it, millimetres.
+        radius_mm: f64,
+        /// Smallest radii of balls and of cups (0: no cups), millimetres.
+        least_mm: [f64; 2],
+    },
+    /// The tables come from data.
+    Data,
+}
+
+impl fmt::Display for NoObjects {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ball { radius_mm, reason } => write!(
+                f,
+                "the ball of {radius_mm:.3} mm that tables of objects need has no press ({reason}): leave out [object]"
+            ),
+            Self::Curve { radius_mm, reason } => write!(
+                f,
+                "the curve of the ball of {radius_mm:.3} mm that tables of objects need cannot be used ({reason}): leave out [object]"
+            ),
+            Self::Radius {
+                radius_mm,
+                least_mm: [ball, cup],
+            } => {
+                write!(
+                    f,
+                    "object.radius_mm = {radius_mm} is tighter than the objects that were solved: allowed are balls from {ball:.3} mm"
+                )?;
+                if *cup > 0.0 {
+                    write!(f, " and cups to -{cup:.3} mm")
+                } else {
+                    write!(f, ", and no cups for this design")
+                }
+            }
+            Self::Data => write!(
+                f,
+                "the tables come from the data in [calibration], and those of other objects cannot: leave out [object]"
+            ),
+        }
+    }
+}
+
+/// A length in micrometres.
+pub(super) fn micrometres(metres: f64) -> i32 {
+    libm::round(metres * 1e6) as i32
+}
+
+/// Pressure rises from one to another, evenly spaced in their logarithm.
+pub(super) fn rises(from: f64, to: f64) -> impl Iterator<Item = f64> {
+    (0..=RISES).map(move |i| from * libm::pow(to / from, i as f64 / RISES as f64))
+}
+
+/// The object that a design's tables are of before any blend: its plate, with its friction.
+pub(in crate::generate) fn plate_of(design: &DesignFile) -> DesignFile {
+    with_shape(design, ShapeSection::Plate)
+}
+
+fn with_shape(design: &DesignFile, shape: ShapeSection) -> DesignFile {
+    DesignFile {
+        object: design.object.map(|object| ObjectSection {
+            shape,
+            unknown: false,
+            ..object
+        }),
+        ..design.clone()
+    }
+}
+
+impl SolvedObjects {
+    /// Solves the objects of a design whose plate has this curve and model.
+    ///
+    /// # Errors
+    /// [`GenerateError::Objects`].
+    pub fn solve(
+        design: &DesignFile,
+        rung: &Fingertip,
+        curve: &Curve,
+        end: Contact,
+    ) -> Result<Self, GenerateError> {
+        Self::try_solve(design, rung, curve, end).map_err(GenerateError::Objects)
+    }
+
+    fn try_solve(
+        design: &DesignFile,
+        rung: &Fingertip,
+        curve: &Curve,
+        end: Contact,
+    ) -> Result<Self, NoObjects> {
+        let rest = rung.rest();
+        let pole = rest.edge_radius * rest.edge_radius / rest.height;
+        let last = curve.end().pressure_rise;
+        let solver = Solver {
+            design,
+            kind: match rung {
+                Fingertip::Membrane(_) => Kind::Membrane,
+                Fingertip::Solid(press) => Kind::Solid(press.elements()),
+            },
+            deepest: end.indentation,
+            last,
+        };
+        // Whole micrometres, as the chip has them.
+        let radius = |share: f64| f64::from(micrometres(share * pole)) * 1e-6;
+        let deep = |curve: &Curve| curve.at_indentation(end.indentation).pressure_rise.min(last);
+        let reference_radius = radius(REFERENCE);
+        let reference = solver.ball(reference_radius)?;
+        let mut objects = vec![SolvedObject {
+            touched: Touched::Ball(micrometres(reference_radius)),
+            radius: reference_radius,
+            fitted: true,
+            fitted_to: deep(&reference),
+            curve: reference.clone(),
+        }];
+        for (share, fitted) in BALLS {
+            let radius = radius(share);
+            let curve = solver.ball(radius)?;
+            objects.push(SolvedObject {
+                touched: Touched::Ball(micrometres(radius)),
+                radius,
+                fitted,
+                fitted_to: deep(&curve),
+                curve,
+            });
+        }
+        for share in CUPS {
+            let radius = radius(share);
+            if let Ok(curve) = solver.curve(-radius) {
+                objects.push(SolvedObject {
+                    touched: Touched::Cup(micrometres(radius)),
+                    radius: -radius,
+                    fitted: true,
+                    fitted_to: deep(&curve),
+                    curve,
+                });
+            }
+        }
+        let offset = 2.0 * design.design_to(Axes::Outer).membrane.thickness;
+        let mut found = Self {
+            reference_beyond: beyond(&reference, curve).map_err(|reason| NoObjects::Curve {
+                radius_mm: reference_radius * 1e3,
+                reason,
+            })?,
+            objects,
+            reference_radius,
+            offset,
+            least: [0.0; 2],
+            last: [last; 2],
+            force: [[0.0; 3]; 2],
+            indentation: [[0.0; 3]; 2],
+            start: Touched::Plate,
+            from: FROM * end.pressure_rise,
+        };
+        found.fit(curve);
+        found.start = found.start_of(design)?;
+        Ok(found)
+    }
+
+    /// The law of balls, through the reference, and that of cups.
+    fn fit(&mut self, plate: &Curve) {
+        let place = |radius: f64| (self.reference_radius + self.offset) / (radius + self.offset);
+        for cups in [false, true] {
+            let side = usize::from(cups);
+            let own = self.objects.iter().filter(|object| (object.radius < 0.0) == cups);
+            let least = own.clone().map(|object| object.radius.abs());
+            let ends = own.clone().map(|object| object.curve.end().pressure_rise);
+            let least = least.fold(f64::INFINITY, f64::min);
+            self.least[side] = if least.is_finite() { least } else { 0.0 };
+            self.last[side] = ends.fold(self.last[side], f64::min);
+            for output in [0, 1] {
+                let nodes: Vec<[f64; 2]> = own
+                    .clone()
+                    .filter(|object| object.fitted)
+                    .map(|object| [place(object.radius), self.weight(plate, object, output)])
+                    .collect();
+                let law = if cups {
+                    law_of_cups(&nodes)
+                } else {
+                    law_of_balls(&nodes)
+                };
+                let laws = if output == 0 {
+                    &mut self.force
+                } else {
+                    &mut self.indentation
+                };
+                laws[side] = law;
+            }
+        }
+    }
+
+    /// The weight with which the largest error of an output is least, by ternary search: the error is convex in it.
+    fn weight(&self, plate: &Curve, object: &SolvedObject, output: usize) -> f64 {
+        let reference = &self.objects[0].curve;
+        let outputs = |contact: Contact| [contact.force, contact.indentation][output];
+        let last = object.fitted_to.min(reference.end().pressure_rise);
+        let rows: Vec<[f64; 3]> = rises(self.from, last)
+            .map(|rise| [plate, reference, &object.curve].map(|curve| outputs(curve.at_pressure_rise(rise))))
+            .collect();
+        let error = |weight: f64| {
+            rows.iter()
+                .map(|[plate, ball, truth]| ((plate + weight * (ball - plate)) / truth - 1.0).abs())
+                .fold(0.0, f64::max)
+        };
+        let (mut low, mut high) = (-8.0, 8.0);
+        for _ in 0..120 {
+            let [first, second] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+            if error(first) < error(second) {
+                high = second;
+            } else {
+                low = first;
+            }
+        }
+        0.5 * (low + high)
+    }
+
+    /// What the design says is touched.
+    fn start_of(&self, design: &DesignFile) -> Result<Touched, NoObjects> {
+        let shape = design.object.map_or(ShapeSection::Plate, |object| object.shape);
+        let (touched, radius_mm, side) = match shape {
+            ShapeSection::Plate | ShapeSection::Punch { .. } => return Ok(Touched::Plate),
+            ShapeSection::Ball { radius_mm } if radius_mm < 0.0 => {
+                (Touched::Cup(micrometres(-radius_mm * 1e-3)), radius_mm, 1)
+            }
+            ShapeSection::Ball { radius_mm } => (Touched::Ball(micrometres(radius_mm * 1e-3)), radius_mm, 0),
+            ShapeSection::Cylinder { radius_mm } => {
+                (Touched::Cylinder(micrometres(radius_mm * 1e-3)), radius_mm, 0)
+            }
+        };
+        if self.least[side] > 0.0 && radius_mm.abs() * 1e-3 >= self.least[side] {
+            return Ok(touched);
+        }
+        Err(NoObjects::Radius {
+            radius_mm,
+            least_mm: self.least.map(|metres| metres * 1e3),
+        })
+    }
+}
+
+/// `w = t (1 + (t - 1) (a + b t))` by least squares: one at the reference, whose `t` is 1.
+fn law_of_balls(nodes: &[[f64; 2]]) -> Coefficients {
+    let (mut matrix, mut right) = ([[0.0; 2]; 2], [0.0; 2]);
+    for &[t, weight] in nodes {
+        let row = [t * (t - 1.0), t * t * (t - 1.0)];
+        for i in 0..2 {
+            right[i] += row[i] * (weight - t);
+            for j in 0..2 {
+                matrix[i][j] += row[i] * row[j];
+            }
+        }
+    }
+    let [[p, q], [r, s]] = matrix;
+    let determinant = p * s - q * r;
+    let (a, b) = (
+        (right[0] * s - right[1] * q) / determinant,
+        (right[1] * p - right[0] * r) / determinant,
+    );
+    [1.0 - a, a - b, b]
+}
+
+/// `w = t (c1 + c2 t)` through two nodes, or `c1 t` through one.
+fn law_of_cups(nodes: &[[f64; 2]]) -> Coefficients {
+    match *nodes {
+        [[t, weight]] => [weight / t, 0.0, 0.0],
+        [[t, weight], [u, other], ..] => {
+            let second = (weight / t - other / u) / (t - u);
+            [weight / t - second * t, second, 0.0]
+        }
+        [] => [0.0; 3],
+    }
+}
+
+/// Solves objects of one design.
+struct Solver<'a> {
+    design: &'a DesignFile,
+    kind: Kind,
+    /// The plate's last indentation, metres.
+    deepest: f64,
+    /// The plate's last pressure rise, pascals.
+    last: f64,
+}
+
+enum Failed {
+    Model(ModelError),
+    Curve(CurveError),
+}
+
+impl Solver<'_> {
+    fn ball(&self, radius: f64) -> Result<Curve, NoObjects> {
+        let radius_mm = radius * 1e3;
+        self.curve(radius).map_err(|failed| match failed {
+            Failed::Model(reason) => NoObjects::Ball { radius_mm, reason },
+            Failed::Curve(reason) => NoObjects::Curve { radius_mm, reason },
+        })
+    }
+
+    /// A press onto a ball, or with a negative radius into a cup, until it has the plate's last pressure or ends.
+    fn curve(&self, radius: f64) -> Result<Curve, Failed> {
+        let radius_mm = radius * 1e3;
+        let design = with_shape(self.design, ShapeSection::Ball { radius_mm });
+        let gain = design.calibration.pressure_gain;
+        let mut tip = Fingertip::of(self.kind, &design.design_to(Axes::Outer)).map_err(Failed::Model)?;
+        let mut contact = |depth: f64| {
+            tip.contact_at(depth).map(|contact| Contact {
+                pressure_rise: gain * contact.pressure_rise,
+                ..contact
+            })
+        };
+        let first = self.deepest / RANGE;
+        let ratio = libm::pow(RANGE, 1.0 / (STATES as f64 - 1.0));
+        let mut points: Vec<Contact> = Vec::new();
+        let mut depth = first;
+        while points.last().is_none_or(|point| point.pressure_rise < self.last) {
+            match contact(depth) {
+                Ok(point) => points.push(point),
+                // The press ends.
+                Err(_) if depth > 0.5 * self.deepest => break,
+                Err(error) => return Err(Failed::Model(error)),
+            }
+            depth *= if depth < 0.8 * self.deepest {
+                ratio
+            } else {
+                DEEPER.min(ratio)
+            };
+        }
+        Curve::new(points).map_err(Failed::Curve)
+    }
+}
+
+/// A curve that goes on to where another ends, its outputs over the other's continued as powers of the pressure. What lies there
+/// is not read; it lets the tables of both be of one layout.
+fn beyond(curve: &Curve, other: &Curve) -> Result<Curve, CurveError> {
+    let (end, last) = (curve.end(), other.end());
+    let mut points = curve.points().to_vec();
+    if end.pressure_rise < last.pressure_rise {
+        let over = |rise: f64| {
+            let (own, other) = (curve.at_pressure_rise(rise), other.at_pressure_rise(rise));
+            [
+                libm::log(own.force / other.force),
+                libm::log(own.indentation / other.indentation),
+            ]
+        };
+        let (from, to) = (over(BACK * end.pressure_rise), over(end.pressure_rise));
+        let steps = 12;
+        let whole = libm::log(last.pressure_rise / end.pressure_rise);
+        for step in 1..=steps {
+            let further = whole * f64::from(step) / f64::from(steps);
+            let rise = end.pressure_rise * libm::exp(further);
+            let at = other.at_pressure_rise(rise);
+            let ratio = |output: usize| {
+                let slope = (to[output] - from[output]) / -libm::log(BACK);
+                libm::exp(to[output] + slope * further)
+            };
+            points.push(Contact {
+                pressure_rise: rise,
+                force: at.force * ratio(0),
+                indentation: at.indentation * ratio(1),
+            });
+        }
+    }
+    Curve::new(points)
+}

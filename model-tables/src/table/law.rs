@@ -1,0 +1,176 @@
+//! How much of the reference ball an object has: the weights of a blend over the object's radius.
+
+use super::Layout;
+use super::blend::WEIGHT_BITS;
+
+/// What touches, as a hand tells it. Radii in micrometres, > 0.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Touched {
+    /// A flat plate.
+    Plate,
+    /// A ball.
+    Ball(i32),
+    /// A hollow that is part of a sphere.
+    Cup(i32),
+    /// A cylinder across the tip: half the weights of a ball of its radius.
+    Cylinder(i32),
+}
+
+impl Touched {
+    /// Code and radius; a plate's is 0.
+    pub const fn code(self) -> (u8, i32) {
+        match self {
+            Self::Plate => (0, 0),
+            Self::Ball(radius) => (1, radius),
+            Self::Cup(radius) => (2, radius),
+            Self::Cylinder(radius) => (3, radius),
+        }
+    }
+
+    /// What has a code and a radius.
+    pub const fn of(code: u8, radius: i32) -> Option<Self> {
+        match code {
+            0 if radius == 0 => Some(Self::Plate),
+            1 if radius > 0 => Some(Self::Ball(radius)),
+            2 if radius > 0 => Some(Self::Cup(radius)),
+            3 if radius > 0 => Some(Self::Cylinder(radius)),
+            _ => None,
+        }
+    }
+}
+
+impl core::fmt::Display for Touched {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let millimetres = |radius: i32| f64::from(radius) * 1e-3;
+        match *self {
+            Self::Plate => f.write_str("plate"),
+            Self::Ball(radius) => write!(f, "ball of {} mm", millimetres(radius)),
+            Self::Cup(radius) => write!(f, "cup of {} mm", millimetres(radius)),
+            Self::Cylinder(radius) => write!(f, "cylinder of {} mm", millimetres(radius)),
+        }
+    }
+}
+
+/// Weights of the reference ball in units of `2^-10`, and the last input that is answered with them.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Weights {
+    /// Of the force.
+    pub force: i32,
+    /// Of the indentation.
+    pub indentation: i32,
+    /// Last input covered, counts: that of the tables or less.
+    pub maximum: i32,
+}
+
+impl Weights {
+    /// Those of the plate.
+    pub const PLATE: Self = Self {
+        force: 0,
+        indentation: 0,
+        maximum: i32::MAX,
+    };
+
+    /// A layout that ends where these do.
+    #[must_use]
+    pub const fn limit(&self, layout: &Layout) -> Layout {
+        let maximum = if self.maximum < layout.maximum {
+            self.maximum
+        } else {
+            layout.maximum
+        };
+        Layout { maximum, ..*layout }
+    }
+}
+
+/// Weights over the radius, of one design: with `t = (reference + offset) / (R + offset)`, for a cup of `-R`,
+/// `w = t (c1 + c2 t + c3 t^2)`. Fitted to solved objects.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct BlendLaw {
+    /// Radius of the reference ball, micrometres.
+    pub reference: i32,
+    /// Added to radii: twice the wall, micrometres.
+    pub offset: i32,
+    /// The smallest radius of a ball, and of a cup (0: no cups), micrometres.
+    pub least: [i32; 2],
+    /// Last input that all balls, and all cups, answer: counts.
+    pub last: [i32; 2],
+    /// Coefficients of the force, of balls and of cups, in units of `2^-12`.
+    pub force: [[i32; 3]; 2],
+    /// Coefficients of the indentation.
+    pub indentation: [[i32; 3]; 2],
+}
+
+/// Fraction bits of `t` and of the coefficients.
+pub(crate) const LAW_BITS: u32 = 12;
+
+/// Longest length of a law, micrometres: of a larger ball a plate is told.
+const LONGEST: i32 = 1_000_000;
+/// Largest coefficient of a law that is loaded: 64.
+const LARGEST: i32 = 64 << LAW_BITS;
+
+impl BlendLaw {
+    /// The first field that the law cannot compute with, of tables that end at `maximum`; nothing where all can.
+    pub fn out_of_range(&self, maximum: i32) -> Option<&'static str> {
+        let length = |length: i32| (1..=LONGEST).contains(&length);
+        let small = |law: &[[i32; 3]; 2]| {
+            law.as_flattened()
+                .iter()
+                .all(|coefficient| (-LARGEST..=LARGEST).contains(coefficient))
+        };
+        let [ball, cup] = self.least;
+        [
+            ("reference", length(self.reference)),
+            ("offset", length(self.offset)),
+            // The divisor of a cup is below 0.
+            (
+                "least",
+                length(ball) && (cup == 0 || length(cup) && cup > self.offset),
+            ),
+            ("last", self.last.iter().all(|last| (1..=maximum).contains(last))),
+            ("force", small(&self.force)),
+            ("indentation", small(&self.indentation)),
+        ]
+        .into_iter()
+        .find_map(|(field, holds)| (!holds).then_some(field))
+    }
+
+    /// The weights of an object; nothing for a radius that no solved object vouches for.
+    pub const fn weights(&self, touched: Touched) -> Option<Weights> {
+        let (radius, of, divisor) = match touched {
+            Touched::Plate => return Some(Weights::PLATE),
+            Touched::Ball(radius) => (radius, 0, 1),
+            Touched::Cup(radius) => (radius, 1, 1),
+            Touched::Cylinder(radius) => (radius, 0, 2),
+        };
+        let least = self.least[of];
+        if least <= 0 || radius < least || radius > LONGEST {
+            return None;
+        }
+        let signed = if of == 1 { -(radius as i64) } else { radius as i64 };
+        let t =
+            (((self.reference as i64) + (self.offset as i64)) << LAW_BITS) / (signed + self.offset as i64);
+        Some(Weights {
+            force: weight(&self.force[of], t) / divisor,
+            indentation: weight(&self.indentation[of], t) / divisor,
+            maximum: self.last[of],
+        })
+    }
+}
+
+/// A law's value at `t`, in units of a weight.
+const fn weight(coefficients: &[i32; 3], t: i64) -> i32 {
+    let [first, second, third] = *coefficients;
+    // Coefficients are below 2^18 and |t| below 2^33: sums below 2^40, products below 2^63 with the limits below.
+    let sum = (third as i64 * t) >> LAW_BITS;
+    let sum = ((second as i64 + sum) * t) >> LAW_BITS;
+    let sum = ((first as i64 + sum) * t) >> LAW_BITS;
+    let (units, limit) = (LAW_BITS - WEIGHT_BITS, 1 << 20);
+    let rounded = (sum + (1 << (units - 1))) >> units;
+    if rounded > limit {
+        limit as i32
+    } else if rounded < -limit {
+        -limit as i32
+    } else {
+        rounded as i32
+    }
+}

@@ -1,0 +1,52 @@
+//! Tables of other objects than a plate that are known at run time only.
+
+use super::blend::BlendedTables;
+use super::error::TablesError;
+use super::law::{BlendLaw, Touched};
+use super::loaded::LoadedTables;
+
+/// The reference ball's tables beside those of the plate, and the law of the weights.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadedObjects<'a> {
+    /// What is touched at the start.
+    pub start: Touched,
+    law: BlendLaw,
+    plate: LoadedTables<'a>,
+    ball: LoadedTables<'a>,
+}
+
+impl<'a> LoadedObjects<'a> {
+    /// Of the plate's tables, and the words of the ball's.
+    ///
+    /// # Errors
+    /// [`TablesError`]: such tables may answer wrongly.
+    pub fn new(
+        start: Touched,
+        law: BlendLaw,
+        plate: LoadedTables<'a>,
+        ball: &'a [[u8; 4]],
+    ) -> Result<Self, TablesError> {
+        let layout = *plate.layout();
+        if layout.halvings > 0 {
+            return Err(TablesError::Layout("halvings"));
+        }
+        let ball = LoadedTables::new(layout, ball)?;
+        let lowest = |tables: &LoadedTables<'a>| tables.words().rchunks(layout.words()).next();
+        if lowest(&plate) != lowest(&ball) {
+            return Err(TablesError::Zero);
+        }
+        Ok(Self {
+            start,
+            law,
+            plate,
+            ball,
+        })
+    }
+
+    /// The tables of an object; nothing for one that the law refuses, or whose blend may answer wrongly.
+    pub fn blended(&self, touched: Touched) -> Option<BlendedTables> {
+        let weights = self.law.weights(touched)?;
+        let (plate, ball) = (self.plate.words(), self.ball.words());
+        BlendedTables::new(self.plate.layout(), plate, ball, &weights).ok()
+    }
+}

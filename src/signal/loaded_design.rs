@@ -1,0 +1,96 @@
+//! A design that is known at run time only: that of a block of a tip's data.
+
+use crate::signal::calibration::Calibration;
+use crate::signal::design::{Design, NoSuchObject, Parameters};
+use crate::signal::wall::Memory;
+use crate::signal::zero::surroundings::Surroundings;
+use model_tables::block::BlockError;
+use model_tables::block::read::TipBlock;
+use model_tables::block::section::SectionKind;
+use model_tables::material::relaxation::MAX_TERMS;
+use model_tables::material::series::WallSeries;
+use model_tables::table::Reading;
+use model_tables::table::blend::BlendedTables;
+use model_tables::table::law::Touched;
+use model_tables::table::loaded::LoadedTables;
+use model_tables::table::objects::LoadedObjects;
+use model_tables::units::PressureRise;
+
+/// A design that is known at run time only.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadedDesign<'a> {
+    parameters: Parameters,
+    tables: LoadedTables<'a>,
+    relaxation: Option<WallSeries>,
+    objects: Option<LoadedObjects<'a>>,
+    /// Of what is touched, unless that is a plate.
+    blended: Option<BlendedTables>,
+}
+
+impl<'a> LoadedDesign<'a> {
+    /// The design in a block of a tip's data, with what is stored there of the one fingertip.
+    ///
+    /// # Errors
+    /// [`BlockError`].
+    pub fn read(block: &'a [u8]) -> Result<(Self, Option<Calibration>), BlockError> {
+        let tip = TipBlock::read(block)?;
+        let calibration = match &tip.calibration {
+            None => None,
+            Some(stored) => Some(
+                Calibration::stored(stored, tip.constants.transducer.range)
+                    .ok_or(BlockError::Value(SectionKind::Calibration, "a value"))?,
+            ),
+        };
+        let layout = tip.tables.layout();
+        let end = PressureRise(layout.maximum);
+        let mut design = Self {
+            parameters: Parameters::of(tip.constants, layout.pressure_fraction_bits, end),
+            tables: tip.tables,
+            relaxation: tip.relaxation,
+            objects: tip.objects,
+            blended: None,
+        };
+        if let Some(objects) = &tip.objects {
+            design
+                .touch(objects.start)
+                .map_err(|NoSuchObject| BlockError::Value(SectionKind::Object, "start"))?;
+        }
+        Ok((design, calibration))
+    }
+}
+
+impl Design for LoadedDesign<'_> {
+    type Wall = Memory<MAX_TERMS>;
+    type Around = [Surroundings; 1];
+
+    fn series(&self) -> Option<&WallSeries> {
+        self.relaxation.as_ref()
+    }
+
+    fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    fn lookup(&self, rise: PressureRise) -> Reading {
+        match &self.blended {
+            Some(tables) => tables.lookup(rise),
+            None => self.tables.lookup(rise),
+        }
+    }
+
+    fn last_rise(&self) -> PressureRise {
+        match &self.blended {
+            Some(tables) => tables.last_rise(),
+            None => self.parameters.last_rise,
+        }
+    }
+
+    fn touch(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
+        let objects = self.objects.as_ref().ok_or(NoSuchObject)?;
+        self.blended = match touched {
+            Touched::Plate => None,
+            touched => Some(objects.blended(touched).ok_or(NoSuchObject)?),
+        };
+        Ok(())
+    }
+}
