@@ -21,6 +21,7 @@ mod model;
 mod noise;
 mod non_negative;
 pub mod parameter;
+mod ready;
 mod robust;
 mod search;
 mod solve;
