@@ -272,6 +272,7 @@ impl Data {
     }
 
     fn check(&self) -> Result<(), DataError> {
+        use Measured::{Force, Indentation, PressureRise};
         if self.rows.len() < LEAST_ROWS {
             return Err(DataError::TooFewRows {
                 found: self.rows.len(),
@@ -289,7 +290,6 @@ impl Data {
                 });
             }
         }
-        use Measured::{Force, Indentation, PressureRise};
         for (a, b) in [
             (Force, Indentation),
             (PressureRise, Indentation),

@@ -21,6 +21,7 @@ mod model;
 mod noise;
 mod non_negative;
 pub mod parameter;
+mod ready;
 mod robust;
 mod search;
 mod solve;
@@ -257,17 +258,7 @@ fn finish(
         before: misfit(|residual| residual.before),
         after: misfit(|residual| residual.fitted),
         one_sided: both.each_ref().map(|residuals| check::one_sided(residuals)),
-        biases: bias::find(&bias::Left {
-            data,
-            targets: task.targets,
-            factors: &weighting.factors(),
-            jacobian: &jacobian,
-            residuals: &residuals
-                .iter()
-                .map(|r| r.measured - r.fitted)
-                .collect::<Vec<_>>(),
-            by_indentation: task.by_indentation(values, &predicted),
-        }),
+        biases: biases(task, values, &weighting.factors(), &jacobian, &residuals),
         systematic: both.each_ref().map(|residuals| check::order(data, residuals)),
         hysteresis: both.each_ref().map(|residuals| Hysteresis::of(data, residuals)),
         noise: [0, 1].map(|k| (!both[k].is_empty()).then_some(weighting.noise[k])),
@@ -280,6 +271,29 @@ fn finish(
         residuals,
         values: *values,
         fitted: free.clone(),
+    })
+}
+
+/// Errors of the bench in what a fit leaves.
+fn biases(
+    task: &Task<'_>,
+    values: &ParameterValues,
+    factors: &[f64],
+    jacobian: &DMatrix<f64>,
+    residuals: &[Residual],
+) -> Vec<Bias> {
+    let fitted: Vec<f64> = residuals.iter().map(|residual| residual.fitted).collect();
+    let left: Vec<f64> = residuals
+        .iter()
+        .map(|residual| residual.measured - residual.fitted)
+        .collect();
+    bias::find(&bias::Left {
+        data: task.data,
+        targets: task.targets,
+        factors,
+        jacobian,
+        residuals: &left,
+        by_indentation: task.by_indentation(values, &fitted),
     })
 }
 

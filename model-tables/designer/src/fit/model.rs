@@ -5,17 +5,13 @@
 
 use super::data::{Data, DataRow};
 use super::parameter::{Parameter, ParameterValues};
+use super::ready::Ready;
 use model_tables::curve::{Contact, Curve};
 use model_tables::design::{Design, RestBy};
 use model_tables::design_file::{DesignFile, ModelSection};
-use model_tables::material::Law;
-use model_tables::membrane::TensionField;
-use model_tables::membrane::adapt::Resolution;
-use model_tables::membrane::press::{MembraneError, Press};
+use model_tables::membrane::press::MembraneError;
 use model_tables::model::ModelError;
 use model_tables::model::{self, choice};
-use model_tables::solid;
-use model_tables::solid::inflation::mid_surface;
 use model_tables::solid::mesh::Elements;
 use std::cell::RefCell;
 use std::fmt;
@@ -23,15 +19,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Gauss points an element.
-const STAGES: usize = 4;
-/// A mesh for fits: far finer than any bench, and no finer than differences of it need.
-const MESH: Resolution = Resolution {
-    density: 1.0,
-    contact_elements: 1,
-    tolerance: 1e-10,
-    last_term: f64::INFINITY,
-};
 /// Shallowest indentation of a curve over the shallowest of the data, and over the deepest at least; the asymptotes
 /// carry on from there.
 const SHALLOWEST: [f64; 2] = [0.8, 5e-3];
@@ -167,45 +154,6 @@ impl Kind {
     /// Whether a press is cheap enough to start a fit from many places.
     pub(super) fn is_cheap(self) -> bool {
         matches!(self, Self::Membrane | Self::Wall(model::Kind::Membrane))
-    }
-}
-
-/// Either model at rest.
-enum Ready {
-    Membrane(Box<Press<Law, STAGES>>),
-    Solid(Box<solid::press::Press>),
-}
-
-impl Ready {
-    fn new(kind: Kind, design: &Design) -> Result<Self, ModelError> {
-        let membrane = |design: &Design| {
-            let press = Press::with_resolution(design, TensionField::Relaxed, MESH)?;
-            Ok(Self::Membrane(Box::new(press)))
-        };
-        match kind {
-            Kind::Membrane => membrane(design),
-            Kind::Wall(model::Kind::Membrane) => membrane(&Design {
-                membrane: mid_surface(&design.membrane),
-                ..*design
-            }),
-            Kind::Wall(model::Kind::Solid(elements)) => {
-                solid::press::Press::new(design, elements).map(|press| Self::Solid(Box::new(press)))
-            }
-        }
-    }
-
-    fn height(&self) -> f64 {
-        match self {
-            Self::Membrane(press) => press.rest().height,
-            Self::Solid(press) => press.rest().height,
-        }
-    }
-
-    fn contact_at(&mut self, indentation: f64) -> Result<Contact, ModelError> {
-        match self {
-            Self::Membrane(press) => Ok(press.contact_at(indentation)?),
-            Self::Solid(press) => Ok(press.contact_at(indentation)?),
-        }
     }
 }
 

@@ -25,7 +25,8 @@ impl Decimal {
     /// # Errors
     /// One line: cells that contradict each other, or a comma that can be either.
     pub(crate) fn of<'a>(cells: impl Iterator<Item = (u64, &'a str)>) -> Result<Self, String> {
-        let (mut sure, mut unsure): (Option<(Self, u64, &str)>, Option<(u64, &str)>) = (None, None);
+        let mut sure: Option<(Self, u64, &str)> = None;
+        let mut unsure: Option<(u64, &str)> = None;
         for (line, cell) in cells {
             match evidence(cell) {
                 Evidence::None => {}

@@ -61,10 +61,10 @@ pub(super) struct Arguments {
     /// What the transducer reads at rest, kilopascals, for --from-data [default: the model's]
     #[arg(long, value_name = "P", requires = "from_data", value_parser = finite, allow_hyphen_values = true)]
     rest_pressure_kpa: Option<f64>,
-    /// Which column of the file holds what, by its name or number, as in force_n=Fz,pressure_rise_kpa=3
+    /// Which column of the file holds what, by its name or number, as in `force_n=Fz,pressure_rise_kpa=3`
     #[arg(long, value_name = "NAME=COLUMN", value_delimiter = ',', value_parser = pair)]
     columns: Vec<(String, String)>,
-    /// Column with the pressure rise, in kilopascals: --columns pressure_rise_kpa=NAME
+    /// Column with the pressure rise, in kilopascals: `--columns pressure_rise_kpa=NAME`
     #[arg(long, value_name = "NAME")]
     pressure_column: Option<String>,
     /// Only rows whose column has this value; may be given several times
