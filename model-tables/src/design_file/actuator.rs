@@ -1,8 +1,9 @@
 //! `[actuator]`: the feedback membrane.
 
 use super::DesignFile;
-use super::section::{Bounds, Fault, Section};
-use super::sections::{LENGTH, material};
+use super::bounds::{Bounds, LENGTH};
+use super::material::material;
+use super::section::{Fault, Section};
 use crate::material::Law;
 use crate::object::Friction;
 use crate::solid::disc::{DiscDesign, FarSide};

@@ -5,8 +5,10 @@
 //! found and what is allowed.
 
 mod actuator;
+mod bounds;
 mod calibration;
 mod error;
+mod material;
 mod object;
 mod print;
 mod relaxation;

@@ -1,10 +1,11 @@
 //! The sections of a design file, in the order of the file.
 
 use super::actuator::ActuatorSection;
+use super::bounds::{Bounds, LENGTH, SEMI_AXIS};
 use super::calibration::Calibration;
 use super::error::Problem;
-use super::relaxation;
-use super::section::{Bounds, Fault, Section, line_at};
+use super::material::material;
+use super::section::{Fault, Section, line_at};
 use super::transducer::transducer;
 use super::zero::{self, ZeroSection};
 use super::{
@@ -12,20 +13,8 @@ use super::{
     ObjectSection, RestSection,
 };
 use crate::constants::AirReference;
-use crate::material::Law;
-use crate::material::preset::{PRESETS, Preset};
-use crate::material::relaxation::Relaxation;
 use toml::de::DeTable;
 
-/// Units that lengths are written in by a slip, millimetres.
-const LENGTH_SLIPS: &[(&str, f64)] = &[("m", 1e3), ("um", 1e-3)];
-/// Lengths of a fingertip, from a hair to a hand; walls and presses from a hundredth of a millimetre on.
-pub(super) const LENGTH: Bounds = Bounds::above(0.0, 1000.0, "mm").usually([0.01, 200.0], LENGTH_SLIPS);
-/// Semi-axes.
-const SEMI_AXIS: Bounds = Bounds::above(0.0, 1000.0, "mm").usually([0.2, 200.0], LENGTH_SLIPS);
-/// Elastic constants, up to that of steel; of soft walls from the softest gels to hard rubber.
-const STIFFNESS: Bounds =
-    Bounds::above(0.0, 1e12, "Pa").usually([1e3, 3e7], &[("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9)]);
 /// Pole stretches of a rest state.
 const STRETCH: Bounds = Bounds::above(1.0, 10.0, "(no stretch is 1)");
 /// Pressures, up to 100 bar.
@@ -130,54 +119,6 @@ fn membrane(mut section: Section<'_>) -> Result<MembraneSection, Fault> {
     }
     section.finish()?;
     Ok(membrane)
-}
-
-pub(super) fn material(mut section: Section<'_>) -> Result<(Law, Option<Relaxation>), Fault> {
-    const LAWS: &str = "\"neo-hookean\", \"mooney-rivlin\" or \"yeoh\"";
-    // The higher constants may have either sign; whether the law is then stable is the solver's to say.
-    const HIGHER: Bounds = Bounds::within(-1e12, 1e12, "Pa");
-    let names = || {
-        let names: Vec<String> = PRESETS
-            .iter()
-            .map(|preset| format!("{:?}", preset.name))
-            .collect();
-        format!("one of {}", names.join(", "))
-    };
-    if let Some(name) = section.text("preset", &names())? {
-        let preset = Preset::named(name).ok_or_else(|| section.refuse("preset", &names()))?;
-        if section.has("law") {
-            return Err(section.refuse("law", "left out, as preset is given"));
-        }
-        let relaxation = section.sub("relaxation")?.map(relaxation::parse).transpose()?;
-        section.finish()?;
-        return Ok((preset.law, relaxation));
-    }
-    let law = match section.needed_text("law", LAWS)? {
-        "neo-hookean" => Law::NeoHookean {
-            c1: section.needed_number("c1_pa", STIFFNESS)?,
-        },
-        "mooney-rivlin" => {
-            let c1 = section.needed_number("c1_pa", STIFFNESS)?;
-            let c2 = section.needed_number("c2_pa", HIGHER)?;
-            if c1 + c2 <= 0.0 {
-                // Its shear modulus is 2 (C1 + C2).
-                return Err(section.refuse(
-                    "c2_pa",
-                    "more than -c1_pa, or the material has no stiffness at rest",
-                ));
-            }
-            Law::MooneyRivlin { c1, c2 }
-        }
-        "yeoh" => Law::Yeoh {
-            c1: section.needed_number("c1_pa", STIFFNESS)?,
-            c2: section.needed_number("c2_pa", HIGHER)?,
-            c3: section.needed_number("c3_pa", HIGHER)?,
-        },
-        _ => return Err(section.refuse("law", LAWS)),
-    };
-    let relaxation = section.sub("relaxation")?.map(relaxation::parse).transpose()?;
-    section.finish()?;
-    Ok((law, relaxation))
 }
 
 const REST_KEYS: &str = "exactly one of pole_stretch, pressure_kpa, equator_radius_mm, height_mm";

@@ -1,6 +1,7 @@
 //! `[zero]` and `[air]`: what may move the zero beside a press, and who measures the air.
 
-use super::section::{Bounds, Fault, Section};
+use super::bounds::Bounds;
+use super::section::{Fault, Section};
 use super::{TransducerKindSection, TransducerSection};
 use crate::constants::{AirReference, Quantity, UNSEEN_KELVINS, ZeroAssumptions};
 use std::fmt::{self, Write};

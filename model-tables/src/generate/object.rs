@@ -6,8 +6,8 @@ use super::shape::Segmentation;
 use super::truth::Truth;
 use crate::curve::Contact;
 use crate::design_file::Accuracy;
-use crate::table::blend::{MOST_WORDS, WEIGHT_BITS, blend};
-use crate::table::law::{BlendLaw, LAW_BITS, Touched, Weights};
+use crate::table::blend::{MOST_WORDS, blend};
+use crate::table::law::{BlendLaw, LAW_BITS, Touched, WEIGHT_BITS, Weights};
 use crate::table::loaded::LoadedTables;
 use crate::units::PressureRise;
 

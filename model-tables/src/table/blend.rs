@@ -7,14 +7,11 @@
 //! plate and ball, and so for every blend: zero reads zero.
 
 use super::error::TablesError;
-use super::law::Weights;
+use super::law::{WEIGHT_BITS, Weights};
 use super::loaded::LoadedTables;
 use super::segments::Segments;
 use super::{Constant, Layout, Reading};
 use crate::units::PressureRise;
-
-/// Fraction bits of a weight.
-pub const WEIGHT_BITS: u32 = 10;
 
 /// Most words of a table that is blended at run time: of 40 segments, the most with two octaves or one each, 6 words each.
 pub const MOST_WORDS: usize = 240;

@@ -1,7 +1,9 @@
 //! How much of the reference ball an object has: the weights of a blend over the object's radius.
 
 use super::Layout;
-use super::blend::WEIGHT_BITS;
+
+/// Fraction bits of a weight.
+pub const WEIGHT_BITS: u32 = 10;
 
 /// What touches, as a hand tells it. Radii in micrometres, > 0.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
