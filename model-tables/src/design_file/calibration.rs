@@ -8,7 +8,8 @@
 //! data. The *chip* reads through the same transducer but takes its own zero, which takes the offset away, and counts the
 //! indentation from first touch: tables carry the gain, and the stored rest pressure gain and offset.
 
-use super::section::{Bounds, Fault, Section};
+use super::bounds::Bounds;
+use super::section::{Fault, Section};
 use crate::curve::Contact;
 use crate::monotone::Monotone;
 use std::fmt::{self, Write};

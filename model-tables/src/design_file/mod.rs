@@ -4,6 +4,7 @@
 //! same design; [`DesignFile::design`] converts to SI. Every error is one line and names the key, the value
 //! found and what is allowed.
 
+pub mod bounds;
 mod calibration;
 mod error;
 mod object;

@@ -1,6 +1,7 @@
 //! `[object]`: what touches.
 
-use super::section::{Bounds, Fault, Section};
+use super::bounds::Bounds;
+use super::section::{Fault, Section};
 use crate::object::{Friction, Object, Shape};
 use std::fmt::{self, Write};
 

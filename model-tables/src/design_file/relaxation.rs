@@ -1,6 +1,7 @@
 //! `[material.relaxation]`: the wall in time.
 
-use super::section::{Bounds, Fault, Section};
+use super::bounds::Bounds;
+use super::section::{Fault, Section};
 use crate::material::preset::{PRESETS, Preset};
 use crate::material::relaxation::{MAX_TERMS, Relaxation, Term};
 use std::fmt::{self, Write};

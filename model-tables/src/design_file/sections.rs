@@ -1,9 +1,10 @@
 //! The sections of a design file, in the order of the file.
 
+use super::bounds::Bounds;
 use super::calibration::Calibration;
 use super::error::Problem;
 use super::relaxation;
-use super::section::{Bounds, Fault, Section, line_at};
+use super::section::{Fault, Section, line_at};
 use super::transducer::transducer;
 use super::{
     Accuracy, Axes, DEFAULT_ELEMENTS, DEFAULT_MODEL_PERCENT, DesignFile, MembraneSection, ModelSection,

@@ -1,6 +1,7 @@
 //! `[transducer]`, read key by key.
 
-use super::section::{Bounds, Fault, Section};
+use super::bounds::Bounds;
+use super::section::{Fault, Section};
 use super::{Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air};
 use crate::constants::Quantity;
 
