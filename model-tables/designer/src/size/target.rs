@@ -1,6 +1,7 @@
 //! The target file of a sizing (TOML).
 
-use model_tables::design_file::section::{Bounds, Fault, Section, line_at};
+use model_tables::design_file::bounds::Bounds;
+use model_tables::design_file::section::{Fault, Section, line_at};
 use model_tables::design_file::{DesignFileError, Problem};
 use model_tables::material::preset::{PRESETS, Preset};
 use std::path::Path;
