@@ -5,7 +5,7 @@
 //! found and what is allowed.
 
 mod actuator;
-mod bounds;
+pub mod bounds;
 mod calibration;
 mod error;
 mod material;

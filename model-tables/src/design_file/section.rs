@@ -81,7 +81,7 @@ impl<'a> Section<'a> {
         };
         let number = to_number(value.get_ref());
         if let Some(slips) = number.and_then(|number| bounds.slips(number)) {
-            return Err(self.refuse(key, &format!("in {}: {slips}", bounds.unit())));
+            return Err(self.refuse(key, &format!("in {}: {slips}", bounds.unit)));
         }
         match number.filter(|number| bounds.admits(*number)) {
             Some(number) => Ok(Some(number)),

@@ -1,7 +1,7 @@
 //! Channels that stood at their end: a load cell or a transducer that reads one value while the press goes on.
 
-use super::data::{Data, DataRow};
 use super::heading::Measured;
+use super::record::{Data, DataRow};
 
 /// Values this near to the extreme one, over the range of the channel, are the same.
 const SAME: f64 = 1e-6;

@@ -1,61 +1,12 @@
 //! Bench data: rows of indentation, force and pressure rise from a CSV file, checked before anything is fitted.
 
 pub use super::data_error::DataError;
+pub use super::record::{Data, DataRow, Direction};
 
 use super::clipping;
 use super::columns::{self, Columns};
 use super::heading::Measured;
 use crate::table_text::{Decimal, Sheet, SheetRow};
-
-/// Which way the plate moved.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Direction {
-    /// Deeper.
-    Loading,
-    /// Back.
-    Unloading,
-    /// Not said, and not to be seen.
-    Unknown,
-}
-
-/// One row; SI units, `None` where the cell is empty or the column missing.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DataRow {
-    /// Line of the file, counted from 1.
-    pub line: u64,
-    /// Index of its trial, in the order of first appearance.
-    pub trial: usize,
-    /// Which way the plate moved.
-    pub direction: Direction,
-    /// Indentation as the stage reads it, metres.
-    pub indentation: Option<f64>,
-    /// Force, newtons.
-    pub force: Option<f64>,
-    /// Pressure rise over rest as the transducer reads it, pascals.
-    pub rise: Option<f64>,
-}
-
-impl DataRow {
-    /// How deep it is pressed, for an order: its indentation or, without, its pressure rise.
-    pub fn depth(&self) -> f64 {
-        self.indentation.or(self.rise).unwrap_or(0.0)
-    }
-}
-
-/// What was measured.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Data {
-    /// Where it comes from, for reports.
-    pub name: String,
-    /// Rows with at least two of the three quantities, in the order of the file.
-    pub rows: Vec<DataRow>,
-    /// Names of the trials; one, empty, where there is no such column.
-    pub trials: Vec<String>,
-    /// Rows left out because fewer than two quantities were there.
-    pub incomplete: usize,
-    /// How the file was read, and what was changed or left out, one line each.
-    pub notes: Vec<String>,
-}
 
 /// How columns are found and rows chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -81,32 +32,6 @@ const TURN: f64 = 0.15;
 const NEGATIVE: f64 = 4.0;
 /// Cells that stand for a missing number, in lower case.
 const MISSING: [&str; 6] = ["", "nan", "na", "n/a", "-", "--"];
-
-impl DataRow {
-    /// One of the three quantities, SI.
-    pub fn get(&self, quantity: Measured) -> Option<f64> {
-        match quantity {
-            Measured::Indentation => self.indentation,
-            Measured::Force => self.force,
-            Measured::PressureRise => self.rise,
-        }
-    }
-
-    pub(super) fn set(&mut self, quantity: Measured, value: Option<f64>) {
-        match quantity {
-            Measured::Indentation => self.indentation = value,
-            Measured::Force => self.force = value,
-            Measured::PressureRise => self.rise = value,
-        }
-    }
-
-    pub(super) fn quantities(&self) -> usize {
-        Measured::ALL
-            .iter()
-            .filter(|quantity| self.get(**quantity).is_some())
-            .count()
-    }
-}
 
 /// How the cells of a file become numbers.
 struct Cells<'a> {

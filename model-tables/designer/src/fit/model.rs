@@ -4,15 +4,14 @@
 //! solved once for a rest state and a compliance (of a solid: and a wall), and scaled for the rest.
 
 use super::data::{Data, DataRow};
+use super::kind::Kind;
 use super::parameter::{Parameter, ParameterValues};
 use super::ready::Ready;
 use model_tables::curve::{Contact, Curve};
 use model_tables::design::{Design, RestBy};
-use model_tables::design_file::{DesignFile, ModelSection};
+use model_tables::design_file::DesignFile;
 use model_tables::membrane::press::MembraneError;
 use model_tables::model::ModelError;
-use model_tables::model::{self, choice};
-use model_tables::solid::mesh::Elements;
 use std::cell::RefCell;
 use std::fmt;
 use std::rc::Rc;
@@ -125,37 +124,6 @@ type Key = [u64; 3];
 
 /// What solving gave.
 type Solved = Result<Rc<Shape>, ModelError>;
-
-/// The model of a design, settled once for a whole fit.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Kind {
-    /// A membrane of the design's dimensions: what it does goes with its wall.
-    Membrane,
-    /// A model of an outer surface and a wall: the wall is part of the shape.
-    Wall(model::Kind),
-}
-
-impl Kind {
-    /// What the design names, or what `auto` chooses for it.
-    ///
-    /// # Errors
-    /// [`ModelError`] where no model answers.
-    pub(super) fn of(file: &DesignFile) -> Result<Self, ModelError> {
-        Ok(match file.model {
-            ModelSection::Membrane => Self::Membrane,
-            ModelSection::Solid { through, along } => Self::Wall(model::Kind::Solid(Elements {
-                through: through as usize,
-                along: along as usize,
-            })),
-            ModelSection::Auto => Self::Wall(choice::choose(&file.design(), &choice::Wanted::of(file))?.kind),
-        })
-    }
-
-    /// Whether a press is cheap enough to start a fit from many places.
-    pub(super) fn is_cheap(self) -> bool {
-        matches!(self, Self::Membrane | Self::Wall(model::Kind::Membrane))
-    }
-}
 
 /// The model with what it has solved.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! The design at rest in either model, ready to be pressed.
 
-use super::model::Kind;
+use super::kind::Kind;
 use model_tables::curve::Contact;
 use model_tables::design::Design;
 use model_tables::material::Law;
