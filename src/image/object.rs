@@ -6,7 +6,7 @@ use crate::signal::design::{Design, NoSuchObject, Parameters};
 use crate::signal::zero::limits::Limits;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
-use model_tables::table::blend::blend;
+use model_tables::table::blend::{blend, last_within};
 use model_tables::table::law::{Touched, Weights};
 use model_tables::units::PressureRise;
 
@@ -42,6 +42,9 @@ impl ObjectDesign {
             weights,
             self.segments.as_flattened_mut(),
         );
+        let deepest = const { TABLES.lookup(PressureRise(TABLES.layout.maximum)).indentation };
+        let indentation = |rise| TABLES.layout.lookup_in(&self.segments, rise).indentation;
+        self.maximum = last_within(deepest, self.maximum, indentation);
     }
 }
 

@@ -11,7 +11,7 @@ use super::law::{WEIGHT_BITS, Weights};
 use super::loaded::LoadedTables;
 use super::segments::Segments;
 use super::{Constant, Layout, Reading};
-use crate::units::PressureRise;
+use crate::units::{Nanometres, PressureRise};
 
 /// Most words of a table that is blended at run time: of 40 segments, the most with two octaves or one each, 6 words each.
 pub const MOST_WORDS: usize = 240;
@@ -118,6 +118,25 @@ fn held(value: i64) -> i32 {
     value.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
 }
 
+/// The last input up to `last` whose indentation is at most `deepest`, the depth that the tables were made for: a ball reaches it at a
+/// lower pressure than the plate. `indentation` is that at an input, and does not fall.
+pub fn last_within(deepest: Nanometres, last: i32, indentation: impl Fn(PressureRise) -> Nanometres) -> i32 {
+    let is_within = |input| indentation(PressureRise(input)) <= deepest;
+    if is_within(last) {
+        return last;
+    }
+    let (mut within, mut beyond) = (0, last);
+    while beyond - within > 1 {
+        let middle = i32::midpoint(within, beyond);
+        if is_within(middle) {
+            within = middle;
+        } else {
+            beyond = middle;
+        }
+    }
+    within
+}
+
 /// Blended tables of a design that is known at run time only.
 #[derive(Clone, Copy, Debug)]
 pub struct BlendedTables {
@@ -159,11 +178,19 @@ impl BlendedTables {
         );
         let words = blended.map(i32::to_le_bytes);
         LoadedTables::new(*layout, words.get(..length).unwrap_or(&[]))?;
-        Ok(Self {
+        let plate = Segments {
+            layout: *layout,
+            words: plate,
+        };
+        let deepest = plate.lookup(PressureRise(layout.maximum)).indentation;
+        let mut blended = Self {
             layout: weights.limit(layout),
             words,
             length,
-        })
+        };
+        let indentation = |rise| blended.lookup(rise).indentation;
+        blended.layout.maximum = last_within(deepest, blended.layout.maximum, indentation);
+        Ok(blended)
     }
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.

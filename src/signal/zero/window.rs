@@ -130,9 +130,11 @@ impl Window {
             high: self.highest.0,
         };
         (self.lowest, self.highest) = (Self::EMPTY.lowest, Self::EMPTY.highest);
-        let three = part.common(self.common);
-        self.common = part.common(self.last);
-        self.last = part;
+        // What a disturbed part saw is no swing either.
+        let told = if part.low == i32::MIN { Range::EMPTY } else { part };
+        let three = told.common(self.common);
+        self.common = told.common(self.last);
+        self.last = told;
         if self.range.high < self.range.low {
             self.begun = since;
         }
@@ -181,6 +183,17 @@ mod tests {
         for hertz in [50.0, 60.0] {
             let found = swing(1_000, |t| 1_000.0 * (TAU * hertz * t).sin());
             assert!((1_600..=2_000).contains(&found), "{hertz} Hz: {found}");
+        }
+    }
+
+    #[test]
+    fn disturbed_parts_have_no_swing() {
+        let mut window = Window::EMPTY;
+        for sample in 0..1_000 {
+            window.disturb();
+            if let Some(part) = window.add(Microseconds(sample * 1_000), Pressure(0)) {
+                assert!(part.swing <= 0, "{}", part.swing);
+            }
         }
     }
 
