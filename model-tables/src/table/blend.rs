@@ -118,10 +118,12 @@ fn held(value: i64) -> i32 {
     value.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
 }
 
-/// The last input up to `last` whose indentation is at most `deepest`, the depth that the tables were made for: a ball reaches it at a
-/// lower pressure than the plate. `indentation` is that at an input, and does not fall.
+/// The last input up to `last` whose indentation is at most `deepest`, the depth that the tables were made for, and a thirty-second
+/// more, which is the blend's own error: a ball reaches it at a lower pressure than the plate. `indentation` is that at an input, and
+/// does not fall.
 pub fn last_within(deepest: Nanometres, last: i32, indentation: impl Fn(PressureRise) -> Nanometres) -> i32 {
-    let is_within = |input| indentation(PressureRise(input)) <= deepest;
+    let deepest = deepest.0.saturating_add(deepest.0 / 32);
+    let is_within = |input| indentation(PressureRise(input)).0 <= deepest;
     if is_within(last) {
         return last;
     }
