@@ -3,7 +3,7 @@
 //! `FINGERTIP_DESIGN`, relative to the workspace root, chooses the design.
 
 use model_tables::constants::TransducerKind;
-use model_tables::generate::{self, GenerateError, Limit};
+use model_tables::generate::{self, AccuracyLimit, GenerateError};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -106,7 +106,7 @@ fn tables(design: &Path) -> Result<String, String> {
         // Tables of other objects than a plate, and the command that says which.
         println!("cargo::rustc-cfg=object");
     }
-    if generated.limits() != [Limit::Accuracy; 2] {
+    if generated.limits() != [AccuracyLimit::Accuracy; 2] {
         println!("cargo::warning={}: {}", design.display(), generated.choice());
     }
     if let Some(error) = generated.own_error() {

@@ -22,8 +22,18 @@ const CRATES: [(&str, usize); 10] = [
 const LONGEST: usize = 450;
 /// Circles that are left, by folder.
 const CIRCLES_LEFT: [(&str, usize); 0] = [];
-/// Names that more than one public type has.
-const SHARED_NAMES: usize = 15;
+/// Names that more than one public type has, each for one reason.
+const SHARED_NAMES: [&str; 5] = [
+    // What one fingertip differs by: in a design's file in its units, on the chip in the integers that are stored.
+    "Calibration",
+    // Force and indentation at a pressure rise: of a model in floating point, of the chip in integers with warnings.
+    "Contact",
+    // What is solved, and what the signal path asks of it.
+    "Design",
+    // The same press of either model, behind the same methods.
+    "Press",
+    "PressedState",
+];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
@@ -229,10 +239,10 @@ fn a_public_type_has_its_name_alone() {
             }
         }
     }
-    let shared: Vec<&String> = homes
+    let shared: Vec<&str> = homes
         .iter()
         .filter(|(_, homes)| homes.len() > 1)
-        .map(|(name, _)| name)
+        .map(|(name, _)| name.as_str())
         .collect();
-    assert!(shared.len() <= SHARED_NAMES, "{}: {shared:?}", shared.len());
+    assert_eq!(shared, SHARED_NAMES);
 }

@@ -11,7 +11,7 @@ use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::press;
 use model_tables::solid::SolidError;
-use model_tables::solid::equilibrium::Wall;
+use model_tables::solid::equilibrium::SolidWall;
 use model_tables::solid::inflation::mid_surface;
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::{COARSE, FULL, Press};
@@ -214,8 +214,8 @@ fn sphere_growth(thickness: f64, stretch: f64) -> f64 {
 }
 
 /// Half a sphere whose rim is moved to where a whole inflated sphere has it, settled under the fluid that fills it.
-fn inflated_sphere(thickness: f64, stretch: f64, law: Law, elements: Elements) -> (Wall, State) {
-    let mut wall = Wall::new(1.0, thickness, law, elements);
+fn inflated_sphere(thickness: f64, stretch: f64, law: Law, elements: Elements) -> (SolidWall, State) {
+    let mut wall = SolidWall::new(1.0, thickness, law, elements);
     let mut state = wall.undeformed();
     let growth = sphere_growth(thickness, stretch);
     for node in &mut state.nodes {
@@ -445,7 +445,7 @@ fn fibres_lean_where_the_contact_ends() {
         c1: c1 / modulus,
         c2: c2 / modulus,
     };
-    let mut wall = Wall::new(7.0 / 9.0, 1.0 / 9.0, law, elements);
+    let mut wall = SolidWall::new(7.0 / 9.0, 1.0 / 9.0, law, elements);
     let rest = wall.undeformed();
     let mut state = rest.clone();
     let fluid = Fluid {

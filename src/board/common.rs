@@ -28,7 +28,7 @@ pub type Ears = RingBufferedUartRx<'static>;
 static HEARD: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 
 /// Where the calibration lies.
-pub type Memory = Patient<Region>;
+pub type FlashMemory = Patient<Region>;
 
 /// Resets the chip unless it is fed.
 pub type Watchdog = IndependentWatchdog<'static, IWDG>;
@@ -61,7 +61,7 @@ pub struct Board {
     /// The way in for commands.
     pub ears: Ears,
     /// Where the calibration lies.
-    pub memory: Memory,
+    pub memory: FlashMemory,
     /// Running from here on.
     pub watchdog: Watchdog,
     /// Whether the crystal runs, where there is one; the chip's own oscillator, 1 % off, has taken its place if not.

@@ -31,7 +31,7 @@ mod chosen;
 pub mod ecc;
 
 pub use chosen::SLOT;
-pub use common::{Board, Clock, Ears, Line, Memory, Port, Watchdog, begin};
+pub use common::{Board, Clock, Ears, FlashMemory, Line, Port, Watchdog, begin};
 
 #[cfg(not(any(feature = "board-nucleo-f429zi", feature = "board-nucleo-l432kc")))]
 compile_error!("choose a board: --no-default-features --features board-nucleo-l432kc");

@@ -12,7 +12,7 @@ use embassy_sync::blocking_mutex::raw::{NoopRawMutex, ThreadModeRawMutex};
 use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
 use embassy_time::{Delay, Duration, with_timeout};
-use fingertip::board::{self, Board, Clock, Ears, Line, Memory, SLOT, Watchdog};
+use fingertip::board::{self, Board, Clock, Ears, FlashMemory, Line, SLOT, Watchdog};
 use fingertip::device::station::{Beginning, Station, ToStore};
 use fingertip::device::supervisor::{Breadcrumb, GOOD_RUN, Roster, Stage};
 use fingertip::image::generated::NAME;
@@ -273,7 +273,7 @@ fn refuse() {
 /// Stores the calibration. Period: when asked for. Deadline: none; other tasks run meanwhile. Without a store every save
 /// fails.
 #[embassy_executor::task]
-async fn remember(mut store: Option<Store<Memory>>, clock: Clock) {
+async fn remember(mut store: Option<Store<FlashMemory>>, clock: Clock) {
     loop {
         alive(REMEMBER, clock);
         if let Ok(ToStore(calibration)) = with_timeout(IDLE, TO_STORE.receive()).await {

@@ -57,13 +57,13 @@ impl Fall {
 
 /// What is suspected.
 #[derive(Clone, Debug)]
-pub struct Fluid {
+pub struct FluidHealth {
     fall: Fall,
     below_since: Option<Microseconds>,
     suspicions: Warnings,
 }
 
-impl Fluid {
+impl FluidHealth {
     /// Nothing is suspected.
     pub const fn new(fall: Fall) -> Self {
         Self {
@@ -115,13 +115,13 @@ mod tests {
     use super::*;
     use crate::signal::test_design::Linear;
 
-    fn fluid() -> Fluid {
+    fn fluid() -> FluidHealth {
         let limits = Limits::of(&Linear::CONSTANTS, 8);
-        Fluid::new(Fall::of(&Linear::CONSTANTS, 8, &limits))
+        FluidHealth::new(Fall::of(&Linear::CONSTANTS, 8, &limits))
     }
 
     /// Looks four times a second, for so many seconds.
-    fn leaks(fluid: &mut Fluid, seconds: u64, over: i32) -> bool {
+    fn leaks(fluid: &mut FluidHealth, seconds: u64, over: i32) -> bool {
         for quarter in 0..=4 * seconds {
             fluid.look(Microseconds(quarter * 250_000), over);
         }

@@ -3,7 +3,7 @@
 use crate::signal::calibration::{Calibration, Gain};
 use crate::signal::design::{Design, NoSuchObject, Parameters, Rise, Wall};
 use crate::signal::filter::{Filter, GROUP_DELAY};
-use crate::signal::fluid::Fluid;
+use crate::signal::fluid::FluidHealth;
 use crate::signal::report::{Measurement, Report};
 use crate::signal::stuck::StuckDetector;
 use crate::signal::temperature::Temperature;
@@ -35,7 +35,7 @@ pub struct Pipeline<D: Design> {
     filter: Filter,
     detector: TouchDetector,
     touch: Touch,
-    fluid: Fluid,
+    fluid: FluidHealth,
     wall: D::Wall,
     /// When the last sample was measured, and how long after the one before it.
     measured: Microseconds,
@@ -67,7 +67,7 @@ impl<D: Design> Pipeline<D> {
             filter: Filter::new(parameters.leaps),
             detector: TouchDetector::new(parameters.thresholds),
             touch: Touch::Unknown,
-            fluid: Fluid::new(parameters.fall),
+            fluid: FluidHealth::new(parameters.fall),
             wall: D::Wall::NEW,
             measured: Microseconds(0),
             spacing: 0,

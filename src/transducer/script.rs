@@ -46,7 +46,7 @@ pub(crate) fn read(written: &'static [u8], bytes: impl Into<Vec<u8>>) -> Step {
 
 /// What happens in place of a transaction.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Failure {
+pub(crate) enum BusFailure {
     /// The bus says so.
     Error(ErrorKind),
     /// It never ends: whoever waits gives up.
@@ -54,19 +54,22 @@ pub(crate) enum Failure {
 }
 
 /// What a bus can say, and the fault it is.
-pub(crate) const FAILURES: [(Failure, Option<Fault>); 6] = [
+pub(crate) const FAILURES: [(BusFailure, Option<Fault>); 6] = [
     (
-        Failure::Error(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address)),
+        BusFailure::Error(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address)),
         Some(Fault::SensorAbsent),
     ),
     (
-        Failure::Error(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown)),
+        BusFailure::Error(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown)),
         Some(Fault::SensorAbsent),
     ),
-    (Failure::Error(ErrorKind::Bus), Some(Fault::BusFault)),
-    (Failure::Error(ErrorKind::ArbitrationLoss), Some(Fault::BusFault)),
-    (Failure::Error(ErrorKind::Other), Some(Fault::BusFault)),
-    (Failure::Hangs, None),
+    (BusFailure::Error(ErrorKind::Bus), Some(Fault::BusFault)),
+    (
+        BusFailure::Error(ErrorKind::ArbitrationLoss),
+        Some(Fault::BusFault),
+    ),
+    (BusFailure::Error(ErrorKind::Other), Some(Fault::BusFault)),
+    (BusFailure::Hangs, None),
 ];
 
 /// A bus with one part on it that says what the script says.
@@ -78,7 +81,7 @@ struct Play {
     address: u8,
     steps: Vec<Step>,
     at: usize,
-    failure: Option<(usize, Failure)>,
+    failure: Option<(usize, BusFailure)>,
 }
 
 /// The error of a [`Script`].
@@ -103,7 +106,7 @@ impl Script {
     }
 
     /// The step of this number fails, and the script goes on from the front.
-    fn failing(self, number: usize, failure: Failure) -> Self {
+    fn failing(self, number: usize, failure: BusFailure) -> Self {
         self.0.borrow_mut().failure = Some((number, failure));
         self
     }
@@ -127,11 +130,11 @@ impl I2c for Script {
             play.failure.take_if(|(number, _)| *number == at)
         };
         match failure {
-            Some((_, Failure::Error(kind))) => {
+            Some((_, BusFailure::Error(kind))) => {
                 self.0.borrow_mut().at = 0;
                 return Err(Said(kind));
             }
-            Some((_, Failure::Hangs)) => {
+            Some((_, BusFailure::Hangs)) => {
                 self.0.borrow_mut().at = 0;
                 core::future::pending::<Infallible>().await;
             }

@@ -2,7 +2,7 @@
 use crate::link::{Address, BAUD, Link, LinkEvent};
 use crate::readings::{LiveReading, Monitor};
 use crate::rows::{Form, Writer};
-use crate::view::{self, Surroundings};
+use crate::view::{self, ViewContext};
 use clap::{Parser, ValueEnum};
 use fingertip::link::command::Command;
 use ratatui::crossterm::event::{self, Event as Input, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
@@ -126,7 +126,7 @@ fn watch(
     arguments: &Arguments,
     mut keep: impl FnMut(&LiveReading) -> Result<(), String>,
 ) -> Result<(), String> {
-    let surroundings = Surroundings {
+    let surroundings = ViewContext {
         address: arguments.address.to_string(),
         log: arguments.csv.as_ref().map(|path| path.display().to_string()),
     };

@@ -17,7 +17,7 @@ const LEAST_SCALE: f64 = 0.1;
 
 /// What the view says beside the readings.
 #[derive(Clone, Debug, Default)]
-pub struct Surroundings {
+pub struct ViewContext {
     /// Where the board is.
     pub address: String,
     /// Where rows go, if they do.
@@ -25,7 +25,7 @@ pub struct Surroundings {
 }
 
 /// Draws everything; `now` is the time since the start.
-pub fn draw(frame: &mut Frame<'_>, monitor: &Monitor, surroundings: &Surroundings, now: Duration) {
+pub fn draw(frame: &mut Frame<'_>, monitor: &Monitor, surroundings: &ViewContext, now: Duration) {
     let [title, values, chart, journal, keys] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Length(7),
@@ -44,7 +44,7 @@ pub fn draw(frame: &mut Frame<'_>, monitor: &Monitor, surroundings: &Surrounding
     );
 }
 
-fn heading(monitor: &Monitor, surroundings: &Surroundings) -> Paragraph<'static> {
+fn heading(monitor: &Monitor, surroundings: &ViewContext) -> Paragraph<'static> {
     let (words, style) = match monitor.connection() {
         Connection::Connecting => ("connecting".to_owned(), Style::new().fg(Color::Yellow)),
         Connection::Connected => ("connected".to_owned(), Style::new().fg(Color::Green)),
@@ -165,7 +165,7 @@ fn draw_chart(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor) {
     frame.render_widget(chart, area);
 }
 
-fn draw_journal(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor, surroundings: &Surroundings) {
+fn draw_journal(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor, surroundings: &ViewContext) {
     let counts = monitor.counts();
     let title = format!(
         " {} reports, {} missing, {} broken{} ",

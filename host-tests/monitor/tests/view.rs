@@ -6,7 +6,7 @@ use fingertip::signal::report::{Measurement, Report, Sigma};
 use fingertip::status::{Fault, Touch, Warnings};
 use fingertip::units::Microseconds;
 use monitor::readings::{Monitor, STALE};
-use monitor::view::{self, Surroundings};
+use monitor::view::{self, ViewContext};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use std::time::Duration;
@@ -53,7 +53,7 @@ fn hear(monitor: &mut Monitor, sequence: u16, now: Duration, messages: &[Message
 
 fn screen(monitor: &Monitor, now: Duration) -> String {
     let mut terminal = Terminal::new(TestBackend::new(100, 30)).expect("memory");
-    let surroundings = Surroundings {
+    let surroundings = ViewContext {
         address: "/dev/ttyACM0".to_owned(),
         log: None,
     };

@@ -40,7 +40,7 @@ pub const LENGTH: usize = 1 + INDENTATIONS.len();
 
 /// A state as the chip sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State {
+pub struct SolverState {
     /// Pressure at rest, and its rise in the pressed states, pascals.
     pub pressure: f64,
     /// Newtons.
@@ -49,7 +49,7 @@ pub struct State {
     pub iterations: u64,
 }
 
-impl State {
+impl SolverState {
     /// Bytes on the wire.
     pub const BYTES: usize = 24;
 
@@ -80,7 +80,7 @@ impl State {
 /// # Errors
 /// As [`Workspace::inflate`].
 #[inline(never)] // its stack is free again for the next
-pub fn rest(room: &mut Room) -> Result<(State, &mut Press<Law, STAGES>), MembraneError> {
+pub fn rest(room: &mut Room) -> Result<(SolverState, &mut Press<Law, STAGES>), MembraneError> {
     let Design {
         membrane,
         rest,
@@ -88,7 +88,7 @@ pub fn rest(room: &mut Room) -> Result<(State, &mut Press<Law, STAGES>), Membran
         ..
     } = DESIGN;
     let press = room.inflate(&membrane, rest, compliance, TensionField::Relaxed, SWEEP)?;
-    let state = State {
+    let state = SolverState {
         pressure: press.rest().pressure,
         force: 0.0,
         iterations: press.iterations(),
@@ -101,10 +101,10 @@ pub fn rest(room: &mut Room) -> Result<(State, &mut Press<Law, STAGES>), Membran
 /// # Errors
 /// As [`Press::contact_at`].
 #[inline(never)]
-pub fn pressed(press: &mut Press<Law, STAGES>, indentation: f64) -> Result<State, MembraneError> {
+pub fn pressed(press: &mut Press<Law, STAGES>, indentation: f64) -> Result<SolverState, MembraneError> {
     let before = press.iterations();
     let contact = press.contact_at(indentation)?;
-    Ok(State {
+    Ok(SolverState {
         pressure: contact.pressure_rise,
         force: contact.force,
         iterations: press.iterations() - before,
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn a_state_survives_the_wire() {
-        let state = State {
+        let state = SolverState {
             pressure: 1.5,
             force: -0.1,
             iterations: 7,
@@ -125,6 +125,6 @@ mod tests {
         let bytes = state.to_bytes();
         assert_eq!(bytes[..8], [0, 0, 0, 0, 0, 0, 0xf8, 0x3f]);
         assert_eq!(bytes[16..], [7, 0, 0, 0, 0, 0, 0, 0]);
-        assert_eq!(State::from_bytes(bytes), state);
+        assert_eq!(SolverState::from_bytes(bytes), state);
     }
 }

@@ -46,7 +46,7 @@ fn random_solids_give_one_answer_and_state_their_error() {
 /// All of it: `cargo campaign lives --lives 5000 --days 50`.
 #[test]
 fn in_random_lives_no_reading_with_ok_is_wrong() {
-    let mut all = lives::Tally::default();
+    let mut all = lives::LivesTally::default();
     for index in 0..20 {
         let life = lives::Life::draw(2026, index, [60.0, 120.0]);
         let tally = life.live();

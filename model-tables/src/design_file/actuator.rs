@@ -3,7 +3,7 @@
 use super::DesignFile;
 use super::bounds::{Bounds, LENGTH};
 use super::material::material;
-use super::section::{Fault, Section};
+use super::section::{KeyFault, Section};
 use crate::material::Law;
 use crate::object::Friction;
 use crate::solid::disc::{DiscDesign, FarSide};
@@ -25,7 +25,7 @@ pub struct ActuatorSection {
 }
 
 impl ActuatorSection {
-    pub(super) fn parse(mut section: Section<'_>) -> Result<Self, Fault> {
+    pub(super) fn parse(mut section: Section<'_>) -> Result<Self, KeyFault> {
         let diameter_mm = section.needed_number("diameter_mm", LENGTH)?;
         let thickness_mm = section.number("thickness_mm", LENGTH)?;
         let gap_mm = section.number("gap_mm", Bounds::within(0.0, 1000.0, "mm"))?;

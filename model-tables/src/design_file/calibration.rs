@@ -9,7 +9,7 @@
 //! indentation from first touch: tables carry the gain, and the stored rest pressure gain and offset.
 
 use super::bounds::Bounds;
-use super::section::{Fault, Section};
+use super::section::{KeyFault, Section};
 use crate::curve::Contact;
 use crate::monotone::Monotone;
 use std::fmt::{self, Write};
@@ -84,7 +84,7 @@ impl Calibration {
     }
 
     /// The section of a file.
-    pub(super) fn parse(mut section: Section<'_>) -> Result<Self, Fault> {
+    pub(super) fn parse(mut section: Section<'_>) -> Result<Self, KeyFault> {
         const FACTOR: Bounds = Bounds::within(0.001, 1000.0, "");
         const GAIN: Bounds = Bounds::within(0.1, 10.0, "");
         let default = Self::default();
@@ -199,7 +199,7 @@ impl DataCurve {
         "rest_pressure_kpa",
     ];
 
-    fn parse(section: &mut Section<'_>) -> Result<Option<Self>, Fault> {
+    fn parse(section: &mut Section<'_>) -> Result<Option<Self>, KeyFault> {
         const KNOT: Bounds = Bounds::above(0.0, 1e6, "");
         let given = Self::KEYS.map(|key| section.has(key));
         if given == [false; 4] {

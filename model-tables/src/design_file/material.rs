@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::relaxation;
-use super::section::{Fault, Section};
+use super::section::{KeyFault, Section};
 use crate::material::Law;
 use crate::material::preset::{PRESETS, Preset};
 use crate::material::relaxation::Relaxation;
@@ -11,7 +11,7 @@ use crate::material::relaxation::Relaxation;
 const STIFFNESS: Bounds =
     Bounds::above(0.0, 1e12, "Pa").usually([1e3, 3e7], &[("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9)]);
 
-pub(super) fn material(mut section: Section<'_>) -> Result<(Law, Option<Relaxation>), Fault> {
+pub(super) fn material(mut section: Section<'_>) -> Result<(Law, Option<Relaxation>), KeyFault> {
     const LAWS: &str = "\"neo-hookean\", \"mooney-rivlin\" or \"yeoh\"";
     // The higher constants may have either sign; whether the law is then stable is the solver's to say.
     const HIGHER: Bounds = Bounds::within(-1e12, 1e12, "Pa");

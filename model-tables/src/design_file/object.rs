@@ -1,7 +1,7 @@
 //! `[object]`: what touches.
 
 use super::bounds::Bounds;
-use super::section::{Fault, Section};
+use super::section::{KeyFault, Section};
 use crate::object::{Friction, Object, Shape};
 use std::fmt::{self, Write};
 
@@ -73,7 +73,7 @@ impl ObjectSection {
     }
 
     /// The section of a file.
-    pub(super) fn parse(mut section: Section<'_>) -> Result<Self, Fault> {
+    pub(super) fn parse(mut section: Section<'_>) -> Result<Self, KeyFault> {
         const SHAPES: &str = "\"ball\", \"cylinder\" or \"punch\"";
         let shape = match section.text("shape", SHAPES)? {
             None | Some("ball") => match section.number("radius_mm", RADIUS)? {

@@ -1,7 +1,7 @@
 //! `[material.relaxation]`: the wall in time.
 
 use super::bounds::Bounds;
-use super::section::{Fault, Section};
+use super::section::{KeyFault, Section};
 use crate::material::preset::{PRESETS, Preset};
 use crate::material::relaxation::{MAX_TERMS, Relaxation, Term};
 use std::fmt::{self, Write};
@@ -16,7 +16,7 @@ const TEMPERATURE: Bounds = Bounds::within(-60.0, 150.0, "degrees Celsius");
 const SHIFT: Bounds = Bounds::within(0.0, 5.0, "per kelvin");
 
 /// The section of a file: a material's own series by `preset`, or `tau_s` and `g`.
-pub(super) fn parse(mut section: Section<'_>) -> Result<Relaxation, Fault> {
+pub(super) fn parse(mut section: Section<'_>) -> Result<Relaxation, KeyFault> {
     let names = || {
         let with_series = PRESETS.iter().filter(|preset| preset.relaxation.is_some());
         let names: Vec<String> = with_series.map(|preset| format!("{:?}", preset.name)).collect();

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The line (where there is one) and what is wrong there.
-pub type Fault = (Option<usize>, Problem);
+pub type KeyFault = (Option<usize>, Problem);
 
 /// One table, and the keys that were asked for.
 pub struct Section<'a> {
@@ -32,8 +32,8 @@ impl<'a> Section<'a> {
     /// The sub-table of that name, if it is there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn sub(&mut self, name: &'static str) -> Result<Option<Section<'a>>, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn sub(&mut self, name: &'static str) -> Result<Option<Section<'a>>, KeyFault> {
         let Some(value) = self.get(name) else {
             return Ok(None);
         };
@@ -52,8 +52,8 @@ impl<'a> Section<'a> {
     /// The sub-table of that name, which must be there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn needed_sub(&mut self, name: &'static str, holds: &str) -> Result<Section<'a>, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn needed_sub(&mut self, name: &'static str, holds: &str) -> Result<Section<'a>, KeyFault> {
         match self.sub(name)? {
             Some(section) => Ok(section),
             None => Err((
@@ -74,8 +74,8 @@ impl<'a> Section<'a> {
     /// A number, if the key is there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn number(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<f64>, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn number(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<f64>, KeyFault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -92,8 +92,8 @@ impl<'a> Section<'a> {
     /// A number that must be there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn needed_number(&mut self, key: &'static str, bounds: Bounds) -> Result<f64, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn needed_number(&mut self, key: &'static str, bounds: Bounds) -> Result<f64, KeyFault> {
         match self.number(key, bounds)? {
             Some(number) => Ok(number),
             None => Err(self.missing(key, &bounds.describe())),
@@ -103,13 +103,13 @@ impl<'a> Section<'a> {
     /// A number (`Some(Some(_))`) or one word in its place (`Some(None)`), if the key is there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
+    /// [`KeyFault`] with the key, what was found and what is allowed.
     pub fn number_or_text(
         &mut self,
         key: &'static str,
         bounds: Bounds,
         word: &str,
-    ) -> Result<Option<Option<f64>>, Fault> {
+    ) -> Result<Option<Option<f64>>, KeyFault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -125,8 +125,8 @@ impl<'a> Section<'a> {
     /// `true` or `false`, if the key is there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn flag(&mut self, key: &'static str) -> Result<Option<bool>, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn flag(&mut self, key: &'static str) -> Result<Option<bool>, KeyFault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -139,8 +139,8 @@ impl<'a> Section<'a> {
     /// Two increasing numbers, if the key is there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn pair(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<[f64; 2]>, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn pair(&mut self, key: &'static str, bounds: Bounds) -> Result<Option<[f64; 2]>, KeyFault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -160,8 +160,8 @@ impl<'a> Section<'a> {
     /// Two increasing numbers that must be there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn needed_pair(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn needed_pair(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], KeyFault> {
         match self.pair(key, bounds)? {
             Some(pair) => Ok(pair),
             None => Err(self.missing(key, &pair_wanted(bounds))),
@@ -171,8 +171,8 @@ impl<'a> Section<'a> {
     /// Two increasing numbers, or one for both, that must be there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn span(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn span(&mut self, key: &'static str, bounds: Bounds) -> Result<[f64; 2], KeyFault> {
         let array = self.get(key).is_some_and(|value| value.get_ref().is_array());
         if array {
             return self.needed_pair(key, bounds);
@@ -183,8 +183,8 @@ impl<'a> Section<'a> {
     /// Texts in brackets that must be there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn texts(&mut self, key: &'static str, allowed: &str) -> Result<Vec<&'a str>, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn texts(&mut self, key: &'static str, allowed: &str) -> Result<Vec<&'a str>, KeyFault> {
         let Some(value) = self.get(key) else {
             return Err(self.missing(key, allowed));
         };
@@ -200,13 +200,13 @@ impl<'a> Section<'a> {
     /// Strictly increasing numbers, `count[0]` to `count[1]` of them, that must be there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
+    /// [`KeyFault`] with the key, what was found and what is allowed.
     pub fn increasing(
         &mut self,
         key: &'static str,
         bounds: Bounds,
         count: [usize; 2],
-    ) -> Result<Vec<f64>, Fault> {
+    ) -> Result<Vec<f64>, KeyFault> {
         let [low, high] = count;
         let wanted = format!(
             "{low} to {high} strictly increasing numbers in brackets, each {}",
@@ -221,8 +221,8 @@ impl<'a> Section<'a> {
     /// So many numbers that must be there, in any order.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn as_many(&mut self, key: &'static str, bounds: Bounds, count: usize) -> Result<Vec<f64>, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn as_many(&mut self, key: &'static str, bounds: Bounds, count: usize) -> Result<Vec<f64>, KeyFault> {
         let wanted = format!(
             "{count} numbers in brackets, as many as the key before it has, each {}",
             bounds.describe()
@@ -237,7 +237,7 @@ impl<'a> Section<'a> {
         bounds: Bounds,
         wanted: &str,
         admits: impl Fn(&[f64]) -> bool,
-    ) -> Result<Vec<f64>, Fault> {
+    ) -> Result<Vec<f64>, KeyFault> {
         let Some(value) = self.get(key) else {
             return Err(self.missing(key, wanted));
         };
@@ -253,8 +253,8 @@ impl<'a> Section<'a> {
     /// A text, if the key is there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn text(&mut self, key: &'static str, allowed: &str) -> Result<Option<&'a str>, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn text(&mut self, key: &'static str, allowed: &str) -> Result<Option<&'a str>, KeyFault> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
@@ -267,8 +267,8 @@ impl<'a> Section<'a> {
     /// A text that must be there.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn needed_text(&mut self, key: &'static str, allowed: &str) -> Result<&'a str, Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn needed_text(&mut self, key: &'static str, allowed: &str) -> Result<&'a str, KeyFault> {
         match self.text(key, allowed)? {
             Some(text) => Ok(text),
             None => Err(self.missing(key, allowed)),
@@ -276,7 +276,7 @@ impl<'a> Section<'a> {
     }
 
     /// The value of `key` is not `allowed`.
-    pub fn refuse(&self, key: &str, allowed: &str) -> Fault {
+    pub fn refuse(&self, key: &str, allowed: &str) -> KeyFault {
         let found = self
             .table
             .get(key)
@@ -291,7 +291,7 @@ impl<'a> Section<'a> {
     }
 
     /// `key` is missing here.
-    pub fn missing(&self, key: &str, allowed: &str) -> Fault {
+    pub fn missing(&self, key: &str, allowed: &str) -> KeyFault {
         let problem = Problem::Missing {
             key: self.full(key),
             allowed: allowed.to_owned(),
@@ -303,8 +303,8 @@ impl<'a> Section<'a> {
     /// The end of reading: a key that was never asked for is an error. The first in the file is named.
     ///
     /// # Errors
-    /// [`Fault`] with the key, what was found and what is allowed.
-    pub fn finish(self) -> Result<(), Fault> {
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn finish(self) -> Result<(), KeyFault> {
         let unknown = self
             .table
             .keys()

@@ -5,7 +5,7 @@ use super::bounds::{Bounds, LENGTH, SEMI_AXIS};
 use super::calibration::Calibration;
 use super::error::Problem;
 use super::material::material;
-use super::section::{Fault, Section, line_at};
+use super::section::{KeyFault, Section, line_at};
 use super::transducer::transducer;
 use super::zero::{self, ZeroSection};
 use super::{
@@ -21,7 +21,7 @@ const STRETCH: Bounds = Bounds::above(1.0, 10.0, "(no stretch is 1)");
 const PRESSURE: Bounds = Bounds::above(0.0, 10_000.0, "kPa");
 
 /// The design in a text.
-pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
+pub(super) fn parse(text: &str) -> Result<DesignFile, KeyFault> {
     let document = DeTable::parse(text).map_err(|error| {
         let line = error.span().map(|span| line_at(text, span.start));
         (line, Problem::Syntax(error.message().to_owned()))
@@ -93,7 +93,7 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, Fault> {
     })
 }
 
-fn name(root: &mut Section<'_>) -> Result<String, Fault> {
+fn name(root: &mut Section<'_>) -> Result<String, KeyFault> {
     const ALLOWED: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
     let name = root.needed_text("name", ALLOWED)?;
     let plain = name
@@ -106,7 +106,7 @@ fn name(root: &mut Section<'_>) -> Result<String, Fault> {
     }
 }
 
-fn membrane(mut section: Section<'_>) -> Result<MembraneSection, Fault> {
+fn membrane(mut section: Section<'_>) -> Result<MembraneSection, KeyFault> {
     let membrane = MembraneSection {
         radial_semi_axis_mm: section.needed_number("radial_semi_axis_mm", SEMI_AXIS)?,
         axial_semi_axis_mm: section.needed_number("axial_semi_axis_mm", SEMI_AXIS)?,
@@ -126,7 +126,7 @@ const REST_KEYS: &str = "exactly one of pole_stretch, pressure_kpa, equator_radi
 const REST_OF_MEMBRANE: &str = "exactly one of pole_stretch, pressure_kpa, equator_radius_mm, height_mm; a fingertip that is not \
                                 stretched at rest has none, and is no membrane: give [model] kind = \"auto\" or \"solid\"";
 
-fn rest(mut section: Section<'_>) -> Result<RestSection, Fault> {
+fn rest(mut section: Section<'_>) -> Result<RestSection, KeyFault> {
     let given: Vec<(&str, RestSection)> = [
         (
             "pole_stretch",
@@ -172,7 +172,7 @@ fn rest(mut section: Section<'_>) -> Result<RestSection, Fault> {
 }
 
 /// The rest of a wall: unstretched, inflated with its rim held, or (`auto`) inflated as a membrane and then bonded.
-fn rest_of_wall(mut section: Section<'_>, model: ModelSection) -> Result<RestSection, Fault> {
+fn rest_of_wall(mut section: Section<'_>, model: ModelSection) -> Result<RestSection, KeyFault> {
     let auto = model == ModelSection::Auto;
     let (keys, refused): (_, &[&'static str]) = if auto {
         (
@@ -218,14 +218,14 @@ fn rest_of_wall(mut section: Section<'_>, model: ModelSection) -> Result<RestSec
     }
 }
 
-fn fluid(mut section: Section<'_>) -> Result<f64, Fault> {
+fn fluid(mut section: Section<'_>) -> Result<f64, KeyFault> {
     let bounds = Bounds::within(0.0, 1e6, "mm^3/kPa");
     let compliance = section.number("compliance_mm3_per_kpa", bounds)?;
     section.finish()?;
     Ok(compliance.unwrap_or(0.0))
 }
 
-fn model(mut section: Section<'_>) -> Result<(ModelSection, Axes), Fault> {
+fn model(mut section: Section<'_>) -> Result<(ModelSection, Axes), KeyFault> {
     const AXES: &str = "\"mid\" (middle of the wall) or \"outer\" (outer surface)";
     const KINDS: &str = "\"membrane\", \"solid\" or \"auto\"";
     let model = match section.text("kind", KINDS)? {
@@ -253,7 +253,7 @@ fn elements(
     key: &'static str,
     least: f64,
     most: f64,
-) -> Result<Option<u32>, Fault> {
+) -> Result<Option<u32>, KeyFault> {
     let number = section.number(key, Bounds::within(least, most, "(a whole number)"))?;
     match number {
         Some(number) if libm::fmod(number, 1.0) > 0.0 => Err(section.refuse(key, "a whole number")),
@@ -261,13 +261,13 @@ fn elements(
     }
 }
 
-fn press(mut section: Section<'_>) -> Result<f64, Fault> {
+fn press(mut section: Section<'_>) -> Result<f64, KeyFault> {
     let depth = section.needed_number("max_indentation_mm", LENGTH)?;
     section.finish()?;
     Ok(depth)
 }
 
-fn accuracy(mut section: Section<'_>) -> Result<Accuracy, Fault> {
+fn accuracy(mut section: Section<'_>) -> Result<Accuracy, KeyFault> {
     const PERCENT: Bounds = Bounds::within(0.001, 10.0, "%");
     let accuracy = Accuracy {
         force_percent_of_reading: section.needed_number("force_percent_of_reading", PERCENT)?,

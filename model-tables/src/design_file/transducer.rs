@@ -1,11 +1,11 @@
 //! `[transducer]`, read key by key.
 
 use super::bounds::Bounds;
-use super::section::{Fault, Section};
+use super::section::{KeyFault, Section};
 use super::{Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air};
 use crate::constants::Quantity;
 
-pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, Fault> {
+pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, KeyFault> {
     const KINDS: &str = "\"ratiometric\", \"abp2\", \"ms5837-02ba\" or \"dps310\"";
     // No gauge pressure lies below a vacuum; the firmware counts millipascals in 31 bits.
     const RANGE: Bounds = Bounds::within(-101.325, 2_000.0, "kPa");
@@ -59,7 +59,7 @@ pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, 
 }
 
 /// What the part measures against: parts on a bus know theirs, an analogue one is gauge unless it says otherwise.
-fn quantity(section: &mut Section<'_>, kind: &TransducerKindSection) -> Result<Quantity, Fault> {
+fn quantity(section: &mut Section<'_>, kind: &TransducerKindSection) -> Result<Quantity, KeyFault> {
     const QUANTITIES: &str = "\"gauge\" or \"absolute\"";
     let given = match section.text("quantity", QUANTITIES)? {
         None => None,
@@ -89,7 +89,7 @@ fn fits_the_air(
     section: &Section<'_>,
     kind: &TransducerKindSection,
     range_kpa: [f64; 2],
-) -> Result<(), Fault> {
+) -> Result<(), KeyFault> {
     let [thinnest, densest] = air_kpa();
     let air = format!("the air is {thinnest} to {densest} kPa");
     let [low, high] = range_kpa;
@@ -117,7 +117,7 @@ fn fits_the_air(
 const SUPPLIES: &str = "\"reference\" (of the converter) or \"measured\" (beside the output)";
 const TRANSFERS: &str = "\"A\" (10 % to 90 % of the counts) or \"B\" (30 % to 70 %)";
 
-fn address(section: &mut Section<'_>, low: u8, high: u8) -> Result<Option<u8>, Fault> {
+fn address(section: &mut Section<'_>, low: u8, high: u8) -> Result<Option<u8>, KeyFault> {
     let bounds = Bounds::within(f64::from(low), f64::from(high), "(a seven-bit address)");
     let address = section.number("address", bounds)?;
     match address {

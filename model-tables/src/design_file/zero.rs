@@ -1,7 +1,7 @@
 //! `[zero]` and `[air]`: what may move the zero beside a press, and who measures the air.
 
 use super::bounds::Bounds;
-use super::section::{Fault, Section};
+use super::section::{KeyFault, Section};
 use super::{TransducerKindSection, TransducerSection};
 use crate::constants::{AirReference, Quantity, UNSEEN_KELVINS, ZeroAssumptions};
 use std::fmt::{self, Write};
@@ -36,7 +36,7 @@ impl ZeroSection {
     pub(super) fn parse(
         mut section: Section<'_>,
         transducer: Option<&TransducerSection>,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, KeyFault> {
         let zero = Self {
             drift_pa_per_hour: section
                 .number("drift_pa_per_hour", Bounds::within(1e-3, 1e5, "Pa an hour"))?,
@@ -120,7 +120,7 @@ impl ZeroSection {
 pub(super) fn air(
     mut section: Section<'_>,
     transducer: Option<&TransducerSection>,
-) -> Result<AirReference, Fault> {
+) -> Result<AirReference, KeyFault> {
     const REFERENCES: &str = "\"none\", \"host\" or \"part\"";
     let reference = match section.needed_text("reference", REFERENCES)? {
         "none" => AirReference::None,

@@ -1,7 +1,7 @@
 //! From one segmentation to integers: each segment's sums rounded, near enough to the curve to rise with it.
 
 use super::bounds::{Range, Sum};
-use super::minimax::{MOST, Sample, fit};
+use super::minimax::{FitSample, MOST, fit};
 use super::owned::OwnedTables;
 use super::quantise::{Coefficients, round};
 use super::shape::{Segmentation, Span, instructions};
@@ -217,7 +217,7 @@ impl Candidate<'_> {
         tolerance: Tolerance,
         span: &Span,
         before: i32,
-    ) -> Option<Vec<Sample>> {
+    ) -> Option<Vec<FitSample>> {
         let unit = libm::ldexp(1.0, (layout.octave_shift(span.number) + shift) as i32);
         let mut samples = Vec::with_capacity(SAMPLES);
         for count in counts(span, layout.bias) {
@@ -233,7 +233,7 @@ impl Candidate<'_> {
             if low > high {
                 return None;
             }
-            samples.push(Sample {
+            samples.push(FitSample {
                 factors: factors(layout, count),
                 middle: 0.5 * (low + high + 1.0) * unit,
                 half: 0.5 * (high + 1.0 - low) * unit,

@@ -12,7 +12,7 @@ const CLOSE: f64 = 1.002;
 
 /// What a sum should be at one input: `middle`, give or take `half`.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct FitSample {
     /// What its coefficients are multiplied with.
     pub factors: [f64; MOST],
     /// The middle of the window.
@@ -21,7 +21,7 @@ pub struct Sample {
     pub half: f64,
 }
 
-impl Sample {
+impl FitSample {
     /// How far a sum with these coefficients lies from the middle, in half widths.
     pub fn error(&self, coefficients: &[f64; MOST]) -> f64 {
         let mut sum = 0.0;
@@ -34,7 +34,7 @@ impl Sample {
 
 /// A sum and its largest error over the samples, in half widths.
 #[derive(Clone, Copy, Debug)]
-pub struct Fit {
+pub struct MinimaxFit {
     /// The coefficients.
     pub coefficients: [f64; MOST],
     /// The largest error.
@@ -42,9 +42,9 @@ pub struct Fit {
 }
 
 /// The best sum whose coefficients from `free` on are those `given`. The samples are in the order of their inputs.
-pub fn fit(samples: &[Sample], free: usize, given: &[f64; MOST]) -> Fit {
+pub fn fit(samples: &[FitSample], free: usize, given: &[f64; MOST]) -> MinimaxFit {
     let count = samples.len();
-    let mut best = Fit {
+    let mut best = MinimaxFit {
         coefficients: *given,
         error: f64::INFINITY,
     };
@@ -69,7 +69,7 @@ pub fn fit(samples: &[Sample], free: usize, given: &[f64; MOST]) -> Fit {
             error = error.max(slot.abs());
         }
         if error < best.error {
-            best = Fit { coefficients, error };
+            best = MinimaxFit { coefficients, error };
         }
         if error <= CLOSE * level.abs() || !exchange(&mut reference, &errors) {
             break;
@@ -80,7 +80,7 @@ pub fn fit(samples: &[Sample], free: usize, given: &[f64; MOST]) -> Fit {
 
 /// The sum whose errors at the reference are equal and of alternating sign, and that error.
 fn alternating(
-    samples: &[Sample],
+    samples: &[FitSample],
     reference: &[usize],
     free: usize,
     given: &[f64; MOST],
@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     /// Samples of a function on [0, 1] with weight one, for sums of the given powers.
-    fn sampled(powers: &[i32], f: impl Fn(f64) -> f64) -> Vec<Sample> {
+    fn sampled(powers: &[i32], f: impl Fn(f64) -> f64) -> Vec<FitSample> {
         (0..=400)
             .map(|i| {
                 let x = f64::from(i) / 400.0;
@@ -196,7 +196,7 @@ mod tests {
                 for (factor, &power) in factors.iter_mut().zip(powers) {
                     *factor = x.powi(power);
                 }
-                Sample {
+                FitSample {
                     factors,
                     middle: f(x),
                     half: 1.0,

@@ -25,8 +25,8 @@ use truth::Truth;
 
 pub use certify::Certificate;
 pub use design::{
-    GenerateError, Generated, Limit, Solved, State, from_design, from_design_file, from_design_or_worse,
-    solve,
+    AccuracyLimit, DesignState, GenerateError, Generated, Solved, from_design, from_design_file,
+    from_design_or_worse, solve,
 };
 pub use owned::OwnedTables;
 pub use tally::{Errors, Spread};

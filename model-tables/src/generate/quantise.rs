@@ -3,7 +3,7 @@
 //! The coefficient of the highest power is rounded first, both ways; the others are fitted again to what it leaves, and so on
 //! down. Of all the roundings the one with the least largest error is kept.
 
-use super::minimax::{MOST, Sample, fit};
+use super::minimax::{FitSample, MOST, fit};
 use crate::table::Constant;
 
 /// How many integers on either side of the best real coefficient are tried, one after the other until one serves: of the two
@@ -16,7 +16,7 @@ pub(super) type Coefficients = [i32; MOST];
 
 /// The best integers with which every sample's error stays below `limit` half widths.
 pub(super) fn round(
-    samples: &[Sample],
+    samples: &[FitSample],
     terms: usize,
     constant: Constant,
     limit: f64,
@@ -39,7 +39,7 @@ pub(super) fn round(
 }
 
 struct Search<'a> {
-    samples: &'a [Sample],
+    samples: &'a [FitSample],
     constant: Constant,
     terms: usize,
     reach: i32,
@@ -117,11 +117,11 @@ pub(super) fn evaluate(sum: &Coefficients, factors: [i32; 4]) -> i32 {
 mod tests {
     use super::*;
 
-    fn samples(f: impl Fn(f64) -> f64, half: f64) -> Vec<Sample> {
+    fn samples(f: impl Fn(f64) -> f64, half: f64) -> Vec<FitSample> {
         (0..=40)
             .map(|i| {
                 let x = f64::from(i) / 40.0;
-                Sample {
+                FitSample {
                     factors: [1.0, 32768.0 * x, 32768.0 * x * x, 0.0, 0.0],
                     middle: f(x),
                     half,

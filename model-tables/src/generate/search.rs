@@ -1,7 +1,7 @@
 //! The search: the fewest bytes that meet the accuracy within the instructions wanted, and among equals the fewest instructions.
 
 use super::candidate::{Candidate, Shifts, Tolerance, Work, counts, factors};
-use super::minimax::{MOST, Sample, fit};
+use super::minimax::{FitSample, MOST, fit};
 use super::owned::OwnedTables;
 use super::shape::{Segmentation, Shape, biases, instructions};
 use super::truth::Truth;
@@ -183,12 +183,12 @@ fn first_look(segmentation: &Segmentation, truth: &Truth, accuracy: &Accuracy) -
         let span = &segmentation.spans[at];
         let counts = counts(span, segmentation.layout.bias);
         for output in [1, 0] {
-            let samples: Vec<Sample> = counts
+            let samples: Vec<FitSample> = counts
                 .iter()
                 .map(|&count| {
                     let value = truth.at(count)[output];
                     let allowed = tolerances[output].at(value);
-                    Sample {
+                    FitSample {
                         factors: factors(&segmentation.layout, count),
                         middle: value,
                         // Finer than its own rounding nothing can be: half the tolerance is then the aim.

@@ -75,7 +75,7 @@ impl Wrinkling {
 
 /// What every state of equilibrium has.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shape {
+pub struct PressShape {
     /// Gauge pressure of the fluid, pascals.
     pub pressure: f64,
     /// Stretch of the pole; 1 in a slack core.
@@ -102,7 +102,7 @@ pub struct Shape {
     pub wrinkling: Wrinkling,
 }
 
-impl Shape {
+impl PressShape {
     /// Room for a shape.
     pub(crate) const BLANK: Self = Self {
         pressure: 0.0,
@@ -139,7 +139,7 @@ pub struct PressedState {
     /// The contact edge in the meridian's parameter.
     pub contact_parameter: f64,
     /// The rest.
-    pub shape: Shape,
+    pub shape: PressShape,
 }
 
 impl PressedState {
@@ -294,7 +294,7 @@ pub(crate) fn shape<L: Hyperelastic, const S: usize>(
     equilibrium: &Equilibrium<L, S>,
     scale: &UnitScale,
     solution: &Solution<S>,
-) -> Shape {
+) -> PressShape {
     let membrane = &equilibrium.membrane;
     let mut energy = 0.0;
     let mut any_wrinkled = false;
@@ -324,7 +324,7 @@ pub(crate) fn shape<L: Hyperelastic, const S: usize>(
     let [pole, pressure, contact_radius, _] = solution.parameters;
     let k = 0.5 * pressure * (u * u - contact_radius * contact_radius);
     let compressed = membrane.tension_field == TensionField::Plain && meridional.min(hoop) < 0.0;
-    Shape {
+    PressShape {
         pressure: pressure * scale.pressure,
         pole_stretch: if slack { 1.0 } else { pole },
         slack_edge: if slack { solution.parameters[POLE] } else { 0.0 },

@@ -2,7 +2,7 @@
 //!
 //! A search from a few guesses: what it finds is a state; where it finds none there may be one.
 
-use super::equilibrium::Wall;
+use super::equilibrium::SolidWall;
 use super::section;
 use super::state::{Balance, Fluid, State};
 use super::station::Kept;
@@ -27,7 +27,7 @@ pub(super) struct Beside {
 
 /// A state beside the path's at the same height of the plate, if one is found: a stable one, or else one that is not.
 pub(super) fn beside(
-    wall: &mut Wall,
+    wall: &mut SolidWall,
     fluid: &Fluid,
     rest: &State,
     kept: &Kept,
@@ -56,7 +56,7 @@ pub(super) fn beside(
 }
 
 /// What a guess settles to, if that is another state than the path's.
-fn settle(wall: &mut Wall, fluid: &Fluid, kept: &Kept, plate: f64, mut state: State) -> Option<Beside> {
+fn settle(wall: &mut SolidWall, fluid: &Fluid, kept: &Kept, plate: f64, mut state: State) -> Option<Beside> {
     let balance = wall.settle(&mut state, plate, fluid).ok()?;
     let distinct = |a: f64, b: f64| (a - b).abs() > DISTINCT * a.abs().max(b.abs());
     let is_other = distinct(balance.force, kept.balance.force) || distinct(state.fluid, kept.state.fluid);
@@ -70,7 +70,7 @@ fn settle(wall: &mut Wall, fluid: &Fluid, kept: &Kept, plate: f64, mut state: St
 }
 
 /// A state with a part of the cap that the plate has pressed flat pushed on, away from it.
-fn mirror(wall: &Wall, rest: &State, kept: &Kept, plate: f64, part: f64) -> State {
+fn mirror(wall: &SolidWall, rest: &State, kept: &Kept, plate: f64, part: f64) -> State {
     let (stride, layers) = (wall.mesh.stride(), wall.mesh.layers());
     let mut state = kept.state.clone();
     let stations = state.nodes.chunks_exact_mut(stride);

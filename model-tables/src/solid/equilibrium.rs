@@ -58,7 +58,7 @@ pub struct Tangent {
 
 /// A wall, and room to solve it.
 #[derive(Clone, Debug)]
-pub struct Wall {
+pub struct SolidWall {
     /// The undeformed wall.
     pub mesh: Mesh,
     /// Its material, in shear moduli.
@@ -94,7 +94,7 @@ pub struct Wall {
     pub iterations: u64,
 }
 
-impl Wall {
+impl SolidWall {
     /// A dome's wall of outer semi-axes 1 and `height`, with a law in shear moduli.
     pub fn new(height: f64, thickness: f64, law: Law, elements: Elements) -> Self {
         Self::of(Mesh::new(height, thickness, elements), law)

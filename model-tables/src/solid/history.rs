@@ -11,7 +11,7 @@ mod step;
 pub use error::HistoryError;
 
 use super::Failure;
-use super::equilibrium::Wall;
+use super::equilibrium::SolidWall;
 use super::memory::Memory;
 use super::mesh::Elements;
 use super::press;
@@ -99,7 +99,7 @@ struct Solved {
 /// A press in time, at its latest instant. Lengths in outer radial semi-axes, stresses in relaxed shear moduli.
 #[derive(Clone, Debug)]
 pub struct History {
-    wall: Wall,
+    wall: SolidWall,
     fluid: Fluid,
     /// Outer radial semi-axis, metres.
     length: f64,
@@ -167,7 +167,7 @@ impl History {
             return Err(HistoryError::NoStiffness(modulus));
         }
         let length = design.membrane.radial_semi_axis;
-        let mut wall = Wall::new(
+        let mut wall = SolidWall::new(
             design.membrane.axial_semi_axis / length,
             design.membrane.thickness / length,
             design.law.stiffened(1.0 / modulus),

@@ -1,6 +1,6 @@
 //! Rest states of a solid: inflated with the rim held, or inflated free and then bonded as a membrane is.
 
-use super::equilibrium::Wall;
+use super::equilibrium::SolidWall;
 use super::section;
 use super::state::{Fluid, State};
 use crate::design::Membrane;
@@ -62,7 +62,7 @@ pub struct FreeRest {
 /// # Errors
 /// Those of `free`, and [`SolidError::RestUnsolved`].
 pub fn bonded<E: From<SolidError>>(
-    wall: &mut Wall,
+    wall: &mut SolidWall,
     state: &mut State,
     length: f64,
     stretch: f64,
@@ -148,7 +148,7 @@ fn grow(state: &mut State, layers: usize, stride: usize, [radius, height]: [f64;
 ///
 /// # Errors
 /// [`SolidError::PressureOutOfReach`], [`SolidError::RestUnsolved`].
-pub fn held(wall: &mut Wall, state: &mut State, pascals: f64, unit: f64) -> Result<(), SolidError> {
+pub fn held(wall: &mut SolidWall, state: &mut State, pascals: f64, unit: f64) -> Result<(), SolidError> {
     let pressure = pascals / unit;
     let first = wall.volume(state);
     let mut volume = first;

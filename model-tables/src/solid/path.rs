@@ -14,10 +14,10 @@
 //! from the two of the path that it lies between: whatever else was asked, the same bits come out.
 
 use super::Failure;
-use super::equilibrium::{Tangent, Wall};
+use super::equilibrium::{SolidWall, Tangent};
 use super::section::{self, ContactEdge};
 use super::state::{Balance, Fluid, State};
-use super::station::{Kept, Station, between, force, hermite, work};
+use super::station::{Kept, WallPoint, between, force, hermite, work};
 use crate::limit::EndsBy;
 
 /// The first step, over the height.
@@ -68,7 +68,7 @@ pub enum Stop {
 /// The states of a press, the rest state first.
 #[derive(Clone, Debug)]
 pub struct Path {
-    stations: Vec<Station>,
+    stations: Vec<WallPoint>,
     /// Height of the outer pole at rest.
     height: f64,
     /// The next step.
@@ -90,7 +90,7 @@ impl Path {
         Self {
             work: rest.clone(),
             guess: rest.clone(),
-            stations: vec![Station {
+            stations: vec![WallPoint {
                 kept: Kept {
                     indentation: 0.0,
                     balance: Balance {
@@ -115,7 +115,7 @@ impl Path {
         }
     }
 
-    fn last(&self) -> &Station {
+    fn last(&self) -> &WallPoint {
         &self.stations[self.stations.len() - 1]
     }
 
@@ -128,7 +128,7 @@ impl Path {
     ///
     /// # Errors
     /// [`Stop`].
-    pub fn at(&mut self, wall: &mut Wall, fluid: &Fluid, indentation: f64) -> Result<Kept, Stop> {
+    pub fn at(&mut self, wall: &mut SolidWall, fluid: &Fluid, indentation: f64) -> Result<Kept, Stop> {
         while self.last().kept.indentation < indentation {
             if let Err(ends_by) = self.extend(wall, fluid) {
                 let end = &self.last().kept;
@@ -171,7 +171,7 @@ impl Path {
                 Ok((kept, None)) => return Ok(kept),
                 Ok((kept, Some(tangent))) => {
                     targets.pop();
-                    below = Station { kept, tangent };
+                    below = WallPoint { kept, tangent };
                 }
                 Err(_) if targets.len() <= MOST_HALVINGS => {
                     targets.push(0.5 * (below.kept.indentation + target));
@@ -190,7 +190,7 @@ impl Path {
     }
 
     /// The end of the press: the last state, and why there is none after it.
-    pub fn end(&mut self, wall: &mut Wall, fluid: &Fluid) -> (&Kept, EndsBy) {
+    pub fn end(&mut self, wall: &mut SolidWall, fluid: &Fluid) -> (&Kept, EndsBy) {
         let ends_by = loop {
             if let Err(ends_by) = self.extend(wall, fluid) {
                 break ends_by;
@@ -200,7 +200,7 @@ impl Path {
     }
 
     /// The next state of the path.
-    fn extend(&mut self, wall: &mut Wall, fluid: &Fluid) -> Result<(), EndsBy> {
+    fn extend(&mut self, wall: &mut SolidWall, fluid: &Fluid) -> Result<(), EndsBy> {
         if let Some(ends_by) = self.ends_by {
             return Err(ends_by);
         }
@@ -211,7 +211,7 @@ impl Path {
             let found = self.balance(wall, fluid, &last, next).and_then(|balance| {
                 let tangent = wall.tangent(fluid).ok_or(Rejected::Failed(Failure::Singular))?;
                 let (kept, strain) = self.check(wall, fluid, &last, next, balance, tangent.force, None)?;
-                Ok((Station { kept, tangent }, strain))
+                Ok((WallPoint { kept, tangent }, strain))
             });
             match found {
                 Ok((station, strain)) => {
@@ -250,7 +250,7 @@ impl Path {
     /// A guess for the state at an indentation beyond the last: the parabola with its value and slope, through the one before.
     fn predict(&mut self, indentation: f64) {
         let count = self.stations.len();
-        let Station { kept: last, tangent } = &self.stations[count - 1];
+        let WallPoint { kept: last, tangent } = &self.stations[count - 1];
         let step = indentation - last.indentation;
         self.guess.copy_from(&last.state);
         self.guess.add(step, &tangent.state);
@@ -266,7 +266,7 @@ impl Path {
     }
 
     /// A guess for a state between two.
-    fn interpolate(&mut self, below: &Station, above: &Station, indentation: f64) {
+    fn interpolate(&mut self, below: &WallPoint, above: &WallPoint, indentation: f64) {
         let from = below.kept.indentation;
         let step = above.kept.indentation - from;
         let x = (indentation - from) / step;
@@ -286,9 +286,9 @@ impl Path {
     /// Solves from the guess, above the base; friction goes on from the state below.
     fn balance(
         &mut self,
-        wall: &mut Wall,
+        wall: &mut SolidWall,
         fluid: &Fluid,
-        below: &Station,
+        below: &WallPoint,
         indentation: f64,
     ) -> Result<Balance, Rejected> {
         if indentation >= self.height {
@@ -314,9 +314,9 @@ impl Path {
     )]
     fn check(
         &self,
-        wall: &mut Wall,
+        wall: &mut SolidWall,
         fluid: &Fluid,
-        below: &Station,
+        below: &WallPoint,
         indentation: f64,
         balance: Balance,
         stiffness: f64,

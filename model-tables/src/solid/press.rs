@@ -1,12 +1,12 @@
 //! Pressing a solid fingertip: its rest state, states at asked indentations, the end of the press.
 
 use super::branch;
-use super::equilibrium::Wall;
+use super::equilibrium::SolidWall;
 use super::inflation;
 use super::mesh::Elements;
 use super::object::Surface;
 use super::path::{Path, Stop};
-use super::section::{self, Station};
+use super::section::{self, WallPoint};
 use super::state::{Balance, Fluid, State};
 use super::station::Kept;
 use crate::curve::{Contact, Curve, CurveFailure};
@@ -40,7 +40,7 @@ const CURVE_RANGE: f64 = 500.0;
 /// A solid fingertip at rest, ready to be pressed.
 #[derive(Clone, Debug)]
 pub struct Press {
-    wall: Wall,
+    wall: SolidWall,
     /// Outer radial semi-axis, metres.
     length: f64,
     /// Shear modulus, pascals.
@@ -138,7 +138,7 @@ impl Press {
             .into());
         }
         let law = scaled(&design.law, 1.0 / modulus);
-        let mut wall = Wall::new(
+        let mut wall = SolidWall::new(
             design.membrane.axial_semi_axis / length,
             design.membrane.thickness / length,
             law,
@@ -333,7 +333,7 @@ impl Press {
     ///
     /// # Errors
     /// As [`Press::at_indentation`].
-    pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<Station>, SolidError> {
+    pub fn profile(&mut self, indentation: f64, points: usize) -> Result<Vec<WallPoint>, SolidError> {
         let state = self.at_indentation(indentation)?;
         let kept = &self.asked;
         let intervals = points.max(3) - 1;
@@ -364,7 +364,7 @@ impl Press {
 /// The surface of an object in units of `length`, metres, that touches a wall at rest at its pole.
 pub(super) fn surface(
     object: &Object,
-    wall: &Wall,
+    wall: &SolidWall,
     rest: &State,
     length: f64,
 ) -> Result<Surface, SolidError> {

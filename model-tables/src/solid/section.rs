@@ -2,7 +2,7 @@
 
 use super::element;
 use super::element::positions;
-use super::equilibrium::{Wall, edge};
+use super::equilibrium::{SolidWall, edge};
 use super::mesh::{CREASE, FUNCTIONS, PLACES, WEIGHTS, function, shape, slope};
 use super::state::State;
 use crate::limit::EndsBy;
@@ -22,7 +22,7 @@ pub struct ContactEdge {
 
 /// A station of the meridian: the middle of the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Station {
+pub struct WallPoint {
     /// Meridian's parameter, 0 = pole, pi/2 = rim.
     pub parameter: f64,
     /// Radius of the middle of the wall.
@@ -48,7 +48,7 @@ pub struct Station {
     pub in_contact: bool,
 }
 
-impl Station {
+impl WallPoint {
     /// In metres and newtons per metre, from units of length and stress.
     #[must_use]
     pub fn in_units(self, length: f64, stress: f64) -> Self {
@@ -67,7 +67,7 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 /// Where the outer surface leaves what touches it, whose apex is at the height `plate`.
-pub fn contact_edge(wall: &Wall, state: &State, plate: f64) -> ContactEdge {
+pub fn contact_edge(wall: &SolidWall, state: &State, plate: f64) -> ContactEdge {
     let along = wall.mesh.elements.along;
     let outer = wall.mesh.layers() - 1;
     // From the rim inwards: the first place that touches.
@@ -105,7 +105,7 @@ pub fn contact_edge(wall: &Wall, state: &State, plate: f64) -> ContactEdge {
 
 /// The least radius of a hollow sphere that the outer surface fits in when it touches at the pole: a sphere through the pole and a point
 /// at a radius `r`, lower by `s`, has the radius `(r^2 + s^2) / 2 s`.
-pub fn least_cup(wall: &Wall, state: &State) -> f64 {
+pub fn least_cup(wall: &SolidWall, state: &State) -> f64 {
     let outer = wall.mesh.layers() - 1;
     let height = state.nodes[outer][1];
     (1..wall.mesh.stations())
@@ -118,7 +118,7 @@ pub fn least_cup(wall: &Wall, state: &State) -> f64 {
 }
 
 /// Whether, and with which side, the wall has gone through the base plane; the crease does not count.
-pub fn touches_base(wall: &Wall, state: &State) -> Option<EndsBy> {
+pub fn touches_base(wall: &SolidWall, state: &State) -> Option<EndsBy> {
     let layers = wall.mesh.layers();
     let crease = CREASE * wall.mesh.thickness;
     let below = |layer: usize| {
@@ -137,12 +137,12 @@ pub fn touches_base(wall: &Wall, state: &State) -> Option<EndsBy> {
 }
 
 /// Stretch of the middle of the wall at the pole.
-pub fn pole_stretch(wall: &Wall, state: &State) -> f64 {
+pub fn pole_stretch(wall: &SolidWall, state: &State) -> f64 {
     station(wall, state, 0.0, -1.0).meridional_stretch
 }
 
 /// The station at a share of the parameter's range, 0 = pole, 1 = rim.
-pub fn station(wall: &Wall, state: &State, share: f64, contact: f64) -> Station {
+pub fn station(wall: &SolidWall, state: &State, share: f64, contact: f64) -> WallPoint {
     let mesh = &wall.mesh;
     let parameter = FRAC_PI_2 * share;
     let (column, x) = mesh.column_at(parameter);
@@ -174,7 +174,7 @@ pub fn station(wall: &Wall, state: &State, share: f64, contact: f64) -> Station 
     };
     let (deformed_fibre, undeformed_fibre) = (fibre(&state.nodes), fibre(&mesh.nodes));
     let [meridional, hoop] = forces(wall, state, column, x, [tangent[0] / arc, tangent[1] / arc]);
-    Station {
+    WallPoint {
         parameter,
         radius,
         height: dot(&n, &z),
@@ -192,7 +192,7 @@ pub fn station(wall: &Wall, state: &State, share: f64, contact: f64) -> Station 
 }
 
 /// The largest shear of the places through the wall.
-fn shear(wall: &Wall, state: &State, column: usize, x: f64) -> f64 {
+fn shear(wall: &SolidWall, state: &State, column: usize, x: f64) -> f64 {
     let mesh = &wall.mesh;
     let lean = |positions: &element::Positions, y: f64| {
         let (along, through) = tangents(positions, x, y);
@@ -232,7 +232,7 @@ fn tangents([r, z]: &element::Positions, x: f64, y: f64) -> ([f64; 2], [f64; 2])
 
 /// Force across the wall along the middle's `tangent`, per undeformed length around the middle; and around, per unit of the
 /// place in the column.
-fn forces(wall: &Wall, state: &State, column: usize, x: f64, tangent: [f64; 2]) -> [f64; 2] {
+fn forces(wall: &SolidWall, state: &State, column: usize, x: f64, tangent: [f64; 2]) -> [f64; 2] {
     let mesh = &wall.mesh;
     let through = mesh.elements.through;
     let [middle, _] = edge(mesh, &mesh.nodes, column, through);

@@ -50,7 +50,7 @@ impl Kept {
 
 /// A state of the path, and how it goes on.
 #[derive(Clone, Debug)]
-pub(super) struct Station {
+pub(super) struct WallPoint {
     pub(super) kept: Kept,
     pub(super) tangent: Tangent,
 }
@@ -67,8 +67,8 @@ pub(super) fn hermite(x: f64) -> [f64; 4] {
 }
 
 /// Work of plate and fluid from a state of the path to one with this derivative of its force.
-pub(super) fn work(from: &Station, to: &Kept, stiffness: f64, fluid: &Fluid) -> f64 {
-    let Station { kept: from, tangent } = from;
+pub(super) fn work(from: &WallPoint, to: &Kept, stiffness: f64, fluid: &Fluid) -> f64 {
+    let WallPoint { kept: from, tangent } = from;
     let step = to.indentation - from.indentation;
     let (first, last) = (from.balance.force, to.balance.force);
     let plate = if from.indentation > 0.0 {
@@ -85,10 +85,10 @@ pub(super) fn work(from: &Station, to: &Kept, stiffness: f64, fluid: &Fluid) -> 
 
 /// Value and slope of the cubic through two states of the path, from their values and slopes.
 pub(super) fn between(
-    below: &Station,
-    above: &Station,
+    below: &WallPoint,
+    above: &WallPoint,
     indentation: f64,
-    of: impl Fn(&Station) -> [f64; 2],
+    of: impl Fn(&WallPoint) -> [f64; 2],
 ) -> [f64; 2] {
     let from = below.kept.indentation;
     let step = above.kept.indentation - from;
@@ -102,6 +102,6 @@ pub(super) fn between(
 }
 
 /// Force and its derivative.
-pub(super) fn force(station: &Station) -> [f64; 2] {
+pub(super) fn force(station: &WallPoint) -> [f64; 2] {
     [station.kept.balance.force, station.tangent.force]
 }

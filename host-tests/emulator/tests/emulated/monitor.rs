@@ -8,7 +8,7 @@ use fingertip::link::command::Command;
 use fingertip::status::Status;
 use monitor::link::{Address, Link, LinkEvent};
 use monitor::readings::{Connection, LiveReading, Monitor};
-use monitor::view::{self, Surroundings};
+use monitor::view::{self, ViewContext};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use std::sync::atomic::Ordering;
@@ -53,7 +53,7 @@ impl Program {
 
     fn screen(&self) -> String {
         let mut terminal = Terminal::new(TestBackend::new(100, 30)).expect("memory");
-        let surroundings = Surroundings::default();
+        let surroundings = ViewContext::default();
         terminal
             .draw(|frame| view::draw(frame, &self.monitor, &surroundings, self.start.elapsed()))
             .expect("memory");

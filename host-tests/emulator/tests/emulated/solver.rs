@@ -7,7 +7,7 @@ use emulator::plant::Plant;
 use emulator::scenario::Scenario;
 use host_tests::assert_readme_figure;
 use model_tables::design_file::DesignFile;
-use probes::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, State};
+use probes::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, SolverState};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -31,7 +31,7 @@ struct States {
 impl Listener for States {
     fn hear(&mut self, byte: u8, _moment: Moment, _plant: &Plant) -> ControlFlow<()> {
         self.bytes.push(byte);
-        if self.bytes.len() < LENGTH * State::BYTES {
+        if self.bytes.len() < LENGTH * SolverState::BYTES {
             ControlFlow::Continue(())
         } else {
             ControlFlow::Break(())
@@ -39,7 +39,7 @@ impl Listener for States {
     }
 }
 
-fn on_the_host() -> [State; LENGTH] {
+fn on_the_host() -> [SolverState; LENGTH] {
     let mut room = Box::new(Room::new(DESIGN.law));
     let (rest, press) = solver_states::rest(&mut room).expect("it inflates");
     let mut states = [rest; LENGTH];
@@ -61,9 +61,12 @@ fn the_full_model_gives_the_same_bits_on_the_chip_and_has_its_price() {
     assert_eq!(outcome.gaps, Vec::<String>::new());
 
     let (records, rest) = outcome.listener.bytes.as_chunks();
-    let chip: Vec<State> = records.iter().map(|&bytes| State::from_bytes(bytes)).collect();
+    let chip: Vec<SolverState> = records
+        .iter()
+        .map(|&bytes| SolverState::from_bytes(bytes))
+        .collect();
     assert_eq!((chip.len(), rest.len(), outcome.calls.len()), (LENGTH, 0, LENGTH));
-    let bits = |state: &State| (state.pressure.to_bits(), state.force.to_bits(), state.iterations);
+    let bits = |state: &SolverState| (state.pressure.to_bits(), state.force.to_bits(), state.iterations);
     for (i, (chip, host)) in chip.iter().zip(&on_the_host()).enumerate() {
         assert_eq!(
             bits(chip),

@@ -10,7 +10,7 @@ mod probe {
     use embassy_time::Timer;
     use fingertip::board::Board;
     use panic_probe as _;
-    use probes::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, State};
+    use probes::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, SolverState};
     use static_cell::ConstStaticCell;
 
     /// All that a press needs, where it stays: the stack holds no second one.
@@ -42,7 +42,7 @@ mod probe {
     }
 
     /// A state that is not found ends the probe: its bytes never come.
-    fn states(room: &mut Room) -> [State; LENGTH] {
+    fn states(room: &mut Room) -> [SolverState; LENGTH] {
         let mut states = [const { None }; LENGTH];
         let mut room = Some(room);
         let mut press = None;
@@ -62,7 +62,7 @@ mod probe {
 
     /// What the host counts, by its name.
     #[inline(never)]
-    fn measured(solve: &mut dyn FnMut() -> Option<State>) -> Option<State> {
+    fn measured(solve: &mut dyn FnMut() -> Option<SolverState>) -> Option<SolverState> {
         solve()
     }
 }

@@ -224,7 +224,7 @@ fn judge_solids(arguments: &DrawArguments) -> bool {
 /// Whether no reading with status ok was wrong; a line for each life with one.
 fn judge_lives(arguments: &LivesArguments) -> bool {
     let count = arguments.lives + arguments.days;
-    let mut kinds = [lives::Tally::default(); tip::TRANSDUCERS.len()];
+    let mut kinds = [lives::LivesTally::default(); tip::TRANSDUCERS.len()];
     for index in arguments.life.map_or(0..count, |life| life..life + 1) {
         let length = if index < arguments.lives {
             [60.0, 600.0]
@@ -248,7 +248,7 @@ fn judge_lives(arguments: &LivesArguments) -> bool {
         "| transducer | lives | resets | samples | ok, % | wrong | wrong where a sample was replaced | error over deviation: RMS | at most |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    let mut all = lives::Tally::default();
+    let mut all = lives::LivesTally::default();
     for ((name, _), tally) in tip::TRANSDUCERS.iter().zip(&kinds) {
         println!("| {name} | {tally}");
         all.add(tally);

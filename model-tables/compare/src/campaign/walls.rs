@@ -42,7 +42,7 @@ pub struct Evidence {
 
 /// Every rung of one wall.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct MeasuredWall {
     /// The wall.
     pub case: RandomWall,
     /// The closed form of the membrane's light contact, where it has all states.
@@ -109,7 +109,7 @@ impl RandomWall {
     }
 
     /// Solves every rung.
-    pub fn measure(self) -> Measured {
+    pub fn measure(self) -> MeasuredWall {
         let wanted = self.wanted(1.0);
         let mut rungs = LADDER.map(|kind| kind.applies(&self.design).then(|| self.solve(kind, &wanted)));
         let truth = match &rungs[LADDER.len() - 1] {
@@ -127,7 +127,7 @@ impl RandomWall {
             .then(|| self.closed_form(&wanted))
             .flatten()
             .map(|contacts| wanted.distance(&contacts, &truth));
-        Measured {
+        MeasuredWall {
             case: self,
             closed_form,
             rungs,
@@ -158,7 +158,7 @@ impl RandomWall {
     }
 }
 
-impl Measured {
+impl MeasuredWall {
     /// Whether the refined solid has every state.
     pub fn has_truth(&self) -> bool {
         self.rungs[LADDER.len() - 1]

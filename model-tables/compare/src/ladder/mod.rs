@@ -1,7 +1,7 @@
 //! `designer ladder`: the rungs over random walls, and what the rule of `auto` lets through.
 
 use crate::campaign::scaling;
-use crate::campaign::walls::{self, ASKED, Measured};
+use crate::campaign::walls::{self, ASKED, MeasuredWall};
 use model_tables::design::RestBy;
 use model_tables::model::choice::LADDER;
 use output::drawing::{
@@ -60,7 +60,7 @@ pub fn run(arguments: &LadderArguments) -> Result<CommandAnswer, Refusal> {
     }
     let scaling = scaling::measure().map_err(|error| Refusal(error.to_string()))?;
     progress.finish();
-    let judged: Vec<&Measured> = measured.iter().filter(|wall| wall.has_truth()).collect();
+    let judged: Vec<&MeasuredWall> = measured.iter().filter(|wall| wall.has_truth()).collect();
     let mut rows = Rows::new(COLUMNS);
     for asked in ASKED {
         let taken: Vec<_> = judged.iter().map(|wall| wall.take(asked)).collect();
@@ -100,14 +100,14 @@ pub fn run(arguments: &LadderArguments) -> Result<CommandAnswer, Refusal> {
     Ok(CommandAnswer { rows, notes })
 }
 
-fn pre_stretch(wall: &Measured) -> f64 {
+fn pre_stretch(wall: &MeasuredWall) -> f64 {
     match wall.case.design.rest {
         RestBy::PoleStretch(stretch) => stretch - 1.0,
         _ => 0.0,
     }
 }
 
-fn csv(measured: &[Measured]) -> String {
+fn csv(measured: &[MeasuredWall]) -> String {
     let mut text =
         "design,outer_radius_mm,outer_height_mm,wall_mm,pole_stretch,model,error,seconds_a_state,outcome\n"
             .to_owned();
@@ -153,7 +153,7 @@ fn panel(place: usize, x: [f64; 2], y: [f64; 2]) -> Panel {
     }
 }
 
-fn svg(measured: &[&Measured]) -> String {
+fn svg(measured: &[&MeasuredWall]) -> String {
     let width = LEFT + (1 + MAPPED.len()) as f64 * (PANEL[0] + GAP);
     let mut drawing = Drawing::new(width, TOP + PANEL[1] + 60.0);
     let title = format!("The ladder of models over {} random walls", measured.len());
@@ -174,7 +174,7 @@ fn svg(measured: &[&Measured]) -> String {
 }
 
 /// Error against time.
-fn costs(drawing: &mut Drawing, measured: &[&Measured]) {
+fn costs(drawing: &mut Drawing, measured: &[&MeasuredWall]) {
     let panel = panel(0, [-4.0, 0.0], [-4.0, 0.0]);
     panel.draw(drawing, [1, 1], [&power, &power]);
     for wall in measured {
@@ -204,7 +204,7 @@ fn unstretched(index: u64) -> f64 {
 }
 
 /// What `auto` takes.
-fn map(drawing: &mut Drawing, place: usize, asked: f64, measured: &[&Measured]) {
+fn map(drawing: &mut Drawing, place: usize, asked: f64, measured: &[&MeasuredWall]) {
     let panel = panel(place, [-2.2, -0.4], [-2.7, 0.1]);
     panel.draw(drawing, [1, 1], [&power, &power]);
     let mut worst = 0.0_f64;

@@ -2,7 +2,7 @@
 
 use super::pre_stretch;
 use crate::campaign::scaling::{self, Cost};
-use crate::campaign::walls::{ASKED, Evidence, FROM, Measured};
+use crate::campaign::walls::{ASKED, Evidence, FROM, MeasuredWall};
 use model_tables::model::choice::{LADDER, PARTS};
 use std::fmt::Write as _;
 
@@ -42,12 +42,12 @@ fn percent(error: f64) -> String {
     format!("{:.digits$}", 100.0 * error)
 }
 
-fn evidence(wall: &Measured, place: usize) -> Option<&Evidence> {
+fn evidence(wall: &MeasuredWall, place: usize) -> Option<&Evidence> {
     wall.rungs[place].as_ref()
 }
 
 /// The larger relative error of force and pressure rise at one indentation.
-fn error_at(wall: &Measured, place: usize, part: usize) -> Option<f64> {
+fn error_at(wall: &MeasuredWall, place: usize, part: usize) -> Option<f64> {
     let truth = evidence(wall, LADDER.len() - 1)?.contacts.as_ref().ok()?;
     let found = evidence(wall, place)?.contacts.as_ref().ok()?;
     let (end, truth, found) = (truth.last()?, &truth[part], &found[part]);
@@ -59,7 +59,7 @@ fn error_at(wall: &Measured, place: usize, part: usize) -> Option<f64> {
     )))
 }
 
-pub(super) fn markdown(measured: &[&Measured], left_out: usize, scaling: &[Cost]) -> String {
+pub(super) fn markdown(measured: &[&MeasuredWall], left_out: usize, scaling: &[Cost]) -> String {
     let refined = LADDER.len() - 1;
     let mut text = format!(
         "# Which model a wall needs\n\n\
@@ -91,7 +91,7 @@ pub(super) fn markdown(measured: &[&Measured], left_out: usize, scaling: &[Cost]
     text
 }
 
-fn costs(text: &mut String, measured: &[&Measured]) {
+fn costs(text: &mut String, measured: &[&MeasuredWall]) {
     text.push_str(
         "\n## Error and time\n\nTime is that of a state on one core of the machine that wrote the page, rest state included.\n\n\
          | model | walls | median error, % | nine of ten, % | largest, % | median time, ms |\n|---|---|---|---|---|---|\n",
@@ -144,7 +144,7 @@ fn by_elements(text: &mut String, scaling: &[Cost]) {
     }
 }
 
-fn by_wall(text: &mut String, measured: &[&Measured]) {
+fn by_wall(text: &mut String, measured: &[&MeasuredWall]) {
     let _ = write!(text, "| pole stretch \\ wall over radius |");
     for (name, _) in WALLS {
         let _ = write!(text, " {name} |");
@@ -155,7 +155,7 @@ fn by_wall(text: &mut String, measured: &[&Measured]) {
     for (row, (name, _)) in STRETCHES.iter().enumerate() {
         let _ = write!(text, "| {name} |");
         for column in 0..WALLS.len() {
-            let here: Vec<&&Measured> = measured
+            let here: Vec<&&MeasuredWall> = measured
                 .iter()
                 .filter(|wall| {
                     let outer = wall.case.design.membrane;
@@ -173,7 +173,7 @@ fn by_wall(text: &mut String, measured: &[&Measured]) {
     }
 }
 
-fn by_indentation(text: &mut String, measured: &[&Measured]) {
+fn by_indentation(text: &mut String, measured: &[&MeasuredWall]) {
     text.push_str("| model \\ indentation over the deepest |");
     for part in PARTS {
         let _ = write!(text, " {part} |");
@@ -206,7 +206,7 @@ fn by_indentation(text: &mut String, measured: &[&Measured]) {
     }
 }
 
-fn choices(text: &mut String, measured: &[&Measured]) {
+fn choices(text: &mut String, measured: &[&MeasuredWall]) {
     text.push_str(
         "\n## What `kind = \"auto\"` takes\n\n\
          The cheapest rung that differs from the solid 2 x 60 by no more than what is allowed less that solid's own error (0.6 %; \

@@ -1,7 +1,7 @@
 //! The target file of a sizing (TOML).
 
 use model_tables::design_file::bounds::Bounds;
-use model_tables::design_file::section::{Fault, Section, line_at};
+use model_tables::design_file::section::{KeyFault, Section, line_at};
 use model_tables::design_file::{DesignFileError, Problem};
 use model_tables::material::preset::{PRESETS, Preset};
 use std::path::Path;
@@ -67,7 +67,7 @@ impl Target {
     }
 }
 
-fn parse(text: &str) -> Result<Target, Fault> {
+fn parse(text: &str) -> Result<Target, KeyFault> {
     const LENGTH: Bounds = Bounds::above(0.0, 100.0, "mm");
     const NAME: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
     let document = DeTable::parse(text).map_err(|error| {
@@ -108,7 +108,7 @@ fn parse(text: &str) -> Result<Target, Fault> {
         .texts("presets", &allowed)?
         .into_iter()
         .map(|name| Preset::named(name).ok_or_else(|| listed.refuse("presets", &allowed)))
-        .collect::<Result<_, Fault>>()?;
+        .collect::<Result<_, KeyFault>>()?;
     listed.finish()?;
     let mut transducer = root.needed_sub("transducer", "range_kpa")?;
     let range_kpa = transducer.needed_pair("range_kpa", Bounds::within(-101.325, 10_000.0, "kPa"))?;

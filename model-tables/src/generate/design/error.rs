@@ -31,7 +31,7 @@ pub enum GenerateError {
     /// A pressure lies outside the transducer's range.
     OutOfRange {
         /// Which pressure.
-        state: State,
+        state: DesignState,
         /// The gauge pressure, kilopascals.
         pressure: f64,
         /// Gauge pressures that the transducer reads in any air, kilopascals.
@@ -77,7 +77,7 @@ pub enum GenerateError {
 
 /// A state whose pressure the transducer has to read.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum State {
+pub enum DesignState {
     /// At rest.
     Rest,
     /// At `max_indentation_mm`.
@@ -113,8 +113,8 @@ impl fmt::Display for GenerateError {
                 absolute,
             } => {
                 match state {
-                    State::Rest => write!(f, "the rest pressure")?,
-                    State::Pressed { indentation } => {
+                    DesignState::Rest => write!(f, "the rest pressure")?,
+                    DesignState::Pressed { indentation } => {
                         write!(f, "the pressure at press.max_indentation_mm = {indentation}")?;
                     }
                 }
@@ -132,8 +132,8 @@ impl fmt::Display for GenerateError {
                     )?,
                 }
                 match state {
-                    State::Rest => write!(f, "choose another transducer or rest state"),
-                    State::Pressed { .. } => {
+                    DesignState::Rest => write!(f, "choose another transducer or rest state"),
+                    DesignState::Pressed { .. } => {
                         write!(f, "choose another transducer, or press less deep")
                     }
                 }

@@ -4,7 +4,7 @@ use super::Generated;
 
 /// What tables are held to.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Limit {
+pub enum AccuracyLimit {
     /// What `[accuracy]` asks.
     Accuracy,
     /// Half of what the transducer tells apart, which is coarser.
@@ -13,7 +13,7 @@ pub enum Limit {
     Integers,
 }
 
-impl Limit {
+impl AccuracyLimit {
     /// In a word, as the certificate has it.
     pub const fn word(self) -> &'static str {
         match self {
@@ -26,17 +26,17 @@ impl Limit {
 
 impl Generated {
     /// What force and indentation are held to.
-    pub fn limits(&self) -> [Limit; 2] {
+    pub fn limits(&self) -> [AccuracyLimit; 2] {
         let certificate = &self.certified.certificate;
         let allowed = [&certificate.force, &certificate.indentation].map(|errors| errors.allowed_percent);
         let asked = self.asked_percent();
         [0, 1].map(|output| {
             if allowed[output] <= asked[output] {
-                Limit::Accuracy
+                AccuracyLimit::Accuracy
             } else if allowed[output] <= self.floor() {
-                Limit::Transducer
+                AccuracyLimit::Transducer
             } else {
-                Limit::Integers
+                AccuracyLimit::Integers
             }
         })
     }
@@ -44,10 +44,10 @@ impl Generated {
     /// One line about the accuracy that `[accuracy]` asks and the tables do not reach; nothing where they do.
     pub fn shortfall(&self) -> Option<String> {
         let limits = self.limits();
-        if limits == [Limit::Accuracy; 2] {
+        if limits == [AccuracyLimit::Accuracy; 2] {
             return None;
         }
-        let remedy = if limits.contains(&Limit::Integers) {
+        let remedy = if limits.contains(&AccuracyLimit::Integers) {
             "allow more in [accuracy], or cover less with press.max_indentation_mm"
         } else {
             "allow more in [accuracy], or choose a finer transducer"
@@ -80,9 +80,9 @@ impl Generated {
             self.floor()
         );
         let limits = self.limits();
-        if limits == [Limit::Accuracy; 2] {
+        if limits == [AccuracyLimit::Accuracy; 2] {
             format!("held to the {force} % and {indentation} % that [accuracy] asks; {tells}")
-        } else if limits.contains(&Limit::Integers) {
+        } else if limits.contains(&AccuracyLimit::Integers) {
             let certificate = &self.certified.certificate;
             format!(
                 "[accuracy] asks {force} % and {indentation} %, but no tables keep within that: these keep within {} % and {} %",

@@ -3,8 +3,8 @@
 mod error;
 mod limit;
 
-pub use error::{GenerateError, State};
-pub use limit::Limit;
+pub use error::{DesignState, GenerateError};
+pub use limit::AccuracyLimit;
 
 use super::object::{NoObjects, SolvedObjects, plate_of};
 use super::{Certified, NoTables, tables_with};
@@ -179,10 +179,10 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         let (rest_pressure, curve, end) = pressed(&mut rung, design, &transducer, indentation)?;
         (rest_pressure, curve, end, Some(rung))
     };
-    in_range(&transducer, State::Rest, rest_pressure)?;
+    in_range(&transducer, DesignState::Rest, rest_pressure)?;
     in_range(
         &transducer,
-        State::Pressed { indentation },
+        DesignState::Pressed { indentation },
         rest_pressure + end.pressure_rise,
     )?;
     is_felt(&transducer, end.pressure_rise)?;
@@ -301,11 +301,11 @@ fn pressed(
     let deepest = indentation * 1e-3;
     let rest_pressure = calibration.pressure_read(press.rest_pressure());
     // What cannot be read is refused before the curve is solved.
-    in_range(transducer, State::Rest, rest_pressure)?;
+    in_range(transducer, DesignState::Rest, rest_pressure)?;
     let end = press.contact_at(deepest).map_err(GenerateError::Model)?;
     in_range(
         transducer,
-        State::Pressed { indentation },
+        DesignState::Pressed { indentation },
         calibration.pressure_read(press.rest_pressure() + end.pressure_rise),
     )?;
     let curve = match press.curve(deepest * BEYOND) {
@@ -337,7 +337,7 @@ fn measured(data: &DataCurve, deepest: f64) -> Result<Curve, GenerateError> {
     Curve::new(data.points(deepest)).map_err(|error| GenerateError::Curve(CurveFailure::Shape(error)))
 }
 
-fn in_range(transducer: &TransducerSection, state: State, pascals: f64) -> Result<(), GenerateError> {
+fn in_range(transducer: &TransducerSection, state: DesignState, pascals: f64) -> Result<(), GenerateError> {
     let pressure = pascals * 1e-3;
     let range = transducer.gauge_range_kpa();
     if pressure >= range[0] && pressure <= range[1] {

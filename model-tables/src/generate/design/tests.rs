@@ -443,8 +443,8 @@ fn the_choice_is_justified_by_what_the_transducer_tells() {
         from_design(design).expect("tables")
     };
     let (coarse, fine) = (made(50.0), made(1.0));
-    assert_eq!(coarse.limits(), [Limit::Transducer; 2]);
-    assert_eq!(fine.limits(), [Limit::Accuracy; 2]);
+    assert_eq!(coarse.limits(), [AccuracyLimit::Transducer; 2]);
+    assert_eq!(fine.limits(), [AccuracyLimit::Accuracy; 2]);
     // 25 Pa of the 7.9 kPa that this press rises by are 0.32 %, and the force grows a little faster than the pressure.
     let [force, indentation] = coarse.certified.resolvable_percent;
     assert!(

@@ -4,7 +4,7 @@ use super::NEVER;
 use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::generate::TABLE_VERSION;
-use crate::generate::design::{Generated, Limit};
+use crate::generate::design::{AccuracyLimit, Generated};
 use crate::generate::object::ObjectTables;
 use crate::generate::tally::Errors;
 use crate::model::own_error::OwnError;
@@ -188,8 +188,8 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
     let transducer = &generated.transducer;
     let bits = tables.layout.pressure_fraction_bits;
     let resolvable = generated.certified.resolvable_percent;
-    let held_to = generated.limits().map(Limit::word);
-    let integers = if held_to.contains(&Limit::Integers.word()) {
+    let held_to = generated.limits().map(AccuracyLimit::word);
+    let integers = if held_to.contains(&AccuracyLimit::Integers.word()) {
         ", or \"integers\" where no tables reach it"
     } else {
         ""

@@ -21,7 +21,7 @@ use crate::membrane::history::Predictor;
 use crate::membrane::press::workspace::Workspace;
 use crate::membrane::rest::Branch;
 use crate::membrane::solution::Solution;
-use crate::membrane::state::{self, MeridianPoint, PressedState, Shape, UnitScale};
+use crate::membrane::state::{self, MeridianPoint, PressShape, PressedState, UnitScale};
 use crate::object::{Friction, Object, Shape as ObjectShape};
 use core::f64::consts::{FRAC_PI_2, PI};
 use way::Stop;
@@ -71,7 +71,7 @@ pub struct Press<L = Law, const S: usize = STAGES> {
     scale: UnitScale,
     compliance: f64,
     rest: Graded<S>,
-    rest_shape: Shape,
+    rest_shape: PressShape,
     branch: Branch,
     history: Predictor<S>,
     limit: Option<Result<Limit, MembraneError>>,
@@ -167,7 +167,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     }
 
     /// The rest state.
-    pub fn rest(&self) -> &Shape {
+    pub fn rest(&self) -> &PressShape {
         &self.rest_shape
     }
 

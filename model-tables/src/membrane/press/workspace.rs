@@ -12,7 +12,7 @@ use crate::membrane::history::Predictor;
 use crate::membrane::inflation::End;
 use crate::membrane::press::{MembraneError, Press, STAGES};
 use crate::membrane::rest::{Branch, RestFailure, RestQuantity};
-use crate::membrane::state::{self, Shape, UnitScale};
+use crate::membrane::state::{self, PressShape, UnitScale};
 
 /// Memory for a press of a membrane of the law `L`, with `S` Gauss points an element.
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ impl<L, const S: usize> Workspace<L, S> {
                 scale: UnitScale::BLANK,
                 compliance: 0.0,
                 rest: Graded::BLANK,
-                rest_shape: Shape::BLANK,
+                rest_shape: PressShape::BLANK,
                 branch: Branch::Only,
                 history: Predictor::new(),
                 limit: None,

@@ -10,10 +10,10 @@ mod path;
 
 pub use error::{DiscEnd, DiscError, DiscLimit};
 
-use super::equilibrium::Wall;
+use super::equilibrium::SolidWall;
 use super::mesh::{Elements, Mesh};
 use super::object::Surface;
-use super::section::{self, Station};
+use super::section::{self, WallPoint};
 use crate::material::{Hyperelastic as _, Law};
 use crate::object::Friction;
 use core::f64::consts::PI;
@@ -99,7 +99,7 @@ impl DiscState {
 /// A clamped disc, and the states found so far.
 #[derive(Clone, Debug)]
 pub struct Disc {
-    wall: Wall,
+    wall: SolidWall,
     /// Its radius, metres.
     length: f64,
     /// Its shear modulus, pascals.
@@ -132,7 +132,7 @@ impl Disc {
         if !(is_disc && plate >= thickness && stiffness > 0.0 && stiffness.is_finite()) {
             return Err(DiscError::NotADisc { design: *design });
         }
-        let mut wall = Wall::of(
+        let mut wall = SolidWall::of(
             Mesh::disc(thickness, elements),
             design.law.stiffened(1.0 / modulus),
         );
@@ -206,7 +206,7 @@ impl Disc {
     ///
     /// # Errors
     /// As [`Disc::at_pressure`].
-    pub fn profile(&mut self, pressure: f64, points: usize) -> Result<Vec<Station>, DiscError> {
+    pub fn profile(&mut self, pressure: f64, points: usize) -> Result<Vec<WallPoint>, DiscError> {
         let kept = self.solve(pressure)?;
         let contact = section::contact_edge(&self.wall, &kept.state, self.path.plate()).parameter;
         let intervals = points.max(3) - 1;

@@ -6,7 +6,7 @@
 
 use super::error::DiscEnd;
 use crate::solid::Failure;
-use crate::solid::equilibrium::Wall;
+use crate::solid::equilibrium::SolidWall;
 use crate::solid::mesh::CREASE;
 use crate::solid::state::{Balance, Fluid, State};
 use crate::solid::station::hermite;
@@ -98,7 +98,7 @@ pub(super) struct Path {
 
 impl Path {
     /// The undeformed state alone. `None` if it has no stiffness.
-    pub(super) fn new(wall: &mut Wall, plate: f64) -> Option<Self> {
+    pub(super) fn new(wall: &mut SolidWall, plate: f64) -> Option<Self> {
         let state = wall.undeformed();
         let tangent = wall.follow(&state, plate)?;
         let fastest = tangent.nodes.as_flattened().iter().map(|x| x.abs());
@@ -130,7 +130,7 @@ impl Path {
     }
 
     /// The state at a pressure.
-    pub(super) fn at(&mut self, wall: &mut Wall, pressure: f64) -> Result<Kept, Stop> {
+    pub(super) fn at(&mut self, wall: &mut SolidWall, pressure: f64) -> Result<Kept, Stop> {
         if let Some((last, ends_by)) = self.end(wall, pressure)
             && last < pressure
         {
@@ -168,7 +168,7 @@ impl Path {
     }
 
     /// The end of the path, its pressure and why, if that is not beyond a pressure.
-    pub(super) fn end(&mut self, wall: &mut Wall, highest: f64) -> Option<(f64, DiscEnd)> {
+    pub(super) fn end(&mut self, wall: &mut SolidWall, highest: f64) -> Option<(f64, DiscEnd)> {
         while self.ends_by.is_none() && (self.stations.len() == 1 || self.last().pressure() < highest) {
             self.extend(wall);
         }
@@ -176,7 +176,7 @@ impl Path {
     }
 
     /// The next state of the path, or its end.
-    fn extend(&mut self, wall: &mut Wall) {
+    fn extend(&mut self, wall: &mut SolidWall) {
         loop {
             let last = self.last();
             let next = last.pressure() + self.step;
@@ -225,7 +225,7 @@ impl Path {
     /// since. Beside the state, how much of what is allowed it takes.
     fn solve(
         &self,
-        wall: &mut Wall,
+        wall: &mut SolidWall,
         below: &Kept,
         pressure: f64,
         guess: State,
@@ -298,7 +298,7 @@ fn between(below: &Kept, above: &Kept, pressure: f64) -> State {
 }
 
 /// Whether the outer face has gone through the frame; the crease at the rim does not count.
-fn touches_frame(wall: &Wall, state: &State) -> bool {
+fn touches_frame(wall: &SolidWall, state: &State) -> bool {
     let mesh = &wall.mesh;
     let crease = CREASE * mesh.thickness;
     (0..mesh.stations()).any(|station| {
@@ -309,7 +309,7 @@ fn touches_frame(wall: &Wall, state: &State) -> bool {
 }
 
 /// Why a path has no state after this one.
-fn reason(wall: &Wall, last: &Kept, rejected: Rejected) -> DiscEnd {
+fn reason(wall: &SolidWall, last: &Kept, rejected: Rejected) -> DiscEnd {
     let growth = last.compliance * last.pressure() / last.balance.volume;
     match rejected {
         Rejected::TouchesFrame => DiscEnd::BulgeTouchesFrame,

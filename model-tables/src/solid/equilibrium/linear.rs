@@ -1,11 +1,11 @@
 //! The linear equations of a Newton iteration: set up, factored, solved.
 
-use super::{Tangent, Wall, edge, edge_nodes};
+use super::{SolidWall, Tangent, edge, edge_nodes};
 use crate::solid::fluid;
 use crate::solid::front::Fronts;
 use crate::solid::state::{Fluid, State};
 
-impl Wall {
+impl SolidWall {
     /// Sets up the linear equations of wall and fluid at a state.
     pub(super) fn set_up(&mut self, state: &State) {
         let station = 2 * self.mesh.stride();

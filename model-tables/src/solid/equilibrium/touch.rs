@@ -1,12 +1,12 @@
 //! What touches the wall: the object's action on the outer edges, and its friction from step to step.
 
-use super::{Wall, edge};
+use super::{SolidWall, edge};
 use crate::object::Friction;
 use crate::solid::friction::Sliding;
 use crate::solid::object::{Action, Surface};
 use crate::solid::state::State;
 
-impl Wall {
+impl SolidWall {
     /// The object's action on a column's outer edge, if it is near.
     pub(super) fn action(&self, state: &State, column: usize, apex: f64) -> Option<Action> {
         let place = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);

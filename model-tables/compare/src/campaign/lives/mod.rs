@@ -1,7 +1,7 @@
 //! Random lives of fingertips: whatever moves the pressure within the assumptions of a zero, no reading with status ok is off by more
 //! than the zero's bound and three deviations.
 //!
-//! [`Life::draw`] -> [`Life::live`] sample by sample through the signal path of the firmware -> [`Tally`]. No time is skipped.
+//! [`Life::draw`] -> [`Life::live`] sample by sample through the signal path of the firmware -> [`LivesTally`]. No time is skipped.
 
 pub mod tip;
 pub mod world;
@@ -10,7 +10,7 @@ use model_tables::constants::{AirReference, Quantity, Transducer, TransducerKind
 use model_tables::random::Random;
 use std::fmt;
 use tip::{TRANSDUCERS, Tip};
-use world::{Motions, World};
+use world::{LifeWorld, Motions};
 
 /// A reading with status ok that is further off than is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub struct Wrong {
 
 /// What came of some lives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tally {
+pub struct LivesTally {
     /// Lives.
     pub lives: u64,
     /// Resets by a sagging supply.
@@ -54,7 +54,7 @@ pub struct Tally {
     pub most_deviations: f64,
 }
 
-impl Tally {
+impl LivesTally {
     /// A reading with status ok: its error over its deviation, how far the error is beyond what is allowed, and whether a sample was
     /// replaced.
     fn judge(&mut self, deviations: f64, beyond: f64, replaced: bool) {
@@ -94,7 +94,7 @@ impl Tally {
     }
 }
 
-impl fmt::Display for Tally {
+impl fmt::Display for LivesTally {
     /// A row of the table in FAULTS.md.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
@@ -184,15 +184,15 @@ impl Life {
     }
 
     /// Lives it.
-    pub fn live(&self) -> Tally {
-        let mut tally = Tally {
+    pub fn live(&self) -> LivesTally {
+        let mut tally = LivesTally {
             lives: 1,
-            ..Tally::default()
+            ..LivesTally::default()
         };
         let (_, part) = TRANSDUCERS[self.transducer];
         let tip = Tip::new(part, self.zero);
         let absolute = part.quantity == Quantity::Absolute;
-        let mut world = World::new(tip, self.motions, Random(self.random), &mut tally);
+        let mut world = LifeWorld::new(tip, self.motions, Random(self.random), &mut tally);
         let room = world.surrounding;
         // Long lives are slow ones.
         let slowness = (self.length / 600.0).max(1.0).sqrt();
@@ -242,7 +242,7 @@ impl Life {
 }
 
 /// The supply sags under a press or none.
-fn sag_in_a_grasp(world: &mut World<'_>, much: f64, long: f64) {
+fn sag_in_a_grasp(world: &mut LifeWorld<'_>, much: f64, long: f64) {
     let rise = if much < 0.3 { 0.0 } else { 9_000.0 * much };
     world.run(0.2, |since| rise * since / 0.2);
     world.run(1.0, |_| rise);

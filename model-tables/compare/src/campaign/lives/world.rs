@@ -1,7 +1,7 @@
 //! One fingertip with everything that moves its pressure beside a press, sample by sample.
 
 use super::tip::{FRACTION_BITS, REST, Tip};
-use super::{Tally, Wrong};
+use super::{LivesTally, Wrong};
 use fingertip::signal::calibration::Calibration;
 use fingertip::signal::design::Design as _;
 use fingertip::signal::pipeline::Pipeline;
@@ -42,7 +42,7 @@ pub struct Motions {
 
 /// The world of one life.
 #[derive(Debug)]
-pub struct World<'a> {
+pub struct LifeWorld<'a> {
     /// What is done to it.
     pub random: Random,
     /// What moves the pressure.
@@ -57,7 +57,7 @@ pub struct World<'a> {
     pub surrounding: f64,
     tip: Tip,
     pipeline: Pipeline<Tip>,
-    tally: &'a mut Tally,
+    tally: &'a mut LivesTally,
     /// Microseconds.
     now: u64,
     period: u64,
@@ -83,9 +83,9 @@ const NORMALS: usize = 4096;
 /// Samples between two steps of what changes slowly.
 const SLOW: u32 = 16;
 
-impl<'a> World<'a> {
+impl<'a> LifeWorld<'a> {
     /// A fingertip that is switched on untouched, and told so.
-    pub fn new(tip: Tip, motions: Motions, mut random: Random, tally: &'a mut Tally) -> Self {
+    pub fn new(tip: Tip, motions: Motions, mut random: Random, tally: &'a mut LivesTally) -> Self {
         let gaussian = (0..NORMALS).map(|_| random.normal()).collect();
         let absolute = tip.parameters().constants.transducer.quantity == Quantity::Absolute;
         let air = if absolute {

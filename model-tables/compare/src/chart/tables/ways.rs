@@ -8,7 +8,7 @@ use super::placing::{FROM, least, spread, weighted_lines};
 use crate::lookups;
 use micromath::F32Ext;
 use model_tables::curve::{Contact, Curve};
-use model_tables::generate::minimax::{self, MOST, Sample};
+use model_tables::generate::minimax::{self, FitSample, MOST};
 use nalgebra::{SMatrix, SVector};
 
 /// Samples of an interval that a fit sees.
@@ -309,7 +309,7 @@ impl<'a> Press<'a> {
         let table: Vec<[[i32; N]; 2]> = (0..segments)
             .map(|segment| {
                 let first = f64::from(1 << (29 - segment));
-                let samples = |output: usize| -> Vec<Sample> {
+                let samples = |output: usize| -> Vec<FitSample> {
                     (0..64)
                         .map(|i| {
                             let dense = 0.5 - 0.5 * libm::cos(core::f64::consts::PI * f64::from(i) / 63.0);
@@ -325,7 +325,7 @@ impl<'a> Press<'a> {
                                 *factor = libm::pow(t, power as f64);
                             }
                             let middle = self.at(x)[output];
-                            Sample {
+                            FitSample {
                                 factors,
                                 middle,
                                 half: middle.max(FROM),

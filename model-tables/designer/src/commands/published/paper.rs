@@ -13,7 +13,7 @@ use model_tables::actuator::{Actuator, Blocked, FREE_DIAMETER};
 use model_tables::design::{Design, RestBy};
 use model_tables::membrane::TensionField;
 use model_tables::membrane::press::{MembraneError, Press};
-use model_tables::membrane::state::{PressedState, Shape};
+use model_tables::membrane::state::{PressShape, PressedState};
 use output::Refusal;
 
 /// A published number and ours, in the unit that its name states.
@@ -122,9 +122,9 @@ impl Paper {
 
 /// What the rows are made of.
 struct Numbers {
-    rest: Shape,
+    rest: PressShape,
     /// The rest state with the published equator radius.
-    at_published_radius: Shape,
+    at_published_radius: PressShape,
     hoop_stretch: f64,
     forces: [f64; 3],
     /// The actuator at [`BLOCKED_PRESSURE`].
