@@ -42,7 +42,7 @@ impl ObjectDesign {
             weights,
             self.segments.as_flattened_mut(),
         );
-        let deepest = const { TABLES.lookup(PressureRise(TABLES.layout.maximum)).indentation };
+        let deepest = TABLES.lookup(PressureRise(TABLES.layout.maximum)).indentation;
         let indentation = |rise| TABLES.layout.lookup_in(&self.segments, rise).indentation;
         self.maximum = last_within(deepest, self.maximum, indentation);
     }

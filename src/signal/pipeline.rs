@@ -135,7 +135,14 @@ impl<D: Design> Pipeline<D> {
             self.zero_moved();
         }
         let rise = self.gain.apply_to(rise);
-        let (rise, warnings) = self.filter.step(rise, zero.and(sample.warnings()), even)?;
+        let (rise, warnings) = match self.filter.step(rise, zero.and(sample.warnings()), even) {
+            Ok(filtered) => filtered,
+            Err(fault) => {
+                // What is no pressure is no hum either.
+                self.zero.disregard();
+                return Err(fault);
+            }
+        };
         if sample.pressure.0 < self.parameters().lowest_read {
             self.wall.lose_track();
         }

@@ -51,7 +51,7 @@ fn what_is_no_loop_is_refused_in_one_line() {
         ),
         (
             "loop-soft",
-            "diameter_mm = 9\nthickness_mm = 0.1\n[actuator.material]\nlaw = \"neo-hookean\"\nc1_pa = 200\n",
+            "diameter_mm = 9\nthickness_mm = 0.1\n[actuator.material]\nlaw = \"neo-hookean\"\nc1_pa = 1000\n",
             "do not balance",
         ),
     ] {

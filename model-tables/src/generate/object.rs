@@ -6,7 +6,7 @@ use super::shape::Segmentation;
 use super::truth::Truth;
 use crate::curve::Contact;
 use crate::design_file::Accuracy;
-use crate::table::blend::{MOST_WORDS, blend};
+use crate::table::blend::{MOST_WORDS, blend, last_within};
 use crate::table::law::{BlendLaw, LAW_BITS, Touched, WEIGHT_BITS, Weights};
 use crate::table::loaded::LoadedTables;
 use crate::units::PressureRise;
@@ -46,7 +46,7 @@ pub struct BlendError {
     pub fitted: bool,
     /// As deep as the design is pressed.
     pub pressed: BlendErrors,
-    /// Up to the last pressure rise that is answered, which balls reach deeper.
+    /// Up to the last pressure rise that is answered.
     pub answered: BlendErrors,
 }
 
@@ -65,8 +65,17 @@ impl ObjectTables {
     /// The tables of an object, as the chip blends them; nothing for one that the law refuses.
     pub fn blended(&self, plate: &OwnedTables, touched: Touched) -> Option<OwnedTables> {
         let weights = self.law.weights(touched)?;
-        Some(blended(plate, &self.ball, &weights))
+        Some(answered(plate, &self.ball, &weights))
     }
+}
+
+/// A blend up to the last rise that it answers.
+fn answered(plate: &OwnedTables, ball: &OwnedTables, weights: &Weights) -> OwnedTables {
+    let mut tables = blended(plate, ball, weights);
+    let deepest = plate.lookup(PressureRise(plate.layout.maximum)).indentation;
+    let last = weights.limit(&plate.layout).maximum;
+    tables.layout.maximum = last_within(deepest, last, |rise| tables.lookup(rise).indentation);
+    tables
 }
 
 fn blended(plate: &OwnedTables, ball: &OwnedTables, weights: &Weights) -> OwnedTables {
@@ -119,8 +128,7 @@ impl SolvedObjects {
             .iter()
             .filter_map(|object| {
                 let weights = law.weights(object.touched)?;
-                let tables = blended(plate, &ball, &weights);
-                Some(self.error(&tables, &weights, object))
+                Some(self.error(&answered(plate, &ball, &weights), object))
             })
             .collect();
         Some(ObjectTables {
@@ -156,9 +164,9 @@ impl SolvedObjects {
         }
     }
 
-    fn error(&self, tables: &OwnedTables, weights: &Weights, object: &SolvedObject) -> BlendError {
+    fn error(&self, tables: &OwnedTables, object: &SolvedObject) -> BlendError {
         let bits = tables.layout.pressure_fraction_bits;
-        let last = PressureRise(weights.maximum.min(tables.layout.maximum)).pascals(bits);
+        let last = PressureRise(tables.layout.maximum).pascals(bits);
         let last = last.min(object.curve.end().pressure_rise);
         let errors = |last: f64| {
             let mut found = BlendErrors {

@@ -241,7 +241,10 @@ impl Estimator {
         self.window = Window::EMPTY;
         self.measuring = Some(Measuring {
             commanded: true,
-            over_ok: self.zeroed && self.is_ok(),
+            // What swings now says nothing of the zero under it.
+            over_ok: self.zeroed
+                && self.interval.verified
+                && self.interval.bound(&self.limits) <= self.limits.bound,
             overdue: self.measuring.is_some(),
             ..Measuring::NEW
         });

@@ -149,7 +149,7 @@ impl Path {
         let whole = above.work - below.work;
         loop {
             let guess = between(&below, &above, target);
-            match self.solve(wall, &below, target, guess, Some(whole)) {
+            match self.solve(wall, &below, target, &guess, Some(whole)) {
                 Ok((kept, _)) if target >= pressure => return Ok(kept),
                 Ok((kept, _)) => {
                     below = kept;
@@ -180,7 +180,7 @@ impl Path {
         loop {
             let last = self.last();
             let next = last.pressure() + self.step;
-            match self.solve(wall, last, next, self.beyond(next), None) {
+            match self.solve(wall, last, next, &self.beyond(next), None) {
                 Ok((kept, strain)) => {
                     let growth = libm::sqrt(EASY / strain.max(1e-3)).min(LARGEST_GROWTH);
                     self.step = (self.step * growth).min(LARGEST_STEP);
@@ -228,7 +228,7 @@ impl Path {
         wall: &mut SolidWall,
         below: &Kept,
         pressure: f64,
-        guess: State,
+        guess: &State,
         scale: Option<f64>,
     ) -> Result<(Kept, f64), Rejected> {
         let mut state = guess.clone();
