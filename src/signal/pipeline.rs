@@ -135,14 +135,14 @@ impl<D: Design> Pipeline<D> {
             self.zero_moved();
         }
         let rise = self.gain.apply_to(rise);
+        let rejected = self.filter.rejected();
         let (rise, warnings) = match self.filter.step(rise, zero.and(sample.warnings()), even) {
             Ok(filtered) => filtered,
-            Err(fault) => {
-                // What is no pressure is no hum either.
-                self.zero.disregard();
-                return Err(fault);
-            }
+            Err(fault) => return Err(self.unfiltered(fault)),
         };
+        if self.filter.rejected() != rejected {
+            self.zero.disregard();
+        }
         if sample.pressure.0 < self.parameters().lowest_read {
             self.wall.lose_track();
         }
@@ -193,6 +193,15 @@ impl<D: Design> Pipeline<D> {
                 .and(self.fluid.suspicions())
                 .and(Warnings::TEMPERATURE.when(doubtful)),
         })
+    }
+
+    /// What is no pressure is no hum either.
+    #[cold]
+    fn unfiltered(&mut self, fault: Fault) -> Fault {
+        if fault == Fault::Jump {
+            self.zero.disregard();
+        }
+        fault
     }
 
     /// A quiet window ended at this pressure; the zero from before it moved with it.

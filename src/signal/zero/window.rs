@@ -26,11 +26,7 @@ pub(super) struct Window {
     begun: Microseconds,
     /// The range of its parts that ended.
     range: Range,
-    /// The two samples before, across windows, and the range of the middle ones of three in the part under way: what one sample
-    /// does is no swing.
-    before: [i32; 2],
-    middle: Range,
-    /// Such ranges of the two parts before, across windows: what both have in common, and the last one.
+    /// The ranges of the two parts before, across windows: what both have in common, and the last one.
     common: Range,
     last: Range,
 }
@@ -92,8 +88,6 @@ impl Window {
         highest: Pressure(i32::MIN),
         begun: Microseconds(0),
         range: Range::EMPTY,
-        before: [0; 2],
-        middle: Range::EMPTY,
         common: Range::EMPTY,
         last: Range::EMPTY,
     };
@@ -102,11 +96,6 @@ impl Window {
     #[inline]
     pub(super) fn add(&mut self, time: Microseconds, pressure: Pressure) -> Option<Part> {
         let since = *self.since.get_or_insert(time);
-        let [first, second] = self.before;
-        let middle = first.min(second).max(first.max(second).min(pressure.0));
-        self.before = [second, pressure.0];
-        self.middle.low = self.middle.low.min(middle);
-        self.middle.high = self.middle.high.max(middle);
         self.samples = self.samples.saturating_add(1);
         self.sum = self.sum.saturating_add(i64::from(pressure.0));
         self.lowest = self.lowest.min(pressure);
@@ -122,16 +111,8 @@ impl Window {
         self.sum = self.sum.saturating_add(i64::from(by) * i64::from(self.samples));
         self.lowest = Pressure(self.lowest.0.saturating_add(by));
         self.highest = Pressure(self.highest.0.saturating_add(by));
-        for range in [
-            &mut self.range,
-            &mut self.middle,
-            &mut self.common,
-            &mut self.last,
-        ] {
+        for range in [&mut self.range, &mut self.common, &mut self.last] {
             range.shift(by);
-        }
-        for before in &mut self.before {
-            *before = before.saturating_add(by);
         }
     }
 
@@ -149,13 +130,8 @@ impl Window {
             high: self.highest.0,
         };
         (self.lowest, self.highest) = (Self::EMPTY.lowest, Self::EMPTY.highest);
-        let middle = core::mem::replace(&mut self.middle, Range::EMPTY);
         // What a disturbed part saw is no swing either.
-        let told = if part.low == i32::MIN {
-            Range::EMPTY
-        } else {
-            middle
-        };
+        let told = if part.low == i32::MIN { Range::EMPTY } else { part };
         let three = told.common(self.common);
         self.common = told.common(self.last);
         self.last = told;
@@ -208,18 +184,6 @@ mod tests {
             let found = swing(1_000, |t| 1_000.0 * (TAU * hertz * t).sin());
             assert!((1_600..=2_000).contains(&found), "{hertz} Hz: {found}");
         }
-    }
-
-    #[test]
-    fn single_samples_are_no_swing() {
-        let spikes = |t: f64| {
-            if (t * 1e3).round() as u32 % 7 == 0 {
-                1e6
-            } else {
-                0.0
-            }
-        };
-        assert_eq!(swing(1_000, spikes), 0);
     }
 
     #[test]
