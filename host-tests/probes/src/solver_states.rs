@@ -63,7 +63,7 @@ impl SolverState {
         bytes
     }
 
-    /// The inverse of [`State::to_bytes`].
+    /// The inverse of [`SolverState::to_bytes`].
     pub fn from_bytes(bytes: [u8; Self::BYTES]) -> Self {
         let [pressure, force, iterations] =
             core::array::from_fn(|i| u64::from_le_bytes(core::array::from_fn(|k| bytes[8 * i + k])));

@@ -84,7 +84,7 @@ impl Wanted {
     }
 
     /// The error that a rung counts with as a judge; infinite if it does not judge, as where its own error would leave cheaper rungs
-    /// too little ([`MAX_SHARE`]).
+    /// too little.
     pub fn own_error(&self, kind: Kind, design: &Design) -> f64 {
         let outer = &design.membrane;
         match kind {

@@ -6,7 +6,7 @@
 //! Both are minima of the energy, on every mesh: the dimple is no error of discretisation. A long step of Newton's method may end in either; a
 //! press from rest stays flat for as long as that state lasts.
 //!
-//! **What a step must pass.** Its state is a minimum of the energy (no negative pivot, see [`Wall::is_stable`]); it lies where the states before it
+//! **What a step must pass.** Its state is a minimum of the energy (no negative pivot, see [`SolidWall::is_stable`]); it lies where the states before it
 //! point to, to `LARGEST_CORRECTION`; and the energy stored grows by the work of plate and fluid, to `ENERGY_TOLERANCE`. A state
 //! of another branch, or one with the pole folded in, is in balance but fails these; then the step is halved. Steps grow while they pass easily.
 //!

@@ -3,7 +3,7 @@
 //! What is over it, see [`FarSide`], takes its force: nothing, a rigid plate at a gap, or a foundation whose pressure is in proportion to how far it is
 //! pushed in (Winkler), per undeformed area. The clamp holds the rim over the whole thickness; its frame is flush with the disc's outer face.
 //!
-//! The [`path`] goes by pressure from zero. A held pressure has no state beyond the greatest that the disc stands.
+//! The path goes by pressure from zero. A held pressure has no state beyond the greatest that the disc stands.
 
 mod error;
 mod path;
