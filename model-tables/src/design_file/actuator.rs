@@ -46,6 +46,12 @@ impl ActuatorSection {
             }
         }
         let law = section.sub("material")?.map(material).transpose()?;
+        if let Some((_, Some(_))) = law {
+            return Err(section.refuse(
+                "material",
+                "without relaxation: the disc is solved as a settled wall",
+            ));
+        }
         section.finish()?;
         Ok(Self {
             diameter_mm,

@@ -500,6 +500,12 @@ const IMPOSSIBLE: &[(&str, &str, &str)] = &[
         "[actuator]\ndiameter_mm = 9\n[actuator.material]\npreset = \"rubber\"\n[press]",
         "actuator.material.preset",
     ),
+    (
+        "[press]",
+        "[actuator]\ndiameter_mm = 9\n[actuator.material]\npreset = \"agilus30\"\n[actuator.material.relaxation]\n\
+         preset = \"agilus30\"\n[press]",
+        "actuator.material",
+    ),
     ("[press]", "[model]\nkind = \"beam\"\n[press]", "model.kind"),
     (
         "[press]",

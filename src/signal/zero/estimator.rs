@@ -242,9 +242,7 @@ impl Estimator {
         self.measuring = Some(Measuring {
             commanded: true,
             // What swings now says nothing of the zero under it.
-            over_ok: self.zeroed
-                && self.interval.verified
-                && self.interval.bound(&self.limits) <= self.limits.bound,
+            over_ok: self.zeroed && self.interval.is_ok(&self.limits),
             overdue: self.measuring.is_some(),
             ..Measuring::NEW
         });
@@ -425,9 +423,8 @@ impl Estimator {
         } else {
             0
         };
-        let before = self.swing;
-        if before | swing != 0 {
-            self.swing = swing.max(before - (before >> 6) - 1);
+        if self.swing | swing != 0 {
+            self.swing = swing.max(self.swing - (self.swing >> 6) - 1);
             self.judge_bound();
         }
     }

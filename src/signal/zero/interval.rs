@@ -100,6 +100,11 @@ impl Interval {
         counts_above(still + self.moving)
     }
 
+    /// Whether somebody saw it, and it is near enough.
+    pub(super) fn is_ok(&self, limits: &Limits) -> bool {
+        self.verified && self.bound(limits) <= limits.bound
+    }
+
     /// How far the true zero may be above the value, beyond the level of a quiet window: counts, >= 0.
     pub(super) fn above(&self, limits: &Limits) -> i32 {
         let open = self.value + level(limits.margin);
