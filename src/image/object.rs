@@ -6,7 +6,7 @@ use crate::signal::design::{Design, NoSuchObject, Parameters};
 use crate::signal::zero::limits::Limits;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
-use model_tables::table::blend::{blend, last_within};
+use model_tables::table::blend::{blend, last_answered};
 use model_tables::table::law::{Touched, Weights};
 use model_tables::units::PressureRise;
 
@@ -34,7 +34,6 @@ impl ObjectDesign {
     }
 
     fn weigh(&mut self, weights: &Weights) {
-        self.maximum = weights.limit(&TABLES.layout).maximum;
         blend(
             &TABLES.layout,
             TABLES.segments.as_flattened(),
@@ -42,9 +41,12 @@ impl ObjectDesign {
             weights,
             self.segments.as_flattened_mut(),
         );
-        let deepest = TABLES.lookup(PressureRise(TABLES.layout.maximum)).indentation;
-        let indentation = |rise| TABLES.layout.lookup_in(&self.segments, rise).indentation;
-        self.maximum = last_within(deepest, self.maximum, indentation);
+        self.maximum = last_answered(
+            &TABLES.layout,
+            weights,
+            |rise| TABLES.lookup(rise),
+            |rise| TABLES.layout.lookup_in(&self.segments, rise),
+        );
     }
 }
 

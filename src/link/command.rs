@@ -6,8 +6,8 @@
 use crate::link::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, unstuff};
 use crate::signal::calibration::LARGEST_GAIN;
 use crate::signal::design::NoSuchObject;
-use crate::signal::zero::estimator::TareRefusal;
 use crate::signal::zero::surroundings::AirRefusal;
+use crate::signal::zero::tare::TareRefusal;
 use crate::status::{code_of, named_by};
 use model_tables::table::law::Touched;
 

@@ -27,6 +27,7 @@ pub mod estimator;
 mod interval;
 pub mod limits;
 pub mod surroundings;
+pub mod tare;
 mod window;
 
 use crate::status::ResetCause;

@@ -6,7 +6,7 @@ use super::shape::Segmentation;
 use super::truth::Truth;
 use crate::curve::Contact;
 use crate::design_file::Accuracy;
-use crate::table::blend::{MOST_WORDS, blend, last_within};
+use crate::table::blend::{MOST_WORDS, blend, last_answered};
 use crate::table::law::{BlendLaw, LAW_BITS, Touched, WEIGHT_BITS, Weights};
 use crate::table::loaded::LoadedTables;
 use crate::units::PressureRise;
@@ -72,9 +72,8 @@ impl ObjectTables {
 /// A blend up to the last rise that it answers.
 fn answered(plate: &OwnedTables, ball: &OwnedTables, weights: &Weights) -> OwnedTables {
     let mut tables = blended(plate, ball, weights);
-    let deepest = plate.lookup(PressureRise(plate.layout.maximum)).indentation;
-    let last = weights.limit(&plate.layout).maximum;
-    tables.layout.maximum = last_within(deepest, last, |rise| tables.lookup(rise).indentation);
+    let plain = |rise| plate.lookup(rise);
+    tables.layout.maximum = last_answered(&plate.layout, weights, plain, |rise| tables.lookup(rise));
     tables
 }
 

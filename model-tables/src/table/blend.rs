@@ -11,7 +11,7 @@ use super::law::{WEIGHT_BITS, Weights};
 use super::loaded::LoadedTables;
 use super::segments::Segments;
 use super::{Constant, Layout, Reading};
-use crate::units::{Nanometres, PressureRise};
+use crate::units::PressureRise;
 
 /// Most words of a table that is blended at run time: of 40 segments, the most with two octaves or one each, 6 words each.
 pub const MOST_WORDS: usize = 240;
@@ -118,15 +118,22 @@ fn held(value: i64) -> i32 {
     value.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
 }
 
-/// The last input up to `last` whose indentation is at most `deepest`, the depth that the tables were made for, and a thirty-second
-/// more, which is the blend's own error: a ball reaches it at a lower pressure than the plate. `indentation` is that at an input, and
-/// does not fall.
-pub fn last_within(deepest: Nanometres, last: i32, indentation: impl Fn(PressureRise) -> Nanometres) -> i32 {
-    let deepest = deepest.0.saturating_add(deepest.0 / 32);
-    let is_within = |input| indentation(PressureRise(input)).0 <= deepest;
+/// The last input that a blend answers: where its weights end, and not deeper than the plate's tables were made for and a
+/// thirty-second more, which is the blend's own error. A ball reaches that depth at a lower pressure than the plate.
+pub fn last_answered(
+    layout: &Layout,
+    weights: &Weights,
+    plate: impl Fn(PressureRise) -> Reading,
+    blended: impl Fn(PressureRise) -> Reading,
+) -> i32 {
+    let deepest = plate(PressureRise(layout.maximum)).indentation.0;
+    let deepest = deepest.saturating_add(deepest / 32);
+    let is_within = |input| blended(PressureRise(input)).indentation.0 <= deepest;
+    let last = weights.maximum.min(layout.maximum);
     if is_within(last) {
         return last;
     }
+    // Indentations do not fall.
     let (mut within, mut beyond) = (0, last);
     while beyond - within > 1 {
         let middle = i32::midpoint(within, beyond);
@@ -184,14 +191,17 @@ impl BlendedTables {
             layout: *layout,
             words: plate,
         };
-        let deepest = plate.lookup(PressureRise(layout.maximum)).indentation;
         let mut blended = Self {
-            layout: weights.limit(layout),
+            layout: *layout,
             words,
             length,
         };
-        let indentation = |rise| blended.lookup(rise).indentation;
-        blended.layout.maximum = last_within(deepest, blended.layout.maximum, indentation);
+        blended.layout.maximum = last_answered(
+            layout,
+            weights,
+            |rise| plate.lookup(rise),
+            |rise| blended.lookup(rise),
+        );
         Ok(blended)
     }
 

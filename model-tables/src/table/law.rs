@@ -1,7 +1,5 @@
 //! How much of the reference ball an object has: the weights of a blend over the object's radius.
 
-use super::Layout;
-
 /// Fraction bits of a weight.
 pub const WEIGHT_BITS: u32 = 10;
 
@@ -71,17 +69,6 @@ impl Weights {
         indentation: 0,
         maximum: i32::MAX,
     };
-
-    /// A layout that ends where these do.
-    #[must_use]
-    pub const fn limit(&self, layout: &Layout) -> Layout {
-        let maximum = if self.maximum < layout.maximum {
-            self.maximum
-        } else {
-            layout.maximum
-        };
-        Layout { maximum, ..*layout }
-    }
 }
 
 /// Weights over the radius, of one design: with `t = (reference + offset) / (R + offset)`, for a cup of `-R`,

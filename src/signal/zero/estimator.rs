@@ -10,6 +10,7 @@
 
 use crate::signal::zero::interval::Interval;
 use crate::signal::zero::limits::Limits;
+use crate::signal::zero::tare::{Measuring, PATIENCE, Replaced, TareRefusal};
 use crate::signal::zero::window::{self, Part, Seen, Window};
 use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, Warnings};
@@ -18,26 +19,6 @@ use model_tables::units::PressureRise;
 
 /// How long a window is, microseconds.
 pub const WINDOW: u64 = window::LENGTH;
-
-/// How long a good window is waited for, microseconds.
-pub const PATIENCE: u64 = 2_000_000;
-
-/// Why a zero was not taken, or not undone.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum TareRefusal {
-    /// The fingertip is touched, or may be.
-    Touched,
-    /// No window was quiet.
-    Restless,
-    /// Further from the reference than any transducer drifts.
-    OutOfBounds,
-    /// There are no readings.
-    NoReading,
-    /// Another tare is under way.
-    Busy,
-    /// There is nothing to undo.
-    NothingToUndo,
-}
 
 /// The zero of one fingertip.
 #[derive(Clone, Debug)]
@@ -59,40 +40,6 @@ pub struct Estimator {
     bound: i32,
     above: i32,
     warnings: Warnings,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Measuring {
-    /// Someone says that nothing presses, and waits for an answer.
-    commanded: bool,
-    /// Over a zero that was ok then: it is not given up for one that is not.
-    over_ok: bool,
-    /// A start whose [`PATIENCE`] ended without a zero: it goes on for want of one, gives way to a command and resumes
-    /// where that fails.
-    overdue: bool,
-    since: Option<Microseconds>,
-    /// Why the last window was no good.
-    objection: TareRefusal,
-}
-
-/// What a command replaced, and with what.
-#[derive(Clone, Copy, Debug)]
-struct Replaced {
-    before: Interval,
-    zeroed: bool,
-    by: Interval,
-    at: Microseconds,
-}
-
-impl Measuring {
-    /// At start-up.
-    const NEW: Self = Self {
-        commanded: false,
-        over_ok: false,
-        overdue: false,
-        since: None,
-        objection: TareRefusal::NoReading,
-    };
 }
 
 impl Estimator {

@@ -1,0 +1,59 @@
+//! A zero that is being measured, at a start or by a command: what it waits for, and why it may not be taken.
+
+use crate::signal::zero::interval::Interval;
+use crate::units::Microseconds;
+
+/// How long a good window is waited for, microseconds.
+pub const PATIENCE: u64 = 2_000_000;
+
+/// Why a zero was not taken, or not undone.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum TareRefusal {
+    /// The fingertip is touched, or may be.
+    Touched,
+    /// No window was quiet.
+    Restless,
+    /// Further from the reference than any transducer drifts.
+    OutOfBounds,
+    /// There are no readings.
+    NoReading,
+    /// Another tare is under way.
+    Busy,
+    /// There is nothing to undo.
+    NothingToUndo,
+}
+
+/// A zero that is being measured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measuring {
+    /// Someone says that nothing presses, and waits for an answer.
+    pub(super) commanded: bool,
+    /// Over a zero that was ok then: it is not given up for one that is not.
+    pub(super) over_ok: bool,
+    /// A start whose [`PATIENCE`] ended without a zero: it goes on for want of one, gives way to a command and resumes
+    /// where that fails.
+    pub(super) overdue: bool,
+    pub(super) since: Option<Microseconds>,
+    /// Why the last window was no good.
+    pub(super) objection: TareRefusal,
+}
+
+/// What a command replaced, and with what.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Replaced {
+    pub(super) before: Interval,
+    pub(super) zeroed: bool,
+    pub(super) by: Interval,
+    pub(super) at: Microseconds,
+}
+
+impl Measuring {
+    /// At start-up.
+    pub(super) const NEW: Self = Self {
+        commanded: false,
+        over_ok: false,
+        overdue: false,
+        since: None,
+        objection: TareRefusal::NoReading,
+    };
+}
