@@ -4,8 +4,11 @@ prints one line each; `--encode KIND SEQUENCE [HEX]` writes a command. Nothing b
 
     stty -F /dev/ttyACM0 921600 raw && python3 read_frames.py /dev/ttyACM0
     python3 read_frames.py --encode tare 1 > /dev/ttyACM0
+
+HEX is what goes with the command, low byte first: `--encode rate 2 0a00` asks for every tenth report.
 """
 import binascii
+import os
 import socket
 import struct
 import sys
@@ -20,13 +23,17 @@ FAULTS = {1: "sensor open", 2: "sensor short", 3: "zeroing", 4: "settling", 5: "
           23: "sensor reset", 24: "sensor implausible"}
 TOUCH = ["unknown", "untouched", "touched"]
 COMMANDS = {"tare": 0x81, "undo": 0x82, "save": 0x83, "info": 0x84, "self-test": 0x85, "rate": 0x86, "forget": 0x87,
-            "air": 0x8A}
+            "object": 0x88, "air": 0x8A}
+# Bytes that go with a command.
+PAYLOADS = {"tare": 0, "undo": 0, "save": 4, "info": 0, "self-test": 4, "rate": 2, "forget": 0, "object": 5, "air": 4}
 OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy", "nothing to undo", "zero unverified",
-            "memory failed"] + [None] * 5 + ["not in this image"]
+            "memory failed", "no such object"] + [None] * 4 + ["not in this image"]
 CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
 STORED = ["none", "serves", "another design's", "damaged", "unreadable"]
 LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang", "non-maskable interrupt"]
 LENGTHS = {1: 42, 2: 15, 3: 61, 4: 20}
+# Bytes of the longest frame without its zero: more of them in a row are none.
+LONGEST = 83
 
 
 def stuff(plain):
@@ -65,7 +72,7 @@ def describe(body):
     if kind == 1:
         bits, k, touch, rise, force, indentation, *sigmas = struct.unpack_from("<HBB6i", body, 14)
         unknown = bits >> len(WARNINGS) or any(bits >> bit & 1 and not word for bit, word in enumerate(WARNINGS))
-        if unknown or k > 31 or touch >= len(TOUCH):
+        if unknown or k > 31 or touch >= len(TOUCH) or min(sigmas) < 0:
             raise ValueError("field")
         warnings = "; ".join(word for bit, word in enumerate(WARNINGS) if bits >> bit & 1)
         return head + (f"{'warning: ' + warnings if bits else 'ok'}, {TOUCH[touch]}, {rise / 2**k:.3f} Pa, {force} uN, "
@@ -102,6 +109,8 @@ def stuffed_frames(source):
     waiting = b""
     while read := source.read(4096):
         *frames, waiting = (waiting + read).split(b"\0")
+        # Of a stretch without a zero the first bytes are enough to be no frame.
+        waiting = waiting[:LONGEST + 1]
         yield from filter(None, frames)
 
 
@@ -116,19 +125,53 @@ def bodies(source):
         yield body
 
 
+def encoded(arguments):
+    """The frame of a command, or a ValueError that says what is wrong with the arguments."""
+    if len(arguments) < 2:
+        raise ValueError("--encode needs KIND SEQUENCE [HEX]")
+    kind, sequence, *rest = arguments
+    if kind not in COMMANDS:
+        raise ValueError(f"no command `{kind}`; there are {', '.join(COMMANDS)}")
+    if not sequence.isdecimal() or int(sequence) > 0xFFFF:
+        raise ValueError(f"`{sequence}` is no sequence number from 0 to 65535")
+    try:
+        payload = bytes.fromhex("".join(rest))
+    except ValueError:
+        raise ValueError(f"`{' '.join(rest)}` is not hexadecimal") from None
+    if len(payload) != PAYLOADS[kind]:
+        raise ValueError(f"with {kind} go {PAYLOADS[kind]} bytes, not {len(payload)}")
+    if kind == "rate" and not 1 <= int.from_bytes(payload, "little") <= 1000:
+        raise ValueError("a rate is 1 to 1000")
+    number = int.from_bytes(payload, "little", signed=True)
+    if kind == "save" and number != -2**31 and abs(number) > 100_000:
+        raise ValueError("a gain is -100000 to 100000 parts in a million, or 00000080 to keep the one there is")
+    if kind == "self-test" and number < 0:
+        raise ValueError("an indentation is 0 nm or more")
+    return frame(struct.pack("<BBH", VERSION, COMMANDS[kind], int(sequence)) + payload)
+
+
 def main(arguments):
-    if arguments[:1] == ["--encode"]:
-        kind, sequence, *rest = arguments[1:]
-        body = struct.pack("<BBH", VERSION, COMMANDS[kind], int(sequence)) + bytes.fromhex("".join(rest))
-        sys.stdout.buffer.write(frame(body))
-        return
-    with opened(arguments[0]) if arguments else sys.stdin.buffer as source:
-        for stuffed in stuffed_frames(source):
-            try:
-                print(describe(body_of(stuffed)), flush=True)
-            except ValueError as error:
-                print(f"no frame: {error}", flush=True)
+    try:
+        if arguments[:1] == ["--encode"]:
+            sys.stdout.buffer.write(encoded(arguments[1:]))
+            sys.stdout.buffer.flush()
+            return 0
+        with opened(arguments[0]) if arguments else sys.stdin.buffer as source:
+            for stuffed in stuffed_frames(source):
+                try:
+                    print(describe(body_of(stuffed)), flush=True)
+                except ValueError as error:
+                    print(f"no frame: {error}", flush=True)
+    except BrokenPipeError:
+        # Nobody reads on; what Python still holds must not fail a second time.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except KeyboardInterrupt:
+        pass
+    except (OSError, ValueError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    return 0
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(main(sys.argv[1:]))

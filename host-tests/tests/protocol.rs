@@ -157,6 +157,53 @@ fn the_commands_of_the_reader_in_python_are_the_firmwares() {
     }
 }
 
+#[test]
+fn the_reader_in_python_refuses_on_one_line_what_the_board_would_refuse() {
+    let script = workspace().join("host-tests/scripts/read_frames.py");
+    for (arguments, reason) in [
+        (&["--encode", "save", "8"][..], "with save go 4 bytes, not 0"),
+        (
+            &["--encode", "save", "8", "ffffff7f"],
+            "a gain is -100000 to 100000",
+        ),
+        (&["--encode", "rate", "8", "0000"], "a rate is 1 to 1000"),
+        (
+            &["--encode", "self-test", "8", "ffffffff"],
+            "an indentation is 0 nm or more",
+        ),
+        (&["--encode", "tare", "65536"], "no sequence number"),
+        (&["--encode", "tear", "1"], "no command `tear`"),
+        (&["--encode", "rate", "8", "ten"], "is not hexadecimal"),
+        (&["--encode"], "needs KIND SEQUENCE"),
+        (&["no/such/port"], "No such file"),
+    ] {
+        let Ok(output) = Process::new("python3").arg(&script).args(arguments).output() else {
+            eprintln!("no python3: not tested");
+            return;
+        };
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {error}");
+        assert!(
+            output.stdout.is_empty() && error.lines().count() == 1,
+            "{arguments:?}: {error}"
+        );
+        assert!(error.contains(reason), "{arguments:?}: {error}");
+    }
+}
+
+#[test]
+fn the_reader_in_python_is_done_soon_with_a_stretch_that_has_no_zero() {
+    let mut stream = vec![0x55; 4_000_000];
+    stream.push(0);
+    stream.extend(example("tare, sequence 0x0102"));
+    let began = std::time::Instant::now();
+    if let Some(told) = reader(&[], &stream) {
+        assert!(told.starts_with(b"no frame"));
+        // Quadratic in the length it took 16 s and more.
+        assert!(began.elapsed().as_secs() < 8, "{:?}", began.elapsed());
+    }
+}
+
 /// A frame of this message, numbered 0.
 fn framed(message: Message) -> Vec<u8> {
     let frame = Frame {

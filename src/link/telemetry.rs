@@ -82,6 +82,17 @@ pub enum Message {
     Answer(Answer),
 }
 
+impl Message {
+    /// The board's time: of a report the middle of its samples, of the others when they were made.
+    pub const fn time(&self) -> Microseconds {
+        match self {
+            Self::Report { report, .. } => report.time,
+            Self::Hello(hello) => hello.time,
+            Self::Answer(answer) => answer.time,
+        }
+    }
+}
+
 /// A message and its place in the stream.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Frame {
@@ -262,6 +273,16 @@ fn read_measurement(fields: &mut Reader<'_>) -> Result<(Measurement, u8), Decode
         touch,
         warnings,
     };
+    let sigma = &measurement.sigma;
+    for (deviation, offset) in [
+        (sigma.pressure_rise.0, 30),
+        (sigma.force.0, 34),
+        (sigma.indentation.0, 38),
+    ] {
+        if deviation < 0 {
+            return Err(DecodeError::Field(offset));
+        }
+    }
     Ok((measurement, pressure_fraction_bits))
 }
 
@@ -293,7 +314,7 @@ fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<Hello, Deco
 }
 
 /// Frames out of a stream of bytes that come one at a time.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Decoder(Deframer);
 
 impl Decoder {

@@ -192,7 +192,7 @@ pub fn unstuff(stuffed: &[u8]) -> Result<Vec<u8, MAXIMUM_BODY>, DecodeError> {
 }
 
 /// Frames out of a stream of bytes that come one at a time. Work is bounded for every byte; memory is one frame.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Deframer {
     bytes: Vec<u8, MAXIMUM_FRAME>,
     /// More bytes came without a zero than any frame has.

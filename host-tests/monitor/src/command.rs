@@ -1,45 +1,64 @@
 //! `designer monitor`: live readings of a board in a terminal, or as rows in a pipe.
+use crate::keys::{KeyAction, Keyboard};
 use crate::link::{Address, BAUD, Link, LinkEvent};
+use crate::output::capture::Capture;
+use crate::output::rows::{Form, Writer};
+use crate::output::whole::{RowFile, RowOutput};
 use crate::readings::{LiveReading, Monitor};
-use crate::rows::{Form, Writer};
+use crate::replay::Replay;
+use crate::signals::Ending;
+use crate::source::{Source, SourceEvent, take};
 use crate::view::{self, ViewContext};
 use clap::{Parser, ValueEnum};
-use fingertip::link::command::Command;
-use ratatui::crossterm::event::{self, Event as Input, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use fingertip::link::wire::PROTOCOL_VERSION;
+use ratatui::DefaultTerminal;
+use ratatui::crossterm::event::{self, Event as Input, KeyEventKind};
 use std::ffi::OsString;
-use std::fs::File;
-use std::io::{self, ErrorKind, IsTerminal as _, Write as _};
+use std::io::{self, ErrorKind, IsTerminal as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// From one picture to the next.
 const PICTURE: Duration = Duration::from_millis(50);
 
 /// Shows what a board says, from its serial port or the emulated board's socket.
 ///
-/// A force is shown only while its report is `ok`; otherwise the reason is. On a terminal it is a view with keys: t tare, u undo,
-/// s save, i info, x self-test, q quit. In a pipe, or with --format csv or json, it is a row a report.
+/// A force is shown only while its report is `ok`; otherwise the reason is. On a terminal it is a view with keys: ? lists them. In a
+/// pipe, or with --format csv or json, it is a row a report.
 #[derive(Debug, Parser)]
 #[command(
     name = "designer monitor",
     bin_name = "designer monitor",
     version,
     after_help = "Examples:\n  cargo designer monitor /dev/ttyACM0\n  cargo designer monitor /dev/ttyACM0 --csv grasp.csv\n  \
-                  cargo designer monitor /dev/ttyACM0 --for-s 5 --format csv > five-seconds.csv\n\n\
+                  cargo designer monitor /dev/ttyACM0 --for-s 5 --format csv > five-seconds.csv\n  \
+                  cargo designer monitor --replay grasp.csv --speed 0.5\n\n\
                   With no board:\n  cargo demo --serve 127.0.0.1:4000\n  cargo designer monitor tcp:127.0.0.1:4000"
 )]
 struct Arguments {
     /// A serial port (/dev/ttyACM0, COM3) or tcp:HOST:PORT
-    address: Address,
+    #[arg(required_unless_present = "replay")]
+    address: Option<Address>,
     /// Speed of the serial port, bits a second
     #[arg(long, value_name = "BAUD", default_value_t = BAUD)]
     baud: u32,
     /// Also write every report to this CSV file, which must not be there yet
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    // The help says "PlotJuggler" as its makers do, without the marks of code.
+    #[arg(
+        long,
+        value_name = "FILE",
+        help = "Also write every report to this MCAP file, for Foxglove and PlotJuggler; it must not be there yet"
+    )]
+    mcap: Option<PathBuf>,
+    /// Play a file of --csv again instead of a board
+    #[arg(long, value_name = "FILE", conflicts_with = "address")]
+    replay: Option<PathBuf>,
+    /// How many times as fast as it was written a file is played
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, requires = "replay", value_parser = factor)]
+    speed: f64,
     /// End after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     for_s: Option<Duration>,
@@ -62,6 +81,13 @@ fn seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "not a number of seconds".to_owned())
 }
 
+fn factor(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|factor| (0.01..=1000.0).contains(factor))
+        .ok_or_else(|| "not a number from 0.01 to 1000".to_owned())
+}
+
 /// Reads the arguments, the name of the command first, and shows what the board says until it is to end.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let mut arguments = match Arguments::try_parse_from(arguments) {
@@ -79,11 +105,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::SUCCESS;
         }
     };
-    if let Address::Serial { baud, .. } = &mut arguments.address {
+    if let Some(Address::Serial { baud, .. }) = &mut arguments.address {
         *baud = arguments.baud;
     }
     match run(&arguments) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(reason) => {
             eprintln!("error: {reason}");
             ExitCode::FAILURE
@@ -91,7 +117,49 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<(), String> {
+/// Files that take every report beside what is shown.
+#[derive(Default)]
+struct Logs {
+    csv: Option<Writer<RowFile>>,
+    mcap: Option<Capture>,
+}
+
+impl Logs {
+    fn open(arguments: &Arguments, began: SystemTime) -> Result<Self, String> {
+        let csv = arguments.csv.as_ref().map(|path| {
+            RowFile::create(path)
+                .and_then(|file| Writer::new(Form::Csv, file, began))
+                .map_err(|error| format!("{}: {error}; choose another --csv", path.display()))
+        });
+        let mcap = arguments.mcap.as_ref().map(|path| {
+            Capture::create(path, began)
+                .map_err(|error| format!("{}: {error}; choose another --mcap", path.display()))
+        });
+        Ok(Self {
+            csv: csv.transpose()?,
+            mcap: mcap.transpose()?,
+        })
+    }
+
+    fn write(&mut self, reading: &LiveReading) -> Result<(), String> {
+        if let Some(csv) = &mut self.csv {
+            csv.write(reading).map_err(|error| format!("--csv: {error}"))?;
+        }
+        if let Some(mcap) = &mut self.mcap {
+            mcap.write(reading).map_err(|error| format!("--mcap: {error}"))?;
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<(), String> {
+        match self.mcap {
+            Some(mcap) => mcap.finish().map_err(|error| format!("--mcap: {error}")),
+            None => Ok(()),
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<ExitCode, String> {
     let terminal = io::stdout().is_terminal();
     let form = match arguments.format {
         Some(Format::Table) if !terminal => {
@@ -102,166 +170,206 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         None if terminal => None,
         Some(Format::Csv) | None => Some(Form::Csv),
     };
-    let mut log = arguments
-        .csv
+    let began = SystemTime::now();
+    let replay = arguments
+        .replay
         .as_ref()
-        .map(|path| {
-            File::create_new(path)
-                .and_then(|file| Writer::new(Form::Csv, file))
-                .map_err(|error| format!("{}: {error}; choose another --csv", path.display()))
-        })
+        .map(|path| Replay::open(path, arguments.speed))
         .transpose()?;
-    let keep = |reading: &LiveReading| match &mut log {
-        Some(log) => log.write(reading).map_err(|error| format!("--csv: {error}")),
-        None => Ok(()),
+    let mut logs = Logs::open(arguments, began)?;
+    let ending = Ending::listen().map_err(|error| format!("signals: {error}"))?;
+    let (source, name) = match (replay, &arguments.address) {
+        (Some(replay), _) => {
+            let path = arguments
+                .replay
+                .as_ref()
+                .map_or_else(String::new, |path| path.display().to_string());
+            let name = format!("{path} at {} times its pace", replay.speed());
+            (Source::Replay(replay), name)
+        }
+        (None, Some(address)) => (Source::Link(Link::start(address.clone())), address.to_string()),
+        (None, None) => return Err("there is no board to listen to".to_owned()),
     };
-    match form {
-        None => watch(arguments, keep),
-        Some(form) => pipe(arguments, form, keep),
-    }
-}
-
-/// The view.
-fn watch(
-    arguments: &Arguments,
-    mut keep: impl FnMut(&LiveReading) -> Result<(), String>,
-) -> Result<(), String> {
-    let surroundings = ViewContext {
-        address: arguments.address.to_string(),
+    let watch = Watch {
+        source,
+        name,
+        start: Instant::now(),
+        began,
+        ending: ending.clone(),
+        for_s: arguments.for_s,
         log: arguments.csv.as_ref().map(|path| path.display().to_string()),
     };
-    let link = Link::start(arguments.address.clone());
-    let start = Instant::now();
-    let mut terminal = ratatui::try_init().map_err(|error| format!("the terminal: {error}"))?;
-    let mut monitor = Monitor::default();
-    let mut show = || -> Result<(), String> {
-        loop {
-            let next = start.elapsed() + PICTURE;
-            while let Some(left) = next.checked_sub(start.elapsed()) {
-                let Some(event) = link.next(left) else { break };
-                take(event, &mut monitor, start.elapsed(), &mut keep)?;
+    let outcome = match form {
+        None => watch.show(&mut logs),
+        Some(form) => watch.pipe(form, &mut logs),
+    };
+    // What was measured stays, also behind an error.
+    let finished = logs.finish();
+    outcome.and(finished)?;
+    Ok(ending.exit_code())
+}
+
+/// A source that is watched until the time is over, a signal comes, or nobody wants it.
+struct Watch {
+    source: Source,
+    /// What is watched.
+    name: String,
+    start: Instant,
+    began: SystemTime,
+    ending: Ending,
+    for_s: Option<Duration>,
+    /// Where rows go.
+    log: Option<String>,
+}
+
+impl Watch {
+    fn over(&self) -> bool {
+        self.ending.asked() || self.for_s.is_some_and(|end| self.start.elapsed() >= end)
+    }
+
+    /// The view.
+    fn show(mut self, logs: &mut Logs) -> Result<(), String> {
+        let mut terminal = ratatui::try_init().map_err(|error| format!("the terminal: {error}"))?;
+        let outcome = self.show_on(&mut terminal, logs);
+        ratatui::restore();
+        outcome
+    }
+
+    fn show_on(&mut self, terminal: &mut DefaultTerminal, logs: &mut Logs) -> Result<(), String> {
+        let mut monitor = Monitor::default();
+        let mut keyboard = Keyboard::default();
+        let mut context = ViewContext {
+            address: self.name.clone(),
+            log: self.log.take(),
+            ..ViewContext::default()
+        };
+        // What is shown while the screen stands still, and since when.
+        let mut held: Option<(Monitor, Duration)> = None;
+        let mut ended = false;
+        while !self.over() {
+            let next = self.start.elapsed() + PICTURE;
+            while let Some(left) = next.checked_sub(self.start.elapsed()) {
+                if ended {
+                    std::thread::sleep(left);
+                    break;
+                }
+                let Some(event) = self.source.next(self.start.elapsed(), left) else {
+                    break;
+                };
+                let now = self.start.elapsed();
+                if take(event, &mut monitor, now, &mut |reading| logs.write(reading))? {
+                    monitor.tell("the end of the log");
+                    ended = true;
+                }
             }
+            let now = self.start.elapsed();
+            monitor.tick(now);
+            context.question = keyboard.line();
+            context.help = keyboard.help;
+            context.paused = held.is_some();
+            let (shown, at) = held.as_ref().map_or((&monitor, now), |(held, at)| (held, *at));
             terminal
-                .draw(|frame| view::draw(frame, &monitor, &surroundings, start.elapsed()))
+                .draw(|frame| view::draw(frame, shown, &context, at))
                 .map_err(|error| format!("the terminal: {error}"))?;
             while event::poll(Duration::ZERO).is_ok_and(|ready| ready) {
-                match event::read() {
-                    Ok(Input::Key(key)) if key.kind == KeyEventKind::Press => match asked(key) {
-                        Some(Asked::Quit) => return Ok(()),
-                        Some(Asked::Command(command)) => link.send(&monitor.command(command)),
-                        None => {}
-                    },
-                    Ok(_) => {}
+                let key = match event::read() {
+                    Ok(Input::Key(key)) if key.kind == KeyEventKind::Press => key,
+                    Ok(_) => continue,
                     Err(error) => return Err(format!("the terminal: {error}")),
+                };
+                match keyboard.press(key) {
+                    Some(KeyAction::Quit) => return Ok(()),
+                    Some(KeyAction::Send(command)) => {
+                        let bytes = monitor.command(command, now);
+                        if let (Some(bytes), Source::Link(link)) = (bytes, &self.source) {
+                            link.send(&bytes);
+                        }
+                    }
+                    Some(KeyAction::Pause) => {
+                        held = match held {
+                            None => Some((monitor.clone(), now)),
+                            Some(_) => None,
+                        }
+                    }
+                    Some(KeyAction::Chart) => context.plot = context.plot.next(),
+                    Some(KeyAction::ForgetPeak) => monitor.forget_peak(),
+                    Some(KeyAction::Tell(line)) => monitor.tell(&line),
+                    None => {}
                 }
             }
-            if arguments.for_s.is_some_and(|end| start.elapsed() >= end) {
-                return Ok(());
-            }
         }
-    };
-    let outcome = show();
-    ratatui::restore();
-    outcome
-}
+        Ok(())
+    }
 
-/// Rows, until the time is over or nobody reads them.
-fn pipe(
-    arguments: &Arguments,
-    form: Form,
-    mut keep: impl FnMut(&LiveReading) -> Result<(), String>,
-) -> Result<(), String> {
-    let ended = Arc::new(AtomicBool::new(false));
-    let ends = Arc::clone(&ended);
-    // Whole rows and no more: the loop below ends between two.
-    ctrlc::set_handler(move || ends.store(true, Ordering::Relaxed)).map_err(|error| error.to_string())?;
-    let link = Link::start(arguments.address.clone());
-    let start = Instant::now();
-    let mut monitor = Monitor::default();
-    let mut writer = None;
-    let mut connected = false;
-    while !ended.load(Ordering::Relaxed) && arguments.for_s.is_none_or(|end| start.elapsed() < end) {
-        let Some(event) = link.next(PICTURE) else { continue };
-        if let LinkEvent::Lost(reason) = &event {
-            if !connected {
-                return Err(format!(
-                    "{} cannot be opened: {reason}; see that the board is plugged in, or serve one with `cargo demo --serve`",
-                    arguments.address
-                ));
+    /// Rows, until nobody reads them.
+    fn pipe(mut self, form: Form, logs: &mut Logs) -> Result<(), String> {
+        let mut monitor = Monitor::default();
+        let mut output: Option<Writer<RowOutput>> = None;
+        let mut connected = false;
+        let mut told_version = None;
+        let mut read = true;
+        loop {
+            // What had arrived when the time was over still counts.
+            let within = if self.over() { Duration::ZERO } else { PICTURE };
+            let Some(event) = self.source.next(self.start.elapsed(), within) else {
+                if within.is_zero() {
+                    break;
+                }
+                continue;
+            };
+            if let SourceEvent::Link(LinkEvent::Lost(reason)) = &event {
+                if !connected {
+                    return Err(format!(
+                        "{} cannot be opened: {reason}; see that the board is plugged in, or serve one with `cargo demo --serve`",
+                        self.name
+                    ));
+                }
+                eprintln!("warning: no connection, trying again: {reason}");
             }
-            eprintln!("warning: no connection, trying again: {reason}");
-        }
-        connected |= event == LinkEvent::Connected;
-        let mut write = |reading: &LiveReading| -> Result<bool, String> {
-            keep(reading)?;
-            let written = match &mut writer {
-                Some(writer) => Writer::write(writer, reading),
-                None => {
-                    Writer::new(form, io::stdout().lock()).and_then(|new| writer.insert(new).write(reading))
+            connected |= matches!(event, SourceEvent::Link(LinkEvent::Connected));
+            let began = self.began;
+            let mut each = |reading: &LiveReading| -> Result<(), String> {
+                if !read {
+                    return Ok(());
+                }
+                logs.write(reading)?;
+                let written = match &mut output {
+                    Some(writer) => writer.write(reading),
+                    None => Writer::new(form, RowOutput::new(), began)
+                        .and_then(|new| output.insert(new).write(reading)),
+                };
+                match written {
+                    Err(error) if error.kind() == ErrorKind::BrokenPipe => {
+                        read = false;
+                        Ok(())
+                    }
+                    written => written.map_err(|error| format!("standard output: {error}")),
                 }
             };
-            match written {
-                Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
-                Err(error) => Err(format!("standard output: {error}")),
-                Ok(()) => Ok(true),
+            let ended = take(event, &mut monitor, self.start.elapsed(), &mut each)?;
+            if ended || !read || self.ending.asked() {
+                break;
             }
-        };
-        let mut read = true;
-        take(event, &mut monitor, start.elapsed(), &mut |reading| {
-            read = read && write(reading)?;
-            Ok(())
-        })?;
-        if !read {
-            return Ok(());
-        }
-    }
-    if writer.is_none() {
-        return Err(format!(
-            "{} sent no report; is it a fingertip's port, at this speed?",
-            arguments.address
-        ));
-    }
-    io::stdout()
-        .flush()
-        .map_err(|error| format!("standard output: {error}"))
-}
-
-/// Takes an event of the link; every report of it goes to `each`.
-fn take(
-    event: LinkEvent,
-    monitor: &mut Monitor,
-    now: Duration,
-    each: &mut impl FnMut(&LiveReading) -> Result<(), String>,
-) -> Result<(), String> {
-    match event {
-        LinkEvent::Connected => monitor.connected(),
-        LinkEvent::Lost(reason) => monitor.lost(&reason),
-        LinkEvent::Bytes(bytes) => {
-            for byte in bytes {
-                if let Some(reading) = monitor.hear(byte, now) {
-                    each(&reading)?;
-                }
+            if let Some(version) = monitor.other_version().filter(|_| told_version.is_none()) {
+                told_version = Some(version);
+                eprintln!(
+                    "warning: the board speaks version {version} of the protocol, this monitor version {PROTOCOL_VERSION}"
+                );
             }
         }
-    }
-    Ok(())
-}
-
-/// What a key asks for.
-enum Asked {
-    Quit,
-    Command(Command),
-}
-
-fn asked(key: KeyEvent) -> Option<Asked> {
-    match key.code {
-        KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => Some(Asked::Quit),
-        KeyCode::Char('q') | KeyCode::Esc => Some(Asked::Quit),
-        KeyCode::Char('t') => Some(Asked::Command(Command::Tare)),
-        KeyCode::Char('u') => Some(Asked::Command(Command::Undo)),
-        KeyCode::Char('s') => Some(Asked::Command(Command::Save { gain: None })),
-        KeyCode::Char('i') => Some(Asked::Command(Command::Info)),
-        KeyCode::Char('x') => Some(Asked::Command(Command::SelfTest { indentation: 0 })),
-        _ => None,
+        if output.is_none() && read {
+            return Err(match told_version {
+                Some(version) => format!(
+                    "{} speaks version {version} of the protocol, this monitor version {PROTOCOL_VERSION}; take the monitor of the \
+                     board's firmware",
+                    self.name
+                ),
+                None => format!(
+                    "{} sent no report; is it a fingertip's port, at this speed?",
+                    self.name
+                ),
+            });
+        }
+        Ok(())
     }
 }

@@ -1,11 +1,17 @@
 //! Live readings of a board, from its serial port or from the emulated board's socket, in a terminal.
 //!
-//! [`link`] (bytes, and the connection again when it is lost) -> [`readings`] (frames, counted; the latest report) ->
-//! [`view`] (the terminal) and [`rows`] (CSV and JSON), run by [`command`]. A force is shown only while its report is `ok`; otherwise the reason is.
+//! [`link`] (bytes, and the connection again when it is lost) or [`replay`] (a log) -> [`readings`] (frames in order, counted; the
+//! latest report, unless the line held it back; commands and their answers) -> [`view`] (the terminal), [`output`] (CSV, JSON,
+//! MCAP), run by [`command`]. A force is shown only while its report is `ok`; otherwise the reason is.
 #![forbid(unsafe_code)]
 
 pub mod command;
+mod frames;
+mod keys;
 pub mod link;
+pub mod output;
 pub mod readings;
-pub mod rows;
+pub mod replay;
+mod signals;
+mod source;
 pub mod view;

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs as _};
 use std::str::FromStr;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::thread;
 use std::time::Duration;
 
@@ -14,6 +14,12 @@ pub const BAUD: u32 = 921_600;
 const PATIENCE: Duration = Duration::from_millis(20);
 /// How long a connection may take.
 const CONNECTING: Duration = Duration::from_secs(2);
+/// How long a write may take on a line that takes nothing.
+const WRITING: Duration = Duration::from_secs(1);
+/// Events that wait while nobody takes them, each of at most [`BUFFER`] bytes: beyond it the line waits.
+const WAITING: usize = 1024;
+/// Bytes of one read.
+const BUFFER: usize = 4096;
 /// From a lost connection to the next try.
 const RETRY: Duration = Duration::from_millis(500);
 
@@ -59,7 +65,7 @@ impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Serial { port, .. } => f.write_str(port),
-            Self::Tcp(address) => f.write_str(address),
+            Self::Tcp(address) => write!(f, "tcp:{address}"),
         }
     }
 }
@@ -81,6 +87,7 @@ impl Address {
                     match TcpStream::connect_timeout(&address, CONNECTING) {
                         Ok(stream) => {
                             stream.set_read_timeout(Some(PATIENCE))?;
+                            stream.set_write_timeout(Some(WRITING))?;
                             stream.set_nodelay(true)?;
                             return Ok(Box::new(stream));
                         }
@@ -114,7 +121,7 @@ pub struct Link {
 impl Link {
     /// Connects in the background, again and again.
     pub fn start(address: Address) -> Self {
-        let (say, events) = channel();
+        let (say, events) = sync_channel(WAITING);
         let (outgoing, to_send) = channel();
         thread::spawn(move || keep(&address, &say, &to_send));
         Self { events, outgoing }
@@ -133,7 +140,7 @@ impl Link {
 }
 
 /// Keeps the connection until nobody listens.
-fn keep(address: &Address, say: &Sender<LinkEvent>, to_send: &Receiver<Vec<u8>>) {
+fn keep(address: &Address, say: &SyncSender<LinkEvent>, to_send: &Receiver<Vec<u8>>) {
     loop {
         let reason = match address.open() {
             Ok(mut wire) => {
@@ -156,8 +163,8 @@ fn keep(address: &Address, say: &Sender<LinkEvent>, to_send: &Receiver<Vec<u8>>)
 }
 
 /// Carries bytes until the wire breaks, or nobody listens.
-fn carry(wire: &mut dyn Wire, say: &Sender<LinkEvent>, to_send: &Receiver<Vec<u8>>) -> io::Result<()> {
-    let mut buffer = [0; 4096];
+fn carry(wire: &mut dyn Wire, say: &SyncSender<LinkEvent>, to_send: &Receiver<Vec<u8>>) -> io::Result<()> {
+    let mut buffer = [0; BUFFER];
     loop {
         match wire.read(&mut buffer) {
             Ok(0) => {

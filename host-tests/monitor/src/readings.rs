@@ -1,7 +1,11 @@
 //! What came over the wire: the latest report, a history of the force, the greeting, the answers, and what was lost.
 
-use fingertip::link::command::{self, Command, CommandKind, Outcome, Request};
-use fingertip::link::telemetry::{Answer, Decoder, Hello, Message};
+use crate::frames::clock::BoardClock;
+use crate::frames::order::{FrameOrder, Order};
+use crate::frames::pending::{self, Pending};
+use fingertip::link::command::{self, Command, Request};
+use fingertip::link::telemetry::{Decoder, Hello, Message};
+use fingertip::link::wire::{DecodeError, PROTOCOL_VERSION};
 use fingertip::signal::report::Report;
 use fingertip::status::{Status, Touch};
 use fingertip::units::Microseconds;
@@ -17,6 +21,10 @@ const MISSED: u32 = 3;
 pub const HISTORY: f64 = 10.0;
 /// Between points of the history, seconds.
 const STEP: f64 = 0.02;
+/// Most points of the history, also of a board whose clock stands still.
+const POINTS: usize = 2 * (HISTORY / STEP) as usize;
+/// The board greets once a second. After a silence of this a command may not arrive, or only when nobody expects it.
+const SILENCE: Duration = Duration::from_millis(2500);
 /// Lines of the journal that are kept.
 const LINES: usize = 50;
 
@@ -25,6 +33,12 @@ const LINES: usize = 50;
 pub struct LiveReading {
     /// The board's clock, since its reset.
     pub time: Microseconds,
+    /// When it was measured on the host's clock, since the watch began: when it came, less what the line held it back.
+    pub measured: Duration,
+    /// Frames that are missing right before it.
+    pub missing_before: u64,
+    /// Hash of the design in the image, once a hello told it.
+    pub design: Option<u64>,
     /// How far to believe it.
     pub status: Status,
     /// Its values; a fault has none.
@@ -33,7 +47,7 @@ pub struct LiveReading {
     pub touch: Touch,
 }
 
-/// The values of a report.
+/// The values of a report. A number at the end of what a frame can carry is infinite: it is a bound, not a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiveValues {
     /// Pressure over the zero, pascals, and its standard deviation.
@@ -50,17 +64,18 @@ impl LiveReading {
         let values = report.outcome.ok().map(|measurement| {
             let sigma = measurement.sigma;
             LiveValues {
-                pressure_rise_pa: [
-                    measurement.pressure_rise.pascals(bits),
-                    sigma.pressure_rise.pascals(bits),
-                ],
-                force_n: [measurement.force.newtons(), sigma.force.newtons()],
+                pressure_rise_pa: [measurement.pressure_rise, sigma.pressure_rise]
+                    .map(|pressure| bounded(pressure.0, pressure.pascals(bits))),
+                force_n: [measurement.force, sigma.force].map(|force| bounded(force.0, force.newtons())),
                 indentation_mm: [measurement.indentation, sigma.indentation]
-                    .map(|length| 1e3 * length.metres()),
+                    .map(|length| bounded(length.0, 1e3 * length.metres())),
             }
         });
         Self {
             time: report.time,
+            measured: Duration::ZERO,
+            missing_before: 0,
+            design: None,
             status: report.status(),
             values,
             touch: report
@@ -71,7 +86,27 @@ impl LiveReading {
 
     /// Its values if they hold as they stand, else nothing: what is qualified or missing is not for showing.
     pub fn ok(&self) -> Option<LiveValues> {
-        self.values.filter(|_| self.status == Status::Ok)
+        self.values
+            .filter(|_| self.status == Status::Ok)
+            .filter(LiveValues::is_finite)
+    }
+}
+
+impl LiveValues {
+    fn is_finite(&self) -> bool {
+        [self.pressure_rise_pa, self.force_n, self.indentation_mm]
+            .iter()
+            .flatten()
+            .all(|value| value.is_finite())
+    }
+}
+
+/// A number of the wire; infinite where it stands at the end of its range.
+fn bounded(number: i32, value: f64) -> f64 {
+    if number.saturating_abs() == i32::MAX {
+        f64::INFINITY.copysign(value)
+    } else {
+        value
     }
 }
 
@@ -84,19 +119,36 @@ pub struct Counts {
     pub missing: u64,
     /// Frames that did not read as one.
     pub broken: u64,
+    /// Frames that came twice, or after later ones: left out.
+    pub out_of_order: u64,
+}
+
+/// A point of the history: a report that was ok, or that there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HistoryPoint {
+    /// The board's clock, seconds since its reset.
+    pub time: f64,
+    /// Force, newtons, and pressure rise, pascals; nothing where the report was not ok, or none came.
+    pub values: Option<[f64; 2]>,
 }
 
 /// Everything that is known of a board.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Monitor {
     decoder: Decoder,
-    sequence: Option<u16>,
+    order: FrameOrder,
+    clock: BoardClock,
     counts: Counts,
-    latest: Option<(LiveReading, Duration)>,
-    history: VecDeque<(f64, Option<f64>)>,
+    latest: Option<LiveReading>,
+    /// When the last frame of any kind came.
+    heard: Option<Duration>,
+    peak_force_n: Option<f64>,
+    history: VecDeque<HistoryPoint>,
     hello: Option<Hello>,
+    other_version: Option<u8>,
     journal: VecDeque<String>,
     next_command: u16,
+    pending: Pending,
     connection: Connection,
 }
 
@@ -113,12 +165,13 @@ pub enum Connection {
 }
 
 impl Monitor {
-    /// The link is connected again: a board may have been reset since.
+    /// The link is connected again: another board may be at its end.
     pub fn connected(&mut self) {
         self.connection = Connection::Connected;
         self.decoder = Decoder::default();
-        self.sequence = None;
-        self.note("connected".to_owned());
+        self.order = FrameOrder::default();
+        self.hello = None;
+        self.restarted("connected");
     }
 
     /// The link is lost. What was read before is no longer the fingertip's state.
@@ -129,90 +182,228 @@ impl Monitor {
         }
         self.connection = lost;
         self.latest = None;
+        self.heard = None;
+        self.gap();
+        self.give_up("the connection was lost");
     }
 
-    /// Takes a byte that came at `now`, since the start; gives the report that it completes.
+    /// Takes a byte that came at `now`, since the start; gives the report that it completes, unless it is late or came before.
     pub fn hear(&mut self, byte: u8, now: Duration) -> Option<LiveReading> {
-        let Ok(frame) = self.decoder.push(byte)? else {
-            self.counts.broken += 1;
-            return None;
+        let frame = match self.decoder.push(byte)? {
+            Ok(frame) => frame,
+            Err(error) => {
+                self.counts.broken += 1;
+                if let DecodeError::Version(version) = error {
+                    self.met_version(version);
+                }
+                return None;
+            }
         };
-        if let Some(before) = self.sequence.replace(frame.sequence) {
-            self.counts.missing += u64::from(frame.sequence.wrapping_sub(before).wrapping_sub(1));
+        let time = frame.message.time();
+        let missing = match self.order.place(frame.sequence, time.0) {
+            Order::Next { missing } => missing,
+            Order::Repeated | Order::Late => {
+                self.counts.out_of_order += 1;
+                return None;
+            }
+            Order::Restarted => {
+                self.hello = None;
+                self.restarted("the board was reset");
+                0
+            }
+        };
+        self.counts.missing += missing;
+        if missing > 0 {
+            self.gap();
         }
+        self.heard = Some(now);
+        let late = self.clock.lateness(time.0, now);
         match frame.message {
             Message::Report {
                 report,
                 pressure_fraction_bits,
-            } => {
-                let reading = LiveReading::of(&report, pressure_fraction_bits);
-                self.counts.reports += 1;
-                self.remember(&reading);
-                self.latest = Some((reading, now));
-                Some(reading)
-            }
+            } => Some(self.take(LiveReading {
+                measured: now.saturating_sub(late),
+                missing_before: missing,
+                design: self.hello.map(|hello| hello.design_hash),
+                ..LiveReading::of(&report, pressure_fraction_bits)
+            })),
             Message::Hello(hello) => {
                 self.hello = Some(hello);
                 None
             }
             Message::Answer(answer) => {
-                self.note(words(&answer));
+                let own = self.pending.answered(&answer);
+                let elsewhere = if own { "" } else { " (not asked for here)" };
+                self.note(format!("{}{elsewhere}", pending::describe(&answer)));
                 None
             }
         }
     }
 
+    /// Takes a report, of the wire or of a log.
+    pub fn take(&mut self, reading: LiveReading) -> LiveReading {
+        self.counts.reports += 1;
+        self.remember(&reading);
+        if let Some(values) = reading.ok() {
+            let force = values.force_n[0];
+            self.peak_force_n = Some(self.peak_force_n.map_or(force, |peak| peak.max(force)));
+        }
+        self.latest = Some(reading);
+        reading
+    }
+
+    /// Another run of the board, or another board.
+    fn restarted(&mut self, why: &str) {
+        self.clock = BoardClock::default();
+        self.latest = None;
+        self.note(why.to_owned());
+        self.give_up("the board was reset");
+    }
+
+    fn met_version(&mut self, version: u8) {
+        if self.other_version.replace(version) != Some(version) {
+            self.note(format!(
+                "the board speaks version {version} of the protocol, this monitor version {PROTOCOL_VERSION}"
+            ));
+        }
+    }
+
+    fn give_up(&mut self, why: &str) {
+        for (sequence, kind) in self.pending.lost() {
+            self.note(format!("{} {sequence}: no answer, {why}", pending::name(kind)));
+        }
+    }
+
     fn remember(&mut self, reading: &LiveReading) {
         let time = reading.time.0 as f64 * 1e-6;
-        let force = reading.ok().map(|values| values.force_n[0]);
-        match self.history.back() {
-            // Another life of the board.
-            Some((last, _)) if time < *last => self.history.clear(),
-            Some((last, before)) if time - last < STEP && before.is_some() == force.is_some() => return,
-            _ => {}
+        let values = reading
+            .ok()
+            .map(|values| [values.force_n[0], values.pressure_rise_pa[0]]);
+        if let Some(last) = self.history.back().copied() {
+            if time < last.time {
+                // Another run of the board.
+                self.history.clear();
+            } else if time - last.time > self.longest_period() {
+                // Nothing is known of a silence.
+                self.gap();
+            } else if time - last.time < STEP && last.values.is_some() == values.is_some() {
+                return;
+            }
         }
-        self.history.push_back((time, force));
-        while self
-            .history
-            .front()
-            .is_some_and(|(first, _)| time - first > HISTORY)
+        self.push(HistoryPoint { time, values });
+    }
+
+    /// Nothing is known between the last point and the next.
+    fn gap(&mut self) {
+        if let Some(HistoryPoint {
+            time,
+            values: Some(_),
+        }) = self.history.back().copied()
+        {
+            self.push(HistoryPoint { time, values: None });
+        }
+    }
+
+    fn push(&mut self, point: HistoryPoint) {
+        self.history.push_back(point);
+        while self.history.len() > POINTS
+            || self
+                .history
+                .front()
+                .is_some_and(|first| point.time - first.time > HISTORY)
         {
             self.history.pop_front();
         }
     }
 
+    /// Seconds after which a report is missing.
+    fn longest_period(&self) -> f64 {
+        self.stale().as_secs_f64()
+    }
+
     fn note(&mut self, line: String) {
+        if self.journal.back() == Some(&line) {
+            return;
+        }
         self.journal.push_back(line);
         if self.journal.len() > LINES {
             self.journal.pop_front();
         }
     }
 
-    /// The bytes of a command, to be sent.
-    pub fn command(&mut self, command: Command) -> Vec<u8> {
+    /// The bytes of a command, to be sent; nothing where it cannot arrive now, or one of its kind waits for an answer: the journal
+    /// tells why. What a dead line holds back must not reach the board later.
+    pub fn command(&mut self, command: Command, now: Duration) -> Option<Vec<u8>> {
+        self.tick(now);
+        let name = pending::name(command.kind());
+        let refused = if self.connection != Connection::Connected {
+            Some("there is no connection".to_owned())
+        } else if self.heard.is_none_or(|heard| now.saturating_sub(heard) > SILENCE) {
+            Some("the board is silent".to_owned())
+        } else {
+            self.pending
+                .waiting(command.kind())
+                .map(|sequence| format!("{name} {sequence} waits for its answer"))
+        };
+        if let Some(reason) = refused {
+            self.note(format!("{name} not sent: {reason}"));
+            return None;
+        }
         self.next_command = self.next_command.wrapping_add(1);
         let sequence = self.next_command;
-        self.note(format!("{} {sequence} sent", name(command.kind())));
-        command::encode(&Request { sequence, command }).to_vec()
+        self.pending.sent(sequence, command, now);
+        self.note(format!("{name} {sequence} sent"));
+        Some(command::encode(&Request { sequence, command }).to_vec())
+    }
+
+    /// Gives up answers that are overdue.
+    pub fn tick(&mut self, now: Duration) {
+        for (sequence, kind) in self.pending.overdue(now) {
+            self.note(format!("{} {sequence}: no answer", pending::name(kind)));
+        }
+    }
+
+    /// A line for the journal.
+    pub fn tell(&mut self, line: &str) {
+        self.note(line.to_owned());
+    }
+
+    /// From here on the peak counts anew.
+    pub fn forget_peak(&mut self) {
+        self.peak_force_n = None;
+    }
+
+    fn stale(&self) -> Duration {
+        let period = self.hello.map_or(0, |hello| hello.report_period);
+        STALE.max(MISSED * Duration::from_micros(period.into()))
     }
 
     /// The latest report, unless it is stale.
     pub fn latest(&self, now: Duration) -> Option<LiveReading> {
-        let period = self.hello.map_or(0, |hello| hello.report_period);
-        let stale = STALE.max(MISSED * Duration::from_micros(period.into()));
+        let stale = self.stale();
         self.latest
-            .filter(|(_, came)| now.saturating_sub(*came) < stale)
-            .map(|(reading, _)| reading)
+            .filter(|reading| now.saturating_sub(reading.measured) < stale)
     }
 
-    /// Board seconds and force of the last [`HISTORY`]; no force where a report was not ok.
-    pub fn history(&self) -> &VecDeque<(f64, Option<f64>)> {
+    /// The largest force, newtons, that was ok since the start or [`forget_peak`](Self::forget_peak); none where none was.
+    pub fn peak_force_n(&self) -> Option<f64> {
+        self.peak_force_n
+    }
+
+    /// The last [`HISTORY`] seconds.
+    pub fn history(&self) -> &VecDeque<HistoryPoint> {
         &self.history
     }
 
-    /// The last greeting.
+    /// The last greeting of this run of the board.
     pub fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
+    }
+
+    /// The version of the protocol that the board speaks, where it is another one; none where no such frame came.
+    pub fn other_version(&self) -> Option<u8> {
+        self.other_version
     }
 
     /// What was counted.
@@ -229,44 +420,4 @@ impl Monitor {
     pub fn connection(&self) -> &Connection {
         &self.connection
     }
-}
-
-fn name(kind: CommandKind) -> &'static str {
-    match kind {
-        CommandKind::Tare => "tare",
-        CommandKind::Undo => "undo",
-        CommandKind::Save => "save",
-        CommandKind::Info => "info",
-        CommandKind::SelfTest => "self-test",
-        CommandKind::Rate => "rate",
-        CommandKind::Forget => "forget",
-        CommandKind::Air => "air",
-        CommandKind::Object => "object",
-    }
-}
-
-fn words(answer: &Answer) -> String {
-    let outcome = match answer.outcome {
-        Outcome::Done => "done",
-        Outcome::Touched => "refused: the fingertip is touched, or may be",
-        Outcome::Restless => "refused: the fingertip did not keep still",
-        Outcome::OutOfBounds => "refused: the zero is further off than any transducer drifts",
-        Outcome::NoReading => "refused: there are no readings",
-        Outcome::Busy => "refused: the same is under way",
-        Outcome::NothingToUndo => "refused: there is nothing to undo",
-        Outcome::ZeroUnverified => "refused: no verified zero; tare first",
-        Outcome::MemoryFailed => "failed: the memory did not take it",
-        Outcome::NotInImage => "refused: the design in the image has no use for it",
-        Outcome::NoSuchObject => "refused: the design has no tables of such an object",
-    };
-    let findings = match (answer.command, answer.findings) {
-        (CommandKind::SelfTest, 0) => ", nothing found".to_owned(),
-        (CommandKind::SelfTest, bits) => format!(", findings {bits:#06x}"),
-        _ => String::new(),
-    };
-    format!(
-        "{} {}: {outcome}{findings}",
-        name(answer.command),
-        answer.command_sequence
-    )
 }

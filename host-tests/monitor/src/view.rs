@@ -1,51 +1,173 @@
-//! The terminal: values with their unit, or the reason why there are none; the force over the last seconds; what happened.
+//! The terminal: the status, values with their unit or the reason why there are none; a chart of the last seconds; what happened.
 
-use crate::readings::{Connection, HISTORY, Monitor};
+use crate::keys::HELP;
+use crate::readings::{Connection, HISTORY, HistoryPoint, Monitor};
+use fingertip::link::wire::PROTOCOL_VERSION;
 use fingertip::status::{Status, Touch};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
-use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
+use ratatui::widgets::{Axis, Block, Chart, Clear, Dataset, GraphType, Paragraph, Wrap};
 use std::time::Duration;
 
-/// The keys, for the last line.
-const KEYS: &str = "t tare   u undo   s save   i info   x self-test   q quit";
-/// The least force that the chart reaches to, newtons.
-const LEAST_SCALE: f64 = 0.1;
+/// The keys, for the last line: the long form where it fits.
+const KEYS: [&str; 2] = [
+    "t tare   u undo   s save   i info   x self-test   p pause   c chart   ? all keys   q quit",
+    "? keys   t tare   q quit",
+];
+/// From this width and height on there are borders and a chart.
+const ROOMY: [u16; 2] = [60, 17];
+/// From this width on the 1-sigma stands beside its value.
+const WIDE: u16 = 50;
+/// Lines of values: status, touch, force, peak, indentation, pressure rise.
+const VALUES: u16 = 6;
 
-/// What the view says beside the readings.
+/// What the chart shows.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Plot {
+    /// The force.
+    #[default]
+    Force,
+    /// The pressure rise.
+    PressureRise,
+}
+
+impl Plot {
+    /// Title of the chart.
+    const fn title(self) -> &'static str {
+        match self {
+            Self::Force => " force / N over the last seconds, only where it is ok ",
+            Self::PressureRise => " pressure rise / Pa over the last seconds, only where it is ok ",
+        }
+    }
+
+    /// The largest value that an empty chart reaches to, in its unit.
+    const fn least_scale(self) -> f64 {
+        match self {
+            Self::Force => 0.1,
+            Self::PressureRise => 100.0,
+        }
+    }
+
+    /// The other one.
+    #[must_use]
+    pub const fn next(self) -> Self {
+        match self {
+            Self::Force => Self::PressureRise,
+            Self::PressureRise => Self::Force,
+        }
+    }
+}
+
+/// What the view shows beside the readings.
 #[derive(Clone, Debug, Default)]
 pub struct ViewContext {
     /// Where the board is.
     pub address: String,
     /// Where rows go, if they do.
     pub log: Option<String>,
+    /// What the chart shows.
+    pub plot: Plot,
+    /// Whether the screen stands still.
+    pub paused: bool,
+    /// What is being typed, if anything is.
+    pub question: Option<String>,
+    /// Whether the keys are explained.
+    pub help: bool,
 }
 
 /// Draws everything; `now` is the time since the start.
-pub fn draw(frame: &mut Frame<'_>, monitor: &Monitor, surroundings: &ViewContext, now: Duration) {
-    let [title, values, chart, journal, keys] = Layout::vertical([
-        Constraint::Length(1),
-        Constraint::Length(7),
-        Constraint::Min(6),
-        Constraint::Length(6),
-        Constraint::Length(1),
-    ])
-    .areas(frame.area());
-    frame.render_widget(heading(monitor, surroundings), title);
-    frame.render_widget(readings(monitor, now), values);
-    draw_chart(frame, chart, monitor);
-    draw_journal(frame, journal, monitor, surroundings);
+pub fn draw(frame: &mut Frame<'_>, monitor: &Monitor, context: &ViewContext, now: Duration) {
+    let all = frame.area();
+    if all.width >= ROOMY[0] && all.height >= ROOMY[1] {
+        let [title, values, chart, journal, keys] = Layout::vertical([
+            Constraint::Length(1),
+            Constraint::Length(VALUES + 2),
+            Constraint::Min(2),
+            Constraint::Length(if all.height >= 24 { 6 } else { 4 }),
+            Constraint::Length(1),
+        ])
+        .areas(all);
+        frame.render_widget(heading(monitor, context, title.width), title);
+        let now_block = Block::bordered().title(" now ");
+        frame.render_widget(
+            Paragraph::new(readings(monitor, values.width, now)).block(now_block),
+            values,
+        );
+        draw_chart(frame, chart, monitor, context.plot);
+        draw_journal(frame, journal, monitor, context);
+        draw_keys(frame, keys, context);
+    } else {
+        // The status first, and whole: it decides what the rest is worth.
+        let [values, journal, keys] = Layout::vertical([
+            Constraint::Length(VALUES),
+            Constraint::Min(0),
+            Constraint::Length(1),
+        ])
+        .areas(all);
+        frame.render_widget(Paragraph::new(readings(monitor, values.width, now)), values);
+        let room = usize::from(journal.height);
+        let lines = latest_lines(monitor, room);
+        frame.render_widget(Paragraph::new(lines), journal);
+        draw_keys(frame, keys, context);
+    }
+    if context.help {
+        draw_help(frame, all);
+    }
+}
+
+/// Cut to a width, with a mark where something is cut.
+fn fitted(text: &str, width: usize) -> String {
+    if text.chars().count() <= width {
+        return text.to_owned();
+    }
+    let mut cut: String = text.chars().take(width.saturating_sub(1)).collect();
+    cut.push('\u{2026}');
+    cut
+}
+
+fn draw_keys(frame: &mut Frame<'_>, area: Rect, context: &ViewContext) {
+    let (text, style) = if let Some(question) = &context.question {
+        (question.clone(), Style::new().add_modifier(Modifier::BOLD))
+    } else {
+        let fits = KEYS
+            .iter()
+            .find(|keys| keys.len() <= usize::from(area.width))
+            .unwrap_or(&KEYS[1]);
+        ((*fits).to_owned(), Style::new().add_modifier(Modifier::DIM))
+    };
+    // Of a long question the end, where it is typed.
+    let skipped = text.chars().count().saturating_sub(area.width.into());
+    let shown: String = if context.question.is_some() {
+        text.chars().skip(skipped).collect()
+    } else {
+        text
+    };
+    frame.render_widget(Paragraph::new(shown).style(style), area);
+}
+
+fn draw_help(frame: &mut Frame<'_>, all: Rect) {
+    let lines: Vec<Line<'_>> = HELP
+        .iter()
+        .map(|(key, meaning)| Line::from(format!("{key:>3}  {meaning}")))
+        .collect();
+    frame.render_widget(Clear, all);
     frame.render_widget(
-        Paragraph::new(KEYS).style(Style::new().add_modifier(Modifier::DIM)),
-        keys,
+        Paragraph::new(lines)
+            .wrap(Wrap { trim: false })
+            .block(Block::new().title("keys")),
+        all,
     );
 }
 
-fn heading(monitor: &Monitor, surroundings: &ViewContext) -> Paragraph<'static> {
-    let (words, style) = match monitor.connection() {
+fn heading(monitor: &Monitor, context: &ViewContext, width: u16) -> Paragraph<'static> {
+    let (state, style) = match monitor.connection() {
+        _ if context.paused => (
+            "PAUSED, p goes on".to_owned(),
+            Style::new().fg(Color::Black).bg(Color::Yellow),
+        ),
         Connection::Connecting => ("connecting".to_owned(), Style::new().fg(Color::Yellow)),
         Connection::Connected => ("connected".to_owned(), Style::new().fg(Color::Green)),
         Connection::Lost(reason) => (
@@ -53,51 +175,78 @@ fn heading(monitor: &Monitor, surroundings: &ViewContext) -> Paragraph<'static> 
             Style::new().fg(Color::Red),
         ),
     };
-    let bold = Style::new().add_modifier(Modifier::BOLD);
-    let mut spans = vec![
-        Span::styled("fingertip monitor  ", bold),
-        Span::raw(format!("{}  ", surroundings.address)),
-        Span::styled(words, style),
-    ];
-    if let Some(hello) = monitor.hello() {
+    let name = "fingertip monitor  ".to_owned();
+    let address = format!("{}  ", context.address);
+    let design = monitor.hello().map_or_else(String::new, |hello| {
         let [major, minor, patch] = hello.firmware;
-        spans.push(Span::raw(format!(
+        format!(
             "  firmware {major}.{minor}.{patch}  design {:016x}",
             hello.design_hash
-        )));
+        )
+    });
+    let mut left = usize::from(width);
+    let mut spans = Vec::new();
+    for (text, style) in [
+        (name, Style::new().add_modifier(Modifier::BOLD)),
+        (address, Style::new()),
+        (state, style),
+        (design, Style::new()),
+    ] {
+        let text = fitted(&text, left);
+        left -= text.chars().count().min(left);
+        spans.push(Span::styled(text, style));
     }
     Paragraph::new(Line::from(spans))
 }
 
-fn readings(monitor: &Monitor, now: Duration) -> Paragraph<'static> {
+fn readings(monitor: &Monitor, width: u16, now: Duration) -> Vec<Line<'static>> {
     let latest = monitor.latest(now);
     let status = latest.map(|reading| reading.status);
-    let (word, color) = match status {
-        None => ("no report".to_owned(), Color::Red),
-        Some(status @ Status::Ok) => (status.to_string(), Color::Green),
-        Some(status @ Status::Warning(_)) => (status.to_string(), Color::Yellow),
-        Some(status @ Status::Fault(_)) => (status.to_string(), Color::Red),
+    let (word, color) = match (status, monitor.connection(), monitor.other_version()) {
+        (None, Connection::Lost(_), _) => ("no report: no connection".to_owned(), Color::Red),
+        (None, _, Some(version)) => (
+            format!("no report: protocol {version}, not {PROTOCOL_VERSION}"),
+            Color::Red,
+        ),
+        (None, ..) => ("no report".to_owned(), Color::Red),
+        (Some(status @ Status::Ok), ..) => (status.to_string(), Color::Green),
+        (Some(status @ Status::Warning(_)), ..) => (status.to_string(), Color::Yellow),
+        (Some(status @ Status::Fault(_)), ..) => (status.to_string(), Color::Red),
     };
     let ok = latest.and_then(|reading| reading.ok());
     let bold = Style::new().add_modifier(Modifier::BOLD);
+    let wide = width >= WIDE;
     let value = |name: &str, pair: Option<[f64; 2]>, decimals: usize, unit: &str| {
         let text = match pair {
-            Some([value, sigma]) => {
+            Some([value, sigma]) if wide => {
                 format!("{value:>10.decimals$} {unit:<2}   1-sigma {sigma:.decimals$} {unit}")
             }
-            None => format!("{:>10}    not shown: {word}", "-"),
+            Some([value, _]) => format!("{value:>10.decimals$} {unit:<2}"),
+            None if wide => format!("{:>10}    not shown: {word}", "-"),
+            None => format!("{:>10}", "-"),
         };
-        Line::from(vec![Span::raw(format!(" {name:<15}")), Span::styled(text, bold)])
+        Line::from(vec![Span::raw(format!(" {name:<13} ")), Span::styled(text, bold)])
     };
     let touch = match latest.map(|reading| reading.touch) {
         None | Some(Touch::Unknown) => "unknown",
         Some(Touch::Untouched) => "untouched",
         Some(Touch::Touched) => "touched",
     };
-    let lines = vec![
+    let peak = match monitor.peak_force_n() {
+        Some(peak) if wide => format!("{peak:>10.4} N    largest that was ok; k forgets it"),
+        Some(peak) => format!("{peak:>10.4} N"),
+        None => format!("{:>10}", "-"),
+    };
+    let shown = if wide {
+        format!(" {:<13} {word}", "status")
+    } else {
+        word.clone()
+    };
+    vec![
+        Line::styled(shown, Style::new().fg(color).add_modifier(Modifier::BOLD)),
         value("force", ok.map(|values| values.force_n), 4, "N"),
         value("indentation", ok.map(|values| values.indentation_mm), 4, "mm"),
-        // A warned rise still says what the transducer reads.
+        // A warned rise still tells what the transducer reads.
         value(
             "pressure rise",
             latest
@@ -106,25 +255,24 @@ fn readings(monitor: &Monitor, now: Duration) -> Paragraph<'static> {
             1,
             "Pa",
         ),
-        Line::from(format!(" {:<15}{touch:>10}", "touch")),
-        Line::from(vec![
-            Span::raw(format!(" {:<15}", "status")),
-            Span::styled(
-                format!("{word:>10}"),
-                Style::new().fg(color).add_modifier(Modifier::BOLD),
-            ),
-        ]),
-    ];
-    Paragraph::new(lines).block(Block::bordered().title(" now "))
+        Line::from(format!(" {:<13} {touch:>10}", "touch")),
+        Line::from(format!(" {:<13} {peak}", "peak force")),
+    ]
 }
 
-/// The stretches of the history in which there is a force.
-fn stretches(monitor: &Monitor) -> Vec<Vec<(f64, f64)>> {
+/// The stretches of the history in which there is a value.
+fn stretches(monitor: &Monitor, plot: Plot) -> Vec<Vec<(f64, f64)>> {
     let mut all = vec![Vec::new()];
-    let end = monitor.history().back().map_or(0.0, |(time, _)| *time);
-    for (time, force) in monitor.history() {
-        match (force, all.last_mut()) {
-            (Some(force), Some(stretch)) => stretch.push((time - end, *force)),
+    let end = monitor.history().back().map_or(0.0, |point| point.time);
+    for HistoryPoint { time, values } in monitor.history() {
+        match (values, all.last_mut()) {
+            (Some([force, pressure]), Some(stretch)) => stretch.push((
+                time - end,
+                match plot {
+                    Plot::Force => *force,
+                    Plot::PressureRise => *pressure,
+                },
+            )),
             _ => all.push(Vec::new()),
         }
     }
@@ -132,13 +280,13 @@ fn stretches(monitor: &Monitor) -> Vec<Vec<(f64, f64)>> {
     all
 }
 
-fn draw_chart(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor) {
-    let all = stretches(monitor);
+fn draw_chart(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor, plot: Plot) {
+    let all = stretches(monitor, plot);
     let largest = all
         .iter()
         .flatten()
-        .map(|(_, force)| *force)
-        .fold(LEAST_SCALE, f64::max);
+        .map(|(_, value)| *value)
+        .fold(plot.least_scale(), f64::max);
     let datasets = all
         .iter()
         .map(|stretch| {
@@ -150,8 +298,9 @@ fn draw_chart(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor) {
         })
         .collect();
     let labels = |values: [f64; 3], decimals: usize| values.map(|value| format!("{value:.decimals$}"));
+    let decimals = if plot == Plot::Force { 2 } else { 0 };
     let chart = Chart::new(datasets)
-        .block(Block::bordered().title(" force / N over the last seconds, only where it is ok "))
+        .block(Block::bordered().title(plot.title()))
         .x_axis(
             Axis::default()
                 .bounds([-HISTORY, 0.0])
@@ -160,24 +309,13 @@ fn draw_chart(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor) {
         .y_axis(
             Axis::default()
                 .bounds([0.0, largest])
-                .labels(labels([0.0, 0.5 * largest, largest], 2)),
+                .labels(labels([0.0, 0.5 * largest, largest], decimals)),
         );
     frame.render_widget(chart, area);
 }
 
-fn draw_journal(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor, surroundings: &ViewContext) {
-    let counts = monitor.counts();
-    let title = format!(
-        " {} reports, {} missing, {} broken{} ",
-        counts.reports,
-        counts.missing,
-        counts.broken,
-        surroundings
-            .log
-            .as_ref()
-            .map_or_else(String::new, |log| format!(", to {log}"))
-    );
-    let room = usize::from(area.height.saturating_sub(2));
+/// The last lines of the journal, the latest last.
+fn latest_lines(monitor: &Monitor, room: usize) -> Vec<Line<'_>> {
     let mut lines: Vec<Line<'_>> = monitor
         .journal()
         .rev()
@@ -185,5 +323,25 @@ fn draw_journal(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor, surroundin
         .map(|line| Line::from(format!(" {line}")))
         .collect();
     lines.reverse();
+    lines
+}
+
+fn draw_journal(frame: &mut Frame<'_>, area: Rect, monitor: &Monitor, context: &ViewContext) {
+    let counts = monitor.counts();
+    let twice = match counts.out_of_order {
+        0 => String::new(),
+        count => format!(", {count} out of order"),
+    };
+    let title = format!(
+        " {} reports, {} missing, {} broken{twice}{} ",
+        counts.reports,
+        counts.missing,
+        counts.broken,
+        context
+            .log
+            .as_ref()
+            .map_or_else(String::new, |log| format!(", to {log}"))
+    );
+    let lines = latest_lines(monitor, usize::from(area.height.saturating_sub(2)));
     frame.render_widget(Paragraph::new(lines).block(Block::bordered().title(title)), area);
 }

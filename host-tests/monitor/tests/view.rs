@@ -55,7 +55,7 @@ fn screen(monitor: &Monitor, now: Duration) -> String {
     let mut terminal = Terminal::new(TestBackend::new(100, 30)).expect("memory");
     let surroundings = ViewContext {
         address: "/dev/ttyACM0".to_owned(),
-        log: None,
+        ..ViewContext::default()
     };
     terminal
         .draw(|frame| view::draw(frame, monitor, &surroundings, now))
@@ -196,7 +196,11 @@ fn the_history_has_gaps_where_the_force_is_not_ok_and_ends_with_a_reset() {
         report(120, ok),
     ];
     hear(&mut monitor, 0, NOW, &messages);
-    let history: Vec<Option<f64>> = monitor.history().iter().map(|(_, force)| *force).collect();
+    let history: Vec<Option<f64>> = monitor
+        .history()
+        .iter()
+        .map(|point| point.values.map(|[force, _]| force))
+        .collect();
     // The second is too soon after the first to be a point of its own.
     assert_eq!(history, [Some(1.2345), Some(1.2345), None, Some(1.2345)]);
     hear(&mut monitor, 5, NOW, &[report(50, ok)]);
@@ -215,7 +219,7 @@ fn what_is_lost_or_broken_is_counted_and_answers_are_told() {
     }
     let counts = monitor.counts();
     assert_eq!((counts.reports, counts.missing, counts.broken), (3, 2, 1));
-    let sent = monitor.command(Command::Tare);
+    let sent = monitor.command(Command::Tare, NOW).expect("it is connected");
     assert_eq!(
         fingertip::link::command::decode(&sent[..sent.len() - 1])
             .map(|request| (request.sequence, request.command)),

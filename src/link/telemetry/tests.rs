@@ -135,6 +135,15 @@ fn what_the_layout_does_not_allow_is_refused() {
     assert_eq!(decode(&stuffed(&body[..13])), Err(DecodeError::Short));
     body[14] = 99;
     assert_eq!(decode(&stuffed(&body)), Err(DecodeError::Field(14)));
+    // A deviation below 0 is no number.
+    let mut reading = [0; 42];
+    reading[..2].copy_from_slice(&[2, 1]);
+    assert!(decode(&stuffed(&reading)).is_ok());
+    for offset in [30, 34, 38] {
+        let mut wrong = reading;
+        wrong[offset + 3] = 0x80;
+        assert_eq!(decode(&stuffed(&wrong)), Err(DecodeError::Field(offset as u8)));
+    }
     body[1] = 9;
     assert_eq!(decode(&stuffed(&body)), Err(DecodeError::Kind(9)));
     body[0] = 1;
@@ -164,9 +173,9 @@ fn any_frame() -> impl Strategy<Value = Frame> {
             force: Micronewtons(numbers[1]),
             indentation: Nanometres(numbers[2]),
             sigma: Sigma {
-                pressure_rise: PressureRise(numbers[3]),
-                force: Micronewtons(numbers[4]),
-                indentation: Nanometres(numbers[5]),
+                pressure_rise: PressureRise(numbers[3] & i32::MAX),
+                force: Micronewtons(numbers[4] & i32::MAX),
+                indentation: Nanometres(numbers[5] & i32::MAX),
             },
             touch: Touch::CODES[touch].0,
             warnings: Warnings::from_bits(bits).expect("nine bits are known"),

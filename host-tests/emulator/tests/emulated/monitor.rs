@@ -111,7 +111,11 @@ fn the_monitor_shows_the_force_that_presses_and_a_refused_tare() {
         "{shown} in\n{screen}"
     );
 
-    let tare = program.monitor.command(Command::Tare);
+    let now = program.start.elapsed();
+    let tare = program
+        .monitor
+        .command(Command::Tare, now)
+        .expect("it is connected");
     program.link.send(&tare);
     program.until("the answer", |program| {
         program.monitor.journal().any(|line| line.starts_with("tare 1:"))
