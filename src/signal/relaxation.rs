@@ -8,21 +8,19 @@
 //! with `k_i = 1 - exp(-dt / tau_i)` and `c_i = g_i tau_i / dt k_i`. Afterwards `P = P_e + sum q_i` again, so that nothing drifts. The tables
 //! lead from `P_e` to the indentation and to the settled force `F_e`.
 //!
-//! The contact's area goes with `P_e` and the stress with `P`. On the first press the force is half way between the convolution `g * F_e`, which is
-//! too high where the contact grows fast, and `A P` with the area `A = F_e / P_e`, which is too low. From the first release on it is `A P`: what the
-//! wall remembers acts through the shape of now.
+//! The contact's force is borne by the fluid, whose pressure acts on the area of contact at once, and by the wall, which remembers. Of the
+//! settled force the fluid bears the share `phi = P_e / (P_1 + P_e)`; `P_1` belongs to the design. So
 //!
-//! A plate cannot pull. Where `P < 0`, and `P` or `P_e` are not above what they were when this was so before, the wall is free, and `P_c = P_e` and
-//! `P_0 = P` are noted: no force. Where it is touched again, stress grows from `P_0` on a wall that is softer than its shape:
+//! `F = phi A P + (1 - phi) g * F_e` with `A = F_e / P_e`.
 //!
-//! `F = rho A (P - P_0), rho = 1 - (1 - 0.63) exp(-(P_e / P_c - 1) / 0.3)`
+//! A plate cannot pull: there is no force below zero.
 //!
 //! All states are 64-bit integers. A change of pressure, of at most 2^57, is shared, and nothing that the terms hold grows beyond it.
 
 use crate::signal::design::Design;
 use crate::signal::report::Contact;
 use crate::status::Warnings;
-use model_tables::material::series::{Factor, SeriesStep};
+use model_tables::material::series::{Factor, SeriesStep, WallSeries};
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// Pressures are counted in `1 / 2^32` pascal here: the term of 10 000 s still moves by less than 0.01 Pa at 1 kHz.
@@ -32,15 +30,10 @@ const LARGEST: i64 = 1 << 24;
 const LARGEST_STATE: i64 = LARGEST << FRACTION_BITS;
 /// Part of the tables' range, `1 / 2^8`, below which the area counts as constant.
 const AREA_SHIFT: u32 = 8;
-/// The fall of `P_e` from its peak, `1 / 2^5` of it, over which the force goes over to `A P`.
-const FALL_SHIFT: u32 = 5;
 /// Bits of forces below a micronewton, and of the place between two counts.
 const FORCE_BITS: u32 = 16;
 /// One as a share.
 const WHOLE: u32 = 1 << 16;
-/// `1 - rho` at the first touch of a wall that recovers, as a share: 0.37.
-const SOFTER: u32 = WHOLE / 100 * 37;
-
 /// What a relaxing wall's pressure says.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct RelaxedReading {
@@ -64,14 +57,8 @@ pub struct Relaxing<const TERMS: usize> {
     /// `F_e`, and to it what `q_i` is to `P_e`.
     settled: i64,
     forces: [i64; TERMS],
-    /// The largest `P_e` and the largest force, forgotten with the slowest term.
-    peak: i64,
+    /// The largest force, forgotten with the slowest term.
     peak_force: i64,
-    /// How far `P_e` has fallen from its peak, of what the force goes over to `A P` in: a share.
-    fallen: u32,
-    /// `P_c` and `P_0` of a wall that is free, or was, counts: 0 where it was not since it had last recovered.
-    touched: i32,
-    from: i32,
 }
 
 /// What the tables have at an elastic pressure, between two counts.
@@ -110,11 +97,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         held: [0; TERMS],
         settled: 0,
         forces: [0; TERMS],
-        peak: 0,
         peak_force: 0,
-        fallen: 0,
-        touched: 0,
-        from: 0,
     };
 
     /// It has been at a pressure for ever.
@@ -122,11 +105,11 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         *self = Self::NEW;
         self.elastic = pressure(design, rise);
         self.settled = Lookup::at(design, self.elastic).force;
-        self.peak = self.elastic.max(0);
     }
 
     /// Goes on by a step of time to a pressure rise.
-    pub fn step(&mut self, design: &impl Design, step: &SeriesStep, rise: PressureRise) -> RelaxedReading {
+    pub fn step(&mut self, design: &impl Design, wall: &WallSeries, rise: PressureRise) -> RelaxedReading {
+        let step = &wall.step;
         let parameters = design.parameters();
         let pressure = pressure(design, rise);
         let stress = pressure - self.elastic - decay(step, &mut self.held);
@@ -135,10 +118,14 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         let at = Lookup::at(design, self.elastic);
         let convolved = self.convolved(step, at.force);
         let pressed_before = at.elastic.0 > parameters.limits.margin;
-        let by_area = self.by_area(design, &at, rise, pressed_before);
-        self.note_fall(step, pressed_before);
-        let excess = share(WHOLE - self.fallen).of(convolved - by_area) >> 1;
-        let force = ((by_area + excess) >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
+        let by_fluid = by_area(design, self.elastic, &at, rise);
+        let half = wall.fluid_half.min(i32::MAX.unsigned_abs()) as i32;
+        let by_wall = share(part(half, half.saturating_add(at.elastic.0.max(0))));
+        let force = by_fluid + by_wall.of(convolved - by_fluid);
+        let force = (force >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
+        if let Some(slowest) = step.terms().last() {
+            self.peak_force -= slowest.lost.of(self.peak_force);
+        }
         self.peak_force = self.peak_force.max(i64::from(force) << FORCE_BITS);
 
         let recovering = pressed_before && force == 0 && rise.0 < 0;
@@ -168,75 +155,6 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         settled + left + stress - change
     }
 
-    /// `A P`, or `rho A (P - P_0)`.
-    fn by_area(
-        &mut self,
-        design: &impl Design,
-        at: &Lookup,
-        rise: PressureRise,
-        pressed_before: bool,
-    ) -> i64 {
-        let parameters = design.parameters();
-        let below_count = FRACTION_BITS - parameters.pressure_fraction_bits;
-        let last = i64::from(design.last_rise().0) << below_count;
-        let place = self.elastic.clamp(last >> AREA_SHIFT, last);
-        let force = if place == self.elastic {
-            at.force
-        } else {
-            Lookup::at(design, place).force
-        };
-        // `force / place` to 2^-15 of itself: 32 bits over 16, each shifted to the top of its word.
-        let (force, place) = (force.max(1) as u64, place.max(1) as u64);
-        let (up, down) = (force.leading_zeros(), place.leading_zeros());
-        let ratio = ((force << up) >> 32) as u32 / ((place << down) >> 48) as u32;
-        // 16 or 17 bits. From a pressure with 32 bits below a pascal to a force with 16 below a micronewton: an area is below 32 768 mm2.
-        let area = Factor {
-            mantissa: ratio << 15,
-            shift: up.saturating_sub(down + 1).min(Factor::MOST_SHIFT),
-        };
-        let left = self.touched == 0 || at.elastic.0 <= self.touched || rise.0 <= self.from;
-        if !pressed_before {
-            self.touched = 0;
-        } else if rise.0 < 0 && left {
-            self.touched = at.elastic.0;
-            self.from = rise.0;
-        }
-        if self.touched == 0 {
-            return area.of(pressure(design, rise));
-        }
-        let grown = PressureRise(rise.0.saturating_sub(self.from));
-        // Noise around a wall that nothing touches.
-        if grown < parameters.thresholds.release {
-            return 0;
-        }
-        // `(1 - x / 8)^8` stands for `exp(-x)`; eight times 0.3 is 12/5.
-        let stiff_again = self.touched / 5 * 12;
-        let mut softer = WHOLE - part(at.elastic.0 - self.touched, stiff_again);
-        for _ in 0..3 {
-            let share = softer.min(WHOLE - 1);
-            softer = (share * share) >> 16;
-        }
-        let softer = (softer * SOFTER) >> 16;
-        share(WHOLE - softer).of(area.of(pressure(design, grown)))
-    }
-
-    /// How far the elastic pressure has fallen from its peak since the wall had last recovered. Peaks are forgotten with the slowest term.
-    fn note_fall(&mut self, step: &SeriesStep, pressed_before: bool) {
-        if let Some(slowest) = step.terms().last() {
-            self.peak -= slowest.lost.of(self.peak);
-            self.peak_force -= slowest.lost.of(self.peak_force);
-        }
-        self.peak = self.peak.max(self.elastic);
-        // 2^24 Pa in 1 / 2^6: below 2^31.
-        let [peak, now] = [self.peak, self.elastic].map(|elastic| (elastic >> (FRACTION_BITS - 6)) as i32);
-        let fallen = part(peak.saturating_sub(now), peak >> FALL_SHIFT);
-        self.fallen = if pressed_before {
-            self.fallen.max(fallen)
-        } else {
-            0
-        };
-    }
-
     /// The largest force so far, forgotten with the slowest term.
     pub fn peak_force(&self) -> Micronewtons {
         Micronewtons((self.peak_force >> FORCE_BITS) as i32)
@@ -246,6 +164,29 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     pub fn shift(&mut self, design: &impl Design, by: PressureRise) {
         self.elastic = (self.elastic + pressure(design, by)).clamp(-LARGEST_STATE, LARGEST_STATE);
     }
+}
+
+/// `A P` with the area `A = F_e / P_e`, with [`FORCE_BITS`].
+fn by_area(design: &impl Design, elastic: i64, at: &Lookup, rise: PressureRise) -> i64 {
+    let parameters = design.parameters();
+    let below_count = FRACTION_BITS - parameters.pressure_fraction_bits;
+    let last = i64::from(design.last_rise().0) << below_count;
+    let place = elastic.clamp(last >> AREA_SHIFT, last);
+    let force = if place == elastic {
+        at.force
+    } else {
+        Lookup::at(design, place).force
+    };
+    // `force / place` to 2^-15 of itself: 32 bits over 16, each shifted to the top of its word.
+    let (force, place) = (force.max(1) as u64, place.max(1) as u64);
+    let (up, down) = (force.leading_zeros(), place.leading_zeros());
+    let ratio = ((force << up) >> 32) as u32 / ((place << down) >> 48) as u32;
+    // 16 or 17 bits. From a pressure with 32 bits below a pascal to a force with 16 below a micronewton: an area is below 32 768 mm2.
+    let area = Factor {
+        mantissa: ratio << 15,
+        shift: up.saturating_sub(down + 1).min(Factor::MOST_SHIFT),
+    };
+    area.of(pressure(design, rise))
 }
 
 /// What is left of the terms after a step, and their sum.

@@ -79,9 +79,9 @@ impl<const TERMS: usize> Wall for Memory<TERMS> {
         let mut readings = [RelaxedReading::default(); 2];
         for i in 1..=i64::from(steps) {
             let between = PressureRise((from + change * i / i64::from(steps)) as i32);
-            readings[0] = self.wall.step(design, &series.step, between);
+            readings[0] = self.wall.step(design, series, between);
             if self.open {
-                readings[1] = self.settled.step(design, &series.step, between);
+                readings[1] = self.settled.step(design, series, between);
             }
         }
         self.rise = rise.rise;

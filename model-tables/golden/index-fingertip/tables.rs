@@ -52,6 +52,7 @@ pub const TABLES: DesignTables = model_tables::table::Tables {
 /// The wall in time: only a wall that relaxes has it.
 pub const RELAXATION: model_tables::material::series::WallSeries = model_tables::material::series::WallSeries {
     remaining_permille: 30,
+    fluid_half: 332368,
     step: model_tables::material::series::SeriesStep {
         count: 7,
         stiffness: 26814138,

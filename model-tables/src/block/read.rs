@@ -113,6 +113,9 @@ fn relaxation(mut own: Cursor<'_>) -> Result<WallSeries, BlockError> {
     if wall.remaining_permille > 1000 {
         return Err(value("remaining_permille"));
     }
+    if !(1..=i32::MAX.unsigned_abs()).contains(&wall.fluid_half) {
+        return Err(value("fluid_half"));
+    }
     if wall.step.stiffness < 1 << SeriesStep::STIFFNESS_BITS {
         return Err(value("stiffness"));
     }

@@ -102,6 +102,7 @@ fn wall(terms: usize) -> WallSeries {
     WallSeries {
         step,
         remaining_permille: 30,
+        fluid_half: 5_000,
     }
 }
 
@@ -133,6 +134,11 @@ fn a_wall_in_time_that_cannot_be_is_refused() {
     let mut odd = wall(2);
     odd.remaining_permille = 1001;
     assert_eq!(refused(odd), value("remaining_permille"));
+    for half in [0, 1 << 31] {
+        let mut odd = wall(2);
+        odd.fluid_half = half;
+        assert_eq!(refused(odd), value("fluid_half"));
+    }
     let mut odd = wall(2);
     odd.step.stiffness = (1 << SeriesStep::STIFFNESS_BITS) - 1;
     assert_eq!(refused(odd), value("stiffness"));

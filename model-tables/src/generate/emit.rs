@@ -66,12 +66,15 @@ impl Generated {
     /// Its wall in time as the chip knows it, if it relaxes.
     pub fn wall(&self) -> Option<WallSeries> {
         let relaxation = self.design.relaxation.as_ref()?;
+        let bits = self.certified.tables.layout.pressure_fraction_bits;
+        let half = PressureRise::from_pascals(self.fluid_half?, bits);
         let membrane = &self.design.design().membrane;
         let thin = membrane.thickness <= THIN * membrane.radial_semi_axis;
         let period = 1e-6 * f64::from(self.transducer().kind.period());
         Some(WallSeries {
             step: SeriesStep::over(relaxation, period),
             remaining_permille: if thin { REMAINING_THIN } else { REMAINING },
+            fluid_half: half.0.max(1).unsigned_abs(),
         })
     }
 
@@ -169,10 +172,11 @@ fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
         "\n/// The wall in time: only a wall that relaxes has it.\n\
          pub const RELAXATION: {OF}::WallSeries = {OF}::WallSeries {{\n\
          \x20   remaining_permille: {},\n\
+         \x20   fluid_half: {},\n\
          \x20   step: {OF}::SeriesStep {{\n\
          \x20       count: {},\n\
          \x20       stiffness: {},",
-        wall.remaining_permille, wall.step.count, wall.step.stiffness
+        wall.remaining_permille, wall.fluid_half, wall.step.count, wall.step.stiffness
     )?;
     let mut source = Source { out, indent: 8 };
     source.field("settled", &mut wall.step.settled)?;

@@ -123,6 +123,9 @@ pub struct WallSeries {
     pub step: SeriesStep,
     /// Force that the wall may still bear where none is read, permille of the peak before.
     pub remaining_permille: u32,
+    /// Settled pressure rise at which the fluid under the contact bears half of the force and the wall the other half, counts of the
+    /// tables' pressure: 1 to `i32::MAX`.
+    pub fluid_half: u32,
 }
 
 #[cfg(test)]

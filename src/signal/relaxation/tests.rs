@@ -6,9 +6,13 @@ use proptest::prelude::*;
 
 const TERMS: usize = 7;
 
-/// Agilus30 over a step in seconds.
-fn agilus30(seconds: f64) -> SeriesStep {
-    SeriesStep::over(&AGILUS30_RELAXATION, seconds)
+/// Agilus30 over a step in seconds, the fluid bearing half at 4 kPa.
+fn agilus30(seconds: f64) -> WallSeries {
+    WallSeries {
+        step: SeriesStep::over(&AGILUS30_RELAXATION, seconds),
+        remaining_permille: 30,
+        fluid_half: 4_000 << 8,
+    }
 }
 
 /// The convolution of a series with an elastic pressure, in `f64`.
@@ -171,6 +175,7 @@ proptest! {
         rises in proptest::collection::vec(any_rise(), 1..300),
         factors in proptest::array::uniform9(any_factor()),
         stiffness in any::<u32>(),
+        fluid_half in any::<u32>(),
     ) {
         // Five eighths of a change are shared at most: no more than the whole.
         let eighth = |factor: Factor| Factor { shift: factor.shift.max(3), ..factor };
@@ -180,6 +185,7 @@ proptest! {
         for (term, (lost, share)) in any_series.terms.iter_mut().zip(lost.into_iter().zip([a, b, c, d])) {
             *term = TermStep { lost, share: eighth(share) };
         }
+        let any_series = WallSeries { step: any_series, remaining_permille: 30, fluid_half };
         let mut any_wall = Relaxing::<4>::NEW;
         let mut wall = Relaxing::<TERMS>::NEW;
         let step = agilus30(1e-3);

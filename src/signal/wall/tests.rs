@@ -14,6 +14,7 @@ impl InTime {
         let wall = WallSeries {
             step: SeriesStep::over(series, 1e-3),
             remaining_permille: 30,
+            fluid_half: 4_000 << 8,
         };
         Self(Linear::NEW, wall)
     }
@@ -91,7 +92,7 @@ fn from_untouched_rest_on_the_past_is_known() {
     for millisecond in 0..12_000 {
         let rise = rise(millisecond, grasp(millisecond));
         let (read, _) = memory.read(&design, rise);
-        let alone = stage.step(&design, &design.1.step, rise.rise);
+        let alone = stage.step(&design, &design.1, rise.rise);
         assert_eq!(read, alone.contact, "{millisecond} ms");
         assert!(!memory.open);
     }

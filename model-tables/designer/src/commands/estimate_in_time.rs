@@ -9,7 +9,7 @@ use fingertip::signal::loaded_design::LoadedDesign;
 use fingertip::signal::relaxation::{RelaxedReading, Relaxing};
 use fingertip::status::{Status, Warnings};
 use model_tables::material::relaxation::{MAX_TERMS, Relaxation};
-use model_tables::material::series::SeriesStep;
+use model_tables::material::series::{SeriesStep, WallSeries};
 use model_tables::units::PressureRise;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
@@ -134,10 +134,13 @@ impl History {
             };
             let temperature = temperatures[0] + part * (temperatures[1] - temperatures[0]);
             let pascals = unit * (from.value + part * (row.value - from.value));
-            let step = self.step(seconds, temperature);
+            let wall = WallSeries {
+                step: self.step(seconds, temperature),
+                ..design.series().copied().unwrap_or_default()
+            };
             reading = self
                 .state
-                .step(design, &step, PressureRise::from_pascals(pascals, bits));
+                .step(design, &wall, PressureRise::from_pascals(pascals, bits));
         }
         reading
     }

@@ -29,6 +29,11 @@ const BEYOND: f64 = 1.0 + 1.0 / 64.0;
 /// A relaxing wall's stress of a change in no time over the settled one: less than this.
 const MOST_STIFFENED: f64 = 65_535.0;
 
+/// States at which the share of the fluid in the contact's force is looked at.
+const SHARED_STATES: u32 = 12;
+/// The shares that its parameter is fitted to.
+const MIDDLE: std::ops::RangeInclusive<f64> = 0.2..=0.8;
+
 /// How often the accuracy is doubled at most where worse is allowed: a thousand times what was asked.
 const MOST_DOUBLINGS: u32 = 10;
 
@@ -65,6 +70,8 @@ pub struct Generated {
     pub model_error: Option<Comparison>,
     /// The model that the curve is of; `None` where it was measured.
     pub kind: Option<Kind>,
+    /// Settled pressure rise at which the fluid bears half of the contact's force, pascals; nothing where the wall does not relax.
+    pub fluid_half: Option<f64>,
     /// The membrane against the solid of the same wall; nothing where the model is a solid, or there is none.
     pub membrane_error: Option<OwnError>,
 }
@@ -118,6 +125,10 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         None => return Err(GenerateError::Objects(NoObjects::Data)),
         Some(rung) => Some(SolvedObjects::solve(&design, rung, &curve, end)?),
     };
+    let fluid_half = match design.relaxation {
+        None => None,
+        Some(_) => Some(half_borne_by_the_fluid(&touching, rung.as_ref(), end)?),
+    };
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let (mut model_error, mut membrane_error) = (None, None);
     let kind = rung.as_ref().map(Fingertip::kind);
@@ -152,7 +163,47 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         certified,
         model_error,
         kind,
+        fluid_half,
         membrane_error,
+    })
+}
+
+/// The pressure rise, pascals, at which the fluid bears half of the contact's force: the parameter of its share `P / (P_1 + P)` that fits
+/// the share `P A / F` of solved states, `A` the area of contact.
+fn half_borne_by_the_fluid(
+    design: &DesignFile,
+    solved: Option<&Fingertip>,
+    end: Contact,
+) -> Result<f64, GenerateError> {
+    let mut rung = match solved {
+        Some(solved) => solved.clone(),
+        None => Fingertip::for_curve(design).map_err(GenerateError::Model)?,
+    };
+    // Halves of the log-odds: in the middle, where the share matters, or where there is no middle at the state next to it.
+    let (mut sum, mut count) = (0.0, 0.0);
+    let mut nearest = (f64::INFINITY, end.pressure_rise);
+    for k in 1..=SHARED_STATES {
+        let indentation = end.indentation * f64::from(k) / f64::from(SHARED_STATES);
+        let state = rung.at_indentation(indentation).map_err(GenerateError::Model)?;
+        let area = std::f64::consts::PI * state.contact_radius * state.contact_radius;
+        let share = state.pressure_rise * area / state.force;
+        if !(share > 0.0 && share < 1.0) {
+            continue;
+        }
+        let half = state.pressure_rise * (1.0 / share - 1.0);
+        if MIDDLE.contains(&share) {
+            sum += libm::log(half);
+            count += 1.0;
+        }
+        let off = (share - 0.5).abs();
+        if off < nearest.0 {
+            nearest = (off, half);
+        }
+    }
+    Ok(if count > 0.0 {
+        libm::exp(sum / count)
+    } else {
+        nearest.1
     })
 }
 
