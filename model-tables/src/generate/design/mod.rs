@@ -6,7 +6,7 @@ mod limit;
 pub use error::{DesignState, GenerateError};
 pub use limit::AccuracyLimit;
 
-use super::object::{NoObjects, SolvedObjects, plate_of};
+use super::object::{Band, NoObjects, SolvedObjects, Unknown, plate_of};
 use super::{Certified, NoTables, tables_with};
 use crate::constants::{AirReference, BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
@@ -16,6 +16,7 @@ use crate::design_file::{
 };
 use crate::model::own_error::{Comparison, OwnError};
 use crate::model::{Fingertip, Kind};
+use crate::table::law::Touched;
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
@@ -67,6 +68,9 @@ pub struct Generated {
     pub kind: Option<Kind>,
     /// The membrane against the solid of the same wall; nothing where the model is a solid, or there is none.
     pub membrane_error: Option<OwnError>,
+    /// What an object that the chip is not told leaves open; nothing where the curve is of data, the object a punch, or a ball has no
+    /// press.
+    pub band: Option<Band>,
 }
 
 /// Reads a design file and makes its tables. Build scripts call this.
@@ -98,9 +102,6 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
     let missing = |section| GenerateError::MissingSection { section };
     is_convolved(&design)?;
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
-    if design.object.is_some_and(|object| object.unknown) {
-        return Err(GenerateError::UnknownObject);
-    }
     // A punch is no ball: its tables are of itself alone.
     let blends = design
         .object
@@ -118,6 +119,10 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         None => return Err(GenerateError::Objects(NoObjects::Data)),
         Some(rung) => Some(SolvedObjects::solve(&design, rung, &curve, end)?),
     };
+    let is_unknown = design.object.is_some_and(|object| object.unknown);
+    let unknown = rung
+        .as_ref()
+        .and_then(|tip| Unknown::solve(&design, tip, &curve, end));
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let (mut model_error, mut membrane_error) = (None, None);
     let kind = rung.as_ref().map(Fingertip::kind);
@@ -134,7 +139,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
     )?;
     let mut allowed = accuracy;
     let mut doubled = 0;
-    let certified = loop {
+    let mut certified = loop {
         match tables_with(&curve, end, &allowed, transducer.resolution_pa, objects.as_ref()) {
             Err(NoTables::Inaccurate { .. }) if doubled < doublings => {
                 allowed.force_percent_of_reading *= 2.0;
@@ -144,6 +149,15 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
             found => break found.map_err(GenerateError::NoTables)?,
         }
     };
+    if let Some(object) = &mut certified.object
+        && is_unknown
+    {
+        let unknown = unknown
+            .as_ref()
+            .ok_or(GenerateError::Objects(NoObjects::Unknown))?;
+        object.start = unknown.narrowest(&certified.tables, object);
+    }
+    let band = unknown.and_then(|unknown| band(&unknown, &certified));
     Ok(Generated {
         design,
         transducer,
@@ -153,7 +167,19 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         model_error,
         kind,
         membrane_error,
+        band,
     })
+}
+
+/// The band of what the chip reads to begin with.
+fn band(unknown: &Unknown, certified: &Certified) -> Option<Band> {
+    let allowed = [&certified.certificate.force, &certified.certificate.indentation];
+    let error = allowed.map(|errors| errors.of_reading.max);
+    let tables = &certified.tables;
+    match &certified.object {
+        None => unknown.band(tables, Touched::Plate, error),
+        Some(object) => unknown.band(&object.blended(tables, object.start)?, object.start, error),
+    }
 }
 
 /// Solves a design down to `max_indentation_mm`, as its transducer reads it.
@@ -164,9 +190,6 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
     let indentation = design.max_indentation_mm.ok_or(missing("press"))?;
     let transducer = design.transducer.ok_or(missing("transducer"))?;
-    if design.object.is_some_and(|object| object.unknown) {
-        return Err(GenerateError::UnknownObject);
-    }
     if design.air == AirReference::Part {
         return Err(GenerateError::SecondTransducer);
     }
