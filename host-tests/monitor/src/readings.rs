@@ -242,6 +242,7 @@ fn name(kind: CommandKind) -> &'static str {
         CommandKind::Forget => "forget",
         CommandKind::Air => "air",
         CommandKind::Object => "object",
+        CommandKind::Indentation => "indentation",
     }
 }
 
@@ -263,6 +264,20 @@ fn words(answer: &Answer) -> String {
         (CommandKind::SelfTest, 0) => ", nothing found".to_owned(),
         (CommandKind::SelfTest, bits) => format!(", findings {bits:#06x}"),
         _ => String::new(),
+    };
+    let findings = match answer.known {
+        Some(known) => format!(
+            ", {:.4} N within {:.4} N, curvature {:.1} 1/m within {:.1} 1/m{}",
+            known.force.newtons(),
+            known.force_sigma.newtons(),
+            1e-3 * f64::from(known.curvature),
+            1e-3 * f64::from(known.curvature_sigma),
+            match known.doubts {
+                0 => String::new(),
+                bits => format!(", findings {bits:#06x}"),
+            }
+        ),
+        None => findings,
     };
     format!(
         "{} {}: {outcome}{findings}",

@@ -182,6 +182,8 @@ pub struct BandTally {
     pub kinds: BTreeMap<TouchedKind, [u64; 2]>,
     /// The first objects outside.
     pub outside: Vec<TouchedObject>,
+    /// Errors of force and indentation, percent of the truth, with the transducer's noise and a zero anywhere within its bound; sorted.
+    pub errors: [Vec<f64>; 2],
 }
 
 impl BandTally {
@@ -195,6 +197,13 @@ impl BandTally {
             None => plate.clone(),
         };
         let all = band.widest();
+        let transducer = &generated.transducer;
+        // Steps are uniform; a hundred samples are averaged, and an ok zero is within six noise floors.
+        let deviation = libm::hypot(
+            transducer.resolution_pa / libm::sqrt(12.0),
+            transducer.noise_pa / 10.0,
+        );
+        let bound = 6.0 * transducer.resolution_pa.max(transducer.noise_pa);
         let mut tally = Self::default();
         for index in 0..count {
             let object = world.draw(seed, index, [all.from, all.to]);
@@ -202,6 +211,18 @@ impl BandTally {
             let bits = tables.layout.pressure_fraction_bits;
             let reading = tables.lookup(PressureRise::from_pascals(truth.pressure_rise, bits));
             let read = [reading.force.newtons(), reading.indentation.metres()];
+            let mut random = Random(seed.wrapping_add(index) ^ 0x5bd1_e995);
+            let moved = deviation * random.normal() + random.uniform(-bound, bound);
+            let noisy = tables.lookup(PressureRise::from_pascals(truth.pressure_rise + moved, bits));
+            let noisy = [noisy.force.newtons(), noisy.indentation.metres()];
+            for ((errors, noisy), truth) in tally
+                .errors
+                .iter_mut()
+                .zip(noisy)
+                .zip([truth.force, truth.indentation])
+            {
+                errors.push(100.0 * (noisy / truth - 1.0).abs());
+            }
             let holds = band
                 .at(truth.pressure_rise)
                 .is_some_and(|row| row.holds(read, [truth.force, truth.indentation]));
@@ -214,7 +235,22 @@ impl BandTally {
                 }
             }
         }
+        for errors in &mut tally.errors {
+            errors.sort_by(f64::total_cmp);
+        }
         Some(tally)
+    }
+
+    /// The error of force and indentation, percent, that this share of the objects stays within.
+    pub fn within(&self, share: f64) -> [f64; 2] {
+        [0, 1].map(|output| {
+            let errors = &self.errors[output];
+            let place = (share * errors.len() as f64) as usize;
+            errors
+                .get(place.min(errors.len().saturating_sub(1)))
+                .copied()
+                .unwrap_or(f64::NAN)
+        })
     }
 
     /// The share of the objects that lay in the band.
@@ -232,6 +268,12 @@ impl fmt::Display for BandTally {
         for (kind, [all, outside]) in &self.kinds {
             writeln!(f, "{kind:?}: {outside} of {all} outside")?;
         }
-        write!(f, "in the band: {:.2} %", 100.0 * self.share())
+        writeln!(f, "in the band: {:.2} %", 100.0 * self.share())?;
+        let [median, most] = [self.within(0.5), self.within(0.95)];
+        write!(
+            f,
+            "error with noise and zero, median and 95 %: force {:.1} and {:.1} %, indentation {:.1} and {:.1} %",
+            median[0], most[0], median[1], most[1]
+        )
     }
 }
