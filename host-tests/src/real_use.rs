@@ -5,6 +5,7 @@ use crate::budget::{Budget, rise_where};
 use fingertip::signal::zero::limits::Limits;
 use model_tables::generate::Generated;
 use model_tables::generate::object::quoted;
+use model_tables::model::own_error::OwnError;
 use model_tables::units::PressureRise;
 use std::fmt::Write as _;
 
@@ -19,6 +20,10 @@ const RELAXING: [f64; 2] = [3.0, 1.0];
 /// indentation at 0.5, 1 and 2 mm.
 const KELVIN_FORCE: f64 = 5.0;
 const KELVIN_DEPTH: [(f64, f64); 3] = [(0.5, 0.05), (1.0, 0.08), (2.0, 0.11)];
+
+/// The sources that are of what is touched.
+const OBJECT: &str = "object not told: balls from 5 mm, tilts to 20 degrees";
+const FRICTION: &str = "friction of a plate, coefficient 0.3";
 
 /// What one source adds at each of the [`FORCES`]: percent of reading, least and most, of force and of indentation.
 struct Share {
@@ -74,6 +79,14 @@ impl RealUse {
                 [below, if above > 0.0 { above } else { -below }]
             })
         });
+        if let Some(OwnError::Compared(found)) = &generated.membrane_error {
+            let both = [found.force_percent, found.indentation_percent];
+            add(
+                "model: a membrane, against the solid of its wall",
+                "measured",
+                &|_| both.map(|percent| [-percent, percent]),
+            );
+        }
         if generated.design.relaxation.is_some() {
             add("time: a press and hold", "tested", &|_| {
                 RELAXING.map(|percent| [-percent, percent])
@@ -101,16 +114,12 @@ impl RealUse {
             );
         }
         if let Some(band) = &generated.band {
-            add(
-                "object not told: balls from 5 mm, tilts to 20 degrees",
-                "solved, quoted",
-                &|rise| {
-                    let row = band.at(rise).copied().unwrap_or_else(|| band.widest());
-                    [row.force_percent, row.indentation_percent]
-                },
-            );
+            add(OBJECT, "solved, quoted", &|rise| {
+                let row = band.at(rise).copied().unwrap_or_else(|| band.widest());
+                [row.force_percent, row.indentation_percent]
+            });
         }
-        add("friction of a plate, coefficient 0.3", "quoted", &|rise| {
+        add(FRICTION, "quoted", &|rise| {
             let [_, depth] = read(rise);
             let force = 100.0 * (quoted::rubbed_force(depth / height) - 1.0);
             let shallower = read(rise / quoted::rubbed_pressure(depth / height))[1];
@@ -125,6 +134,15 @@ impl RealUse {
             budget,
             shares,
         }
+    }
+}
+
+/// A percentage with its sign; none of what rounds to 0.
+fn signed(percent: f64) -> String {
+    if percent.abs() < 0.05 {
+        "0.0".to_owned()
+    } else {
+        format!("{percent:+.1}")
     }
 }
 
@@ -183,25 +201,30 @@ pub fn markdown(designs: &[RealUse]) -> String {
         for share in &design.shares {
             let cells = share
                 .percent
-                .map(|both| both.map(|[least, most]| format!("{least:+.1} to {most:+.1}")));
+                .map(|both| both.map(|ends| ends.map(signed).join(" to ")));
             line(&mut text, &share.name, share.source, cells);
         }
         let chip = [0, 1, 2].map(|place| design.budget.sum(place).map(|percent| format!("{percent:.2}")));
         line(&mut text, "**the chip's stages**", "sum", chip);
-        let all = [0, 1, 2].map(|place| {
-            let chip = design.budget.sum(place);
-            [0, 1].map(|output| {
-                let sum = |end: usize| {
-                    let squares = design
-                        .shares
-                        .iter()
-                        .map(|share| share.percent[place][output][end].powi(2));
-                    (squares.sum::<f64>() + chip[output].powi(2)).sqrt()
-                };
-                format!("-{:.1} to +{:.1}", sum(0), sum(1))
-            })
-        });
-        line(&mut text, "**all, root of the squares**", "sum", all);
+        for (name, with_object) in [
+            ("**all on a plate, root of the squares**", false),
+            ("**all, root of the squares**", true),
+        ] {
+            let all = [0, 1, 2].map(|place| {
+                let chip = design.budget.sum(place);
+                [0, 1].map(|output| {
+                    let sum = |end: usize| {
+                        let shares = design.shares.iter().filter(|share| {
+                            with_object || ![OBJECT, FRICTION].contains(&share.name.as_str())
+                        });
+                        let squares = shares.map(|share| share.percent[place][output][end].powi(2));
+                        (squares.sum::<f64>() + chip[output].powi(2)).sqrt()
+                    };
+                    [-sum(0), sum(1)].map(signed).join(" to ")
+                })
+            });
+            line(&mut text, name, "sum", all);
+        }
     }
     text
 }
