@@ -16,8 +16,8 @@ mod press;
 pub mod quoted;
 mod solved;
 
-pub(super) use band::Unknown;
 pub use band::{Band, BandRow};
+pub(super) use band::{TableError, Unknown};
 pub(super) use press::plate_of;
 pub use solved::{NoObjects, SolvedObject, SolvedObjects};
 

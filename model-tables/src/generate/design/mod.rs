@@ -6,8 +6,8 @@ mod limit;
 pub use error::{DesignState, GenerateError};
 pub use limit::AccuracyLimit;
 
-use super::object::{Band, NoObjects, SolvedObjects, Unknown, plate_of};
-use super::{Certified, NoTables, tables_with};
+use super::object::{Band, NoObjects, SolvedObjects, TableError, Unknown, plate_of};
+use super::{Certificate, Certified, NoTables, tables_with};
 use crate::constants::{AirReference, BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{
@@ -173,8 +173,13 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
 
 /// The band of what the chip reads to begin with.
 fn band(unknown: &Unknown, certified: &Certified) -> Option<Band> {
-    let allowed = [&certified.certificate.force, &certified.certificate.indentation];
-    let error = allowed.map(|errors| errors.of_reading.max);
+    let Certificate {
+        force, indentation, ..
+    } = &certified.certificate;
+    let error = [(force, 1e-6), (indentation, 1e-9)].map(|(errors, unit)| TableError {
+        percent: errors.of_reading.max.max(errors.below_percent_of_from),
+        from: unit * errors.from,
+    });
     let tables = &certified.tables;
     match &certified.object {
         None => unknown.band(tables, Touched::Plate, error),

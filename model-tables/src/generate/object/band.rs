@@ -58,6 +58,15 @@ pub struct BandRow {
     pub indentation_percent: [f64; 2],
 }
 
+/// What tables may be off by themselves.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::generate) struct TableError {
+    /// Percent of reading.
+    pub(in crate::generate) percent: f64,
+    /// From this reading on, newtons or metres; below it as much as there.
+    pub(in crate::generate) from: f64,
+}
+
 /// Least and most of force and indentation that objects of the set have at one pressure.
 #[derive(Clone, Copy)]
 struct Extent([[f64; 2]; 2]);
@@ -158,26 +167,26 @@ impl Unknown {
         found
     }
 
-    /// Force and indentation of the extent over what tables read at a pressure rise.
-    fn over(&self, tables: &OwnedTables, rise: f64) -> Option<[[f64; 2]; 2]> {
+    /// Force and indentation of the extent over what tables read at a pressure rise, and what they read.
+    fn over(&self, tables: &OwnedTables, rise: f64) -> Option<[([f64; 2], f64); 2]> {
         let bits = tables.layout.pressure_fraction_bits;
         let reading = tables.lookup(PressureRise::from_pascals(rise, bits));
         let Extent([force, indentation]) = self.extent(rise);
         let read = [reading.force.newtons(), reading.indentation.metres()];
         (read[0] > 0.0 && read[1] > 0.0).then(|| {
             [
-                force.map(|value| value / read[0]),
-                indentation.map(|value| value / read[1]),
+                (force.map(|value| value / read[0]), read[0]),
+                (indentation.map(|value| value / read[1]), read[1]),
             ]
         })
     }
 
-    /// The band of a design's tables. `error_percent`: what the tables of force and indentation may be off by themselves.
+    /// The band of a design's tables, of force and indentation each with their own error.
     pub(in crate::generate) fn band(
         &self,
         tables: &OwnedTables,
         tables_of: Touched,
-        error_percent: [f64; 2],
+        own: [TableError; 2],
     ) -> Option<Band> {
         let last = last_rise(tables);
         let edges = edges(last);
@@ -186,17 +195,18 @@ impl Unknown {
             let mut found = [[0.0_f64; 2]; 2];
             for step in 0..=RISES {
                 let rise = from * libm::pow(to / from, step as f64 / RISES as f64);
-                for (found, over) in found.iter_mut().zip(self.over(tables, rise)?) {
+                let over = self.over(tables, rise)?;
+                for ((found, (over, read)), own) in found.iter_mut().zip(over).zip(&own) {
                     let [least, most] = over.map(|ratio| 100.0 * (ratio - 1.0));
-                    *found = [found[0].min(least), found[1].max(most)];
+                    // Below it tables keep within the same error in absolute terms.
+                    let own = own.percent * (own.from / read).max(1.0);
+                    *found = [found[0].min(least - own), found[1].max(most + own)];
                 }
             }
-            let [force, indentation] = [0, 1].map(|output| {
-                let [least, most] = found[output];
-                let own = error_percent[output];
+            let [force, indentation] = found.map(|[least, most]| {
                 [
-                    libm::floor((least - own) * TENTHS) / TENTHS,
-                    libm::ceil((most + own) * TENTHS) / TENTHS,
+                    libm::floor(least * TENTHS) / TENTHS,
+                    libm::ceil(most * TENTHS) / TENTHS,
                 ]
             });
             Some(BandRow {
@@ -232,8 +242,10 @@ impl Unknown {
             let mut widest = 0.0_f64;
             for step in 0..=2 * RISES {
                 let rise = last * libm::pow(BEGIN, 1.0 - step as f64 / (2 * RISES) as f64);
-                for ratio in self.over(&tables, rise)?.as_flattened() {
-                    widest = widest.max(libm::log(*ratio).abs());
+                for (ratios, _) in self.over(&tables, rise)? {
+                    widest = ratios
+                        .iter()
+                        .fold(widest, |widest, ratio| widest.max(libm::log(*ratio).abs()));
                 }
             }
             Some((touched, widest))

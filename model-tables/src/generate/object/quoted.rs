@@ -32,6 +32,8 @@ const FRICTION: [(f64, f64); 6] = [
 const STIFFENED: f64 = 0.13;
 const STIFFENED_AT: f64 = 2.5 / 7.0;
 const STIFFENED_POWER: f64 = 3.8;
+/// At a light touch: the product's own solid that sticks to a plate, of that dome.
+const STIFFENED_LIGHT: f64 = 0.011;
 
 /// Linear between the rows of a table, held at its ends.
 fn between(rows: &[(f64, f64)], at: f64) -> f64 {
@@ -61,7 +63,8 @@ pub fn rubbed_force(depth: f64) -> f64 {
 
 /// Pressure of a plate with friction over that of one without, at a depth over the dome's height.
 pub fn rubbed_pressure(depth: f64) -> f64 {
-    1.0 + STIFFENED * libm::pow(depth / STIFFENED_AT, STIFFENED_POWER)
+    let deep = STIFFENED * libm::pow(depth / STIFFENED_AT, STIFFENED_POWER);
+    1.0 + deep.max(STIFFENED_LIGHT)
 }
 
 #[cfg(test)]
