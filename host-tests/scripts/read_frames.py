@@ -23,9 +23,10 @@ FAULTS = {1: "sensor open", 2: "sensor short", 3: "zeroing", 4: "settling", 5: "
           23: "sensor reset", 24: "sensor implausible"}
 TOUCH = ["unknown", "untouched", "touched"]
 COMMANDS = {"tare": 0x81, "undo": 0x82, "save": 0x83, "info": 0x84, "self-test": 0x85, "rate": 0x86, "forget": 0x87,
-            "object": 0x88, "air": 0x8A}
+            "object": 0x88, "indentation": 0x89, "air": 0x8A}
 # Bytes that go with a command.
-PAYLOADS = {"tare": 0, "undo": 0, "save": 4, "info": 0, "self-test": 4, "rate": 2, "forget": 0, "object": 5, "air": 4}
+PAYLOADS = {"tare": 0, "undo": 0, "save": 4, "info": 0, "self-test": 4, "rate": 2, "forget": 0, "object": 5,
+            "indentation": 4, "air": 4}
 OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy", "nothing to undo", "zero unverified",
             "memory failed", "no such object"] + [None] * 4 + ["not in this image"]
 CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
@@ -65,7 +66,8 @@ def body_of(stuffed):
 
 def describe(body):
     """One line for a body of the board's."""
-    if len(body) < 14 or body[0] != VERSION or LENGTHS.get(body[1]) != len(body):
+    tells = len(body) == 36 and body[1] == 4 and body[14] == COMMANDS["indentation"]
+    if len(body) < 14 or body[0] != VERSION or (LENGTHS.get(body[1]) != len(body) and not tells):
         raise ValueError("version, kind or length")
     _, kind, sequence, time, dropped = struct.unpack_from("<BBHQH", body)
     head = f"{sequence} {time} us, {dropped} dropped: "
@@ -92,8 +94,12 @@ def describe(body):
                        f"resets in a row; {lost} samples lost, {wild} wild, {frames} frames dropped, {refused} refused")
     command, command_sequence, outcome, findings = struct.unpack_from("<BHBH", body, 14)
     names = {code: name for name, code in COMMANDS.items()}
-    if command not in names or outcome >= len(OUTCOMES):
+    if command not in names or outcome >= len(OUTCOMES) or not OUTCOMES[outcome]:
         raise ValueError("field")
+    if tells:
+        force, force_sigma, curvature, curvature_sigma = struct.unpack_from("<4i", body, 20)
+        return head + (f"indentation {command_sequence}: {OUTCOMES[outcome]}, findings {findings:#x}, {force} uN, 1-sigma {force_sigma} uN, "
+                       f"curvature {curvature} / km, 1-sigma {curvature_sigma} / km")
     return head + f"{names[command]} {command_sequence}: {OUTCOMES[outcome]}, findings {findings:#x}"
 
 

@@ -6,6 +6,7 @@
 use fingertip::signal::uncertainty::averaged;
 use fingertip::signal::zero::estimator::WINDOW;
 use model_tables::generate::Generated;
+use model_tables::table::Reading;
 use model_tables::units::PressureRise;
 use std::fmt::Write as _;
 
@@ -39,13 +40,21 @@ pub struct Budget {
 impl Budget {
     /// The budget of a design, with its zero measured on the untouched fingertip and no drift since.
     pub fn of(generated: &Generated) -> Self {
+        let rises = PLACES.map(|place| {
+            let wanted = place * generated.end.indentation * 1e9;
+            rise_where(generated, |reading| f64::from(reading.indentation.0) >= wanted)
+        });
+        Self::at(generated, rises)
+    }
+
+    /// The same at other rises, counts.
+    pub fn at(generated: &Generated, rises: [i32; PLACES.len()]) -> Self {
         let tables = &generated.certified.tables;
         let transducer = &generated.transducer;
         let constants = generated.transducer();
         let bits = tables.layout.pressure_fraction_bits;
         // Percent of reading that a pascal is worth, from the tables over a hundredth of the rise on either side.
-        let sensitivity = PLACES.map(|place| {
-            let rise = rise_at(generated, place);
+        let sensitivity = rises.map(|rise| {
             let near = (rise / 100).max(1);
             let read = |rise: i32| {
                 let reading = tables.lookup(PressureRise(rise));
@@ -139,17 +148,16 @@ impl Budget {
     }
 }
 
-/// The count at which the tables reach a share of the full indentation, by bisection: they never fall.
-fn rise_at(generated: &Generated, place: f64) -> i32 {
+/// The count at which the tables reach something, by bisection: they never fall.
+pub(crate) fn rise_where(generated: &Generated, reached: impl Fn(Reading) -> bool) -> i32 {
     let tables = &generated.certified.tables;
-    let wanted = place * generated.end.indentation * 1e9;
     let (mut low, mut high) = (0, tables.layout.maximum);
     while low < high {
         let middle = low + (high - low) / 2;
-        if f64::from(tables.lookup(PressureRise(middle)).indentation.0) < wanted {
-            low = middle + 1;
-        } else {
+        if reached(tables.lookup(PressureRise(middle))) {
             high = middle;
+        } else {
+            low = middle + 1;
         }
     }
     low

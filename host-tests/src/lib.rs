@@ -3,6 +3,7 @@
 
 pub mod budget;
 pub mod nor_flash;
+pub mod real_use;
 pub mod world;
 
 use std::fs;

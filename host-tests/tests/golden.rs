@@ -8,6 +8,7 @@ use fingertip::image::ImageDesign;
 use fingertip::image::generated::TABLES;
 use fingertip::signal::uncertainty::Uncertainty;
 use host_tests::budget::{self, Budget};
+use host_tests::real_use::{self, RealUse};
 use host_tests::{assert_readme_says, design, workspace};
 use model_tables::generate::{self, Generated};
 use std::fs;
@@ -31,7 +32,7 @@ fn tables_and_certificates_are_those_that_were_reviewed() {
         .collect();
     names.sort_unstable();
     assert_eq!(names, SHIPPED);
-    let mut budgets = Vec::new();
+    let (mut budgets, mut everything) = (Vec::new(), Vec::new());
     for name in SHIPPED {
         let generated = generate::from_design_file(&design(name)).expect("a shipped design");
         let golden = workspace().join("model-tables/golden").join(name);
@@ -44,9 +45,12 @@ fn tables_and_certificates_are_those_that_were_reviewed() {
             the_chip_says_what_is_budgeted(&budget);
         }
         budgets.push(budget);
+        everything.push(RealUse::of(&generated));
     }
     let page = workspace().join("host-tests/BUDGET.md");
     expect_file![page].assert_eq(&budget::markdown(&budgets));
+    let page = workspace().join("model-tables/ERROR_BUDGET.md");
+    expect_file![page].assert_eq(&real_use::markdown(&everything));
 }
 
 fn readme_says(name: &str, generated: &Generated) {

@@ -6,6 +6,7 @@ use fingertip::signal::report::{Measurement, Report};
 use fingertip::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings};
 use fingertip::units::Microseconds;
 use host_tests::workspace;
+use model_tables::table::law::Touched;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -25,7 +26,21 @@ fn example(what: &str) -> Vec<u8> {
         .collect()
 }
 
-const REQUESTS: [(&str, Request); 4] = [
+const REQUESTS: [(&str, Request); 6] = [
+    (
+        "object, sequence 6",
+        Request {
+            sequence: 6,
+            command: Command::Object(Touched::Ball(8_000)),
+        },
+    ),
+    (
+        "indentation, sequence 5",
+        Request {
+            sequence: 5,
+            command: Command::Indentation { known: 1_250_000 },
+        },
+    ),
     (
         "tare, sequence 0x0102",
         Request {
@@ -56,9 +71,10 @@ const REQUESTS: [(&str, Request); 4] = [
     ),
 ];
 
-const FRAMES: [&str; 4] = [
+const FRAMES: [&str; 5] = [
     "fault, sequence 65535",
     "answer, sequence 8",
+    "answer, sequence 9",
     "reading, sequence 0x0102",
     "hello, sequence 7",
 ];
@@ -130,6 +146,8 @@ fn the_reader_in_python_reads_what_the_firmware_sends() {
             "no frame: stuffing",
             "65535 0 us, 0 dropped: fault: sensor open",
             "8 2000000 us, 0 dropped: self-test 772: done, findings 0x12",
+            "9 2000000 us, 0 dropped: indentation 5: done, findings 0x1, 1500000 uN, 1-sigma 90000 uN, curvature 125000 / km, \
+             1-sigma 4000 / km",
             "258 3000500 us, 3 dropped: warning: saturated, touched, 642.000 Pa, 1500000 uN, 2500000 nm, 1-sigma 2.898 \
              Pa, 6000 uN, 9000 nm",
             "7 1000000 us, 259 dropped: hello, firmware 0.1.0, reset by watchdog, design 0123456789abcdef, tables 1, a \
@@ -148,6 +166,11 @@ fn the_commands_of_the_reader_in_python_are_the_firmwares() {
         (
             &["--encode", "self-test", "3", "90d00300"],
             "self-test, sequence 3",
+        ),
+        (&["--encode", "object", "6", "01401f0000"], "object, sequence 6"),
+        (
+            &["--encode", "indentation", "5", "d0121300"],
+            "indentation, sequence 5",
         ),
     ];
     for (arguments, what) in encoded {

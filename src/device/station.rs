@@ -217,7 +217,7 @@ impl<D: Design> Station<D> {
             command: request.command.kind(),
             sequence: request.sequence,
         };
-        let mut found = 0;
+        let (mut found, mut told) = (0, None);
         let outcome = match request.command {
             // No sample reaches the signal path: it would never finish a tare, and nobody sees whether its zero holds.
             Command::Tare | Command::Save { .. } if self.gave_up => Outcome::NoReading,
@@ -256,13 +256,22 @@ impl<D: Design> Station<D> {
                 .pipeline
                 .touch_object(touched)
                 .map_or_else(Outcome::from, |()| Outcome::Done),
+            Command::Indentation { known } => {
+                told = self.pipeline.tell(Nanometres(known));
+                found = told.map_or(0, |told| told.doubts);
+                told.map_or(Outcome::NoReading, |_| Outcome::Done)
+            }
             Command::Rate { every } => {
                 self.every = every;
                 self.hello.report_period = u32::from(every) * self.pipeline.parameters().period;
                 Outcome::Done
             }
         };
-        say(&answered(now, pending, outcome, found));
+        let mut answer = answered(now, pending, outcome, found);
+        if let Message::Answer(answer) = &mut answer {
+            answer.known = told;
+        }
+        say(&answer);
         None
     }
 
@@ -360,6 +369,7 @@ fn answered(time: Microseconds, pending: Pending, outcome: Outcome, findings: u1
         command_sequence: pending.sequence,
         outcome,
         findings,
+        known: None,
     })
 }
 

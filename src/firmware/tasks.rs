@@ -54,7 +54,7 @@ const WAITING: usize = 8;
 
 /// Frames waiting for the line.
 struct Waiting {
-    frames: RefCell<Outbox<'static, WAITING>>,
+    frames: RefCell<Outbox<'static, WAITING, { image::HAS_OBJECT }>>,
     more: Signal<NoopRawMutex, ()>,
 }
 

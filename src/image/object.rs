@@ -7,8 +7,9 @@ use crate::signal::zero::limits::Limits;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
 use model_tables::table::blend::{blend, last_answered};
+use model_tables::table::known::{KnownContact, Lookups, ReadPair};
 use model_tables::table::law::{Touched, Weights};
-use model_tables::units::PressureRise;
+use model_tables::units::{Nanometres, PressureRise};
 
 const WORDS: usize = TABLES.layout.words();
 const SEGMENTS: usize = TABLES.segments.len();
@@ -19,6 +20,7 @@ pub struct ObjectDesign {
     /// Last input covered, counts.
     maximum: i32,
     segments: [[i32; WORDS]; SEGMENTS],
+    read: Option<ReadPair>,
 }
 
 impl ObjectDesign {
@@ -27,6 +29,7 @@ impl ObjectDesign {
         let mut design = Self {
             maximum: TABLES.layout.maximum,
             segments: TABLES.segments,
+            read: None,
         };
         // The generator saw to it that the law allows it.
         let _ = design.touch(START);
@@ -87,6 +90,23 @@ impl Design for ObjectDesign {
     fn touch(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
         let weights = LAW.weights(touched).ok_or(NoSuchObject)?;
         self.weigh(&weights);
+        self.read = None;
         Ok(())
+    }
+
+    #[inline]
+    fn note(&mut self, read: Option<ReadPair>) {
+        self.read = read;
+    }
+
+    #[inline(never)]
+    fn tell(&self, known: Nanometres) -> Option<KnownContact> {
+        let lookups = Lookups {
+            touched: |rise| self.lookup(rise),
+            last: [self.last_rise(), PressureRise(TABLES.layout.maximum)],
+            plate: |rise| TABLES.lookup(rise),
+            ball: |rise| TABLES.layout.lookup_in(&BALL, rise),
+        };
+        Some(lookups.tell(&LAW, self.read.as_ref()?, known))
     }
 }

@@ -46,6 +46,11 @@ pub enum Command {
     },
     /// Something else is touched from now on.
     Object(Touched),
+    /// The hand knows how deep the fingertip is pressed.
+    Indentation {
+        /// Nanometres, above 0.
+        known: i32,
+    },
 }
 
 /// Which command, without what goes with it.
@@ -69,11 +74,13 @@ pub enum CommandKind {
     Air,
     /// [`Command::Object`].
     Object,
+    /// [`Command::Indentation`].
+    Indentation,
 }
 
 impl CommandKind {
     /// Every kind with its code on the wire.
-    pub const CODES: [(Self, u8); 9] = [
+    pub const CODES: [(Self, u8); 10] = [
         (Self::Tare, 0x81),
         (Self::Undo, 0x82),
         (Self::Save, 0x83),
@@ -82,6 +89,7 @@ impl CommandKind {
         (Self::Rate, 0x86),
         (Self::Forget, 0x87),
         (Self::Object, 0x88),
+        (Self::Indentation, 0x89),
         (Self::Air, 0x8A),
     ];
 
@@ -109,6 +117,7 @@ impl Command {
             Self::Forget => CommandKind::Forget,
             Self::Air { .. } => CommandKind::Air,
             Self::Object(_) => CommandKind::Object,
+            Self::Indentation { .. } => CommandKind::Indentation,
         }
     }
 }
@@ -204,6 +213,7 @@ pub fn encode(request: &Request) -> Encoded {
         Command::Tare | Command::Undo | Command::Info | Command::Forget => {}
         Command::Save { gain } => body.put(gain.unwrap_or(i32::MIN).to_le_bytes()),
         Command::SelfTest { indentation } => body.put(indentation.to_le_bytes()),
+        Command::Indentation { known } => body.put(known.to_le_bytes()),
         Command::Rate { every } => body.put(every.to_le_bytes()),
         Command::Air { pascals } => body.put(pascals.to_le_bytes()),
         Command::Object(touched) => {
@@ -232,7 +242,8 @@ pub fn read_body(body: &[u8]) -> Result<Request, DecodeError> {
     read_known_body::<true>(body)
 }
 
-/// The same for a board with `[object]` in its design, or without: there [`Command::Object`] is no command.
+/// The same for a board with `[object]` in its design, or without: there [`Command::Object`] and [`Command::Indentation`] are no
+/// commands.
 ///
 /// # Errors
 /// As [`decode`].
@@ -284,7 +295,14 @@ pub fn read_known_body<const OBJECT: bool>(body: &[u8]) -> Result<Request, Decod
             let radius = i32::from_le_bytes(fields.take()?);
             Command::Object(Touched::of(shape, radius).ok_or(DecodeError::Field(4))?)
         }
-        CommandKind::Object => return Err(DecodeError::Kind(code)),
+        CommandKind::Indentation if OBJECT => {
+            let known = i32::from_le_bytes(fields.take()?);
+            if known <= 0 {
+                return Err(DecodeError::Field(4));
+            }
+            Command::Indentation { known }
+        }
+        CommandKind::Object | CommandKind::Indentation => return Err(DecodeError::Kind(code)),
     };
     if fields.0.is_empty() {
         Ok(Request { sequence, command })
@@ -373,6 +391,8 @@ mod tests {
             (&[2, 0x88, 0, 0, 0, 1, 0, 0, 0], DecodeError::Field(4)),
             (&[2, 0x88, 0, 0, 1, 0, 0, 0, 0], DecodeError::Field(4)),
             (&[2, 0x88, 0, 0, 4, 1, 0, 0, 0], DecodeError::Field(4)),
+            (&[2, 0x89, 0, 0, 0, 0, 0, 0], DecodeError::Field(4)),
+            (&[2, 0x89, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF], DecodeError::Field(4)),
             // 100 001 parts in a million.
             (&[2, 0x83, 0, 0, 0xA1, 0x86, 1, 0], DecodeError::Field(4)),
         ] {
@@ -384,11 +404,16 @@ mod tests {
         let command = read_body(&ball).map(|request| request.command);
         assert_eq!(command, Ok(Command::Object(Touched::Ball(8_000))));
         assert_eq!(read_known_body::<false>(&ball), Err(DecodeError::Kind(0x88)));
+        // 1 mm; the same.
+        let depth = [2, 0x89, 0, 0, 0x40, 0x42, 0x0F, 0];
+        let command = read_body(&depth).map(|request| request.command);
+        assert_eq!(command, Ok(Command::Indentation { known: 1_000_000 }));
+        assert_eq!(read_known_body::<false>(&depth), Err(DecodeError::Kind(0x89)));
     }
 
     proptest! {
         #[test]
-        fn a_request_survives_the_wire(sequence in any::<u16>(), which in 0..9, argument in any::<i32>()) {
+        fn a_request_survives_the_wire(sequence in any::<u16>(), which in 0..10, argument in any::<i32>()) {
             let command = match which {
                 0 => Command::Tare,
                 1 => Command::Undo,
@@ -397,6 +422,7 @@ mod tests {
                 4 => Command::SelfTest { indentation: argument & i32::MAX },
                 5 => Command::Rate { every: (argument.unsigned_abs() % 1000 + 1) as u16 },
                 6 => Command::Air { pascals: argument },
+                8 => Command::Indentation { known: (argument & i32::MAX).max(1) },
                 7 => Command::Object(Touched::Ball((argument & i32::MAX).max(1))),
                 _ => Command::Forget,
             };

@@ -4,9 +4,9 @@
 use crate::link::telemetry::{self, Message};
 use crate::link::wire::Encoded;
 
-/// Room for `FRAMES` waiting frames, at least one.
+/// Room for `FRAMES` waiting frames, at least one, of a board with `[object]` in its design or without.
 #[derive(Debug)]
-pub struct Outbox<'a, const FRAMES: usize> {
+pub struct Outbox<'a, const FRAMES: usize, const OBJECT: bool = true> {
     frames: [&'a mut Encoded; FRAMES],
     /// Place of the oldest one waiting.
     oldest: usize,
@@ -15,7 +15,7 @@ pub struct Outbox<'a, const FRAMES: usize> {
     dropped: u32,
 }
 
-impl<'a, const FRAMES: usize> Outbox<'a, FRAMES> {
+impl<'a, const FRAMES: usize, const OBJECT: bool> Outbox<'a, FRAMES, OBJECT> {
     /// Nothing waits.
     pub const fn new(frames: [&'a mut Encoded; FRAMES]) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl<'a, const FRAMES: usize> Outbox<'a, FRAMES> {
         }
         let place = (self.oldest + self.waiting) % FRAMES;
         if let Some(frame) = self.frames.get_mut(place) {
-            telemetry::write(frame, self.sequence, self.dropped as u16, message);
+            telemetry::write::<OBJECT>(frame, self.sequence, self.dropped as u16, message);
             self.sequence = self.sequence.wrapping_add(1);
             self.waiting += 1;
         }
@@ -94,7 +94,7 @@ mod tests {
         fn frames_come_out_in_order_whole_and_numbered_the_oldest_dropped(taken in prop::collection::vec(any::<bool>(), 1..200)) {
             let mut bytes: [Encoded; 5] = core::array::from_fn(|_| Encoded::NOTHING);
             let [a, b, c, d, mut hand] = bytes.each_mut();
-            let mut outbox = Outbox::new([a, b, c, d]);
+            let mut outbox = Outbox::<4>::new([a, b, c, d]);
             let (mut expected, mut put, mut dropped) = (VecDeque::new(), 0_u16, 0_u16);
             for take in taken {
                 if take {

@@ -8,6 +8,7 @@ use crate::link::wire::{DecodeError, Deframer, Encoded, PROTOCOL_VERSION, Reader
 use crate::signal::report::{Measurement, Report, Sigma};
 use crate::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings, code_of, named_by};
 use crate::units::Microseconds;
+use model_tables::table::known::KnownContact;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 const HEADER: usize = 14;
@@ -15,6 +16,8 @@ const READING: usize = HEADER + 28;
 const FAULT: usize = HEADER + 1;
 const HELLO: usize = HEADER + 47;
 const ANSWER: usize = HEADER + 6;
+/// Of an indentation that tells something.
+const KNOWN: usize = ANSWER + 16;
 
 /// Who is speaking, once a second and when asked.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -62,8 +65,10 @@ pub struct Answer {
     pub command_sequence: u16,
     /// What came of it.
     pub outcome: Outcome,
-    /// Of a self-test: what it found, one bit each.
+    /// Of a self-test: what it found, one bit each. Of an indentation: [`doubts`](model_tables::table::known::doubts).
     pub findings: u16,
+    /// Of an indentation that tells something; its doubts are the findings.
+    pub known: Option<KnownContact>,
 }
 
 /// What one frame says.
@@ -107,12 +112,13 @@ pub struct Frame {
 /// The bytes of a frame, ready for the wire.
 pub fn encode(frame: &Frame) -> Encoded {
     let mut encoded = Encoded::NOTHING;
-    write(&mut encoded, frame.sequence, frame.dropped, &frame.message);
+    write::<true>(&mut encoded, frame.sequence, frame.dropped, &frame.message);
     encoded
 }
 
-/// The same, where the bytes are to be sent from.
-pub fn write(body: &mut Encoded, sequence: u16, dropped: u16, message: &Message) {
+/// The same, where the bytes are to be sent from; by a board with `[object]` in its design, or without: there no indentation tells
+/// anything.
+pub fn write<const OBJECT: bool>(body: &mut Encoded, sequence: u16, dropped: u16, message: &Message) {
     body.begin();
     let mut header = |kind: u8, time: Microseconds| {
         body.put([PROTOCOL_VERSION, kind]);
@@ -151,6 +157,16 @@ pub fn write(body: &mut Encoded, sequence: u16, dropped: u16, message: &Message)
             body.put(answer.command_sequence.to_le_bytes());
             body.put([code_of(&Outcome::CODES, answer.outcome)]);
             body.put(answer.findings.to_le_bytes());
+            if OBJECT && let Some(known) = &answer.known {
+                for number in [
+                    known.force.0,
+                    known.force_sigma.0,
+                    known.curvature,
+                    known.curvature_sigma,
+                ] {
+                    body.put(number.to_le_bytes());
+                }
+            }
         }
     }
     body.finish();
@@ -206,7 +222,9 @@ fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
         4 => ANSWER,
         _ => return Err(DecodeError::Kind(kind)),
     };
-    if body.len() != expected {
+    let tells =
+        kind == 4 && body.len() == KNOWN && body.get(HEADER) == Some(&CommandKind::Indentation.code());
+    if body.len() != expected && !tells {
         return Err(DecodeError::Length);
     }
     let message = match kind {
@@ -236,12 +254,26 @@ fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
             let [command] = fields.take()?;
             let command_sequence = u16::from_le_bytes(fields.take()?);
             let [outcome] = fields.take()?;
+            let findings = u16::from_le_bytes(fields.take()?);
+            let known = if tells {
+                let mut number = || fields.take().map(i32::from_le_bytes);
+                Some(KnownContact {
+                    force: Micronewtons(number()?),
+                    force_sigma: Micronewtons(number()?),
+                    curvature: number()?,
+                    curvature_sigma: number()?,
+                    doubts: findings,
+                })
+            } else {
+                None
+            };
             Message::Answer(Answer {
                 time,
                 command: CommandKind::from_code(command).ok_or(DecodeError::Field(14))?,
                 command_sequence,
                 outcome: named_by(&Outcome::CODES, outcome).ok_or(DecodeError::Field(17))?,
-                findings: u16::from_le_bytes(fields.take()?),
+                findings,
+                known,
             })
         }
     };

@@ -13,8 +13,9 @@ use crate::units::Microseconds;
 use model_tables::constants::DesignConstants;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
+use model_tables::table::known::{KnownContact, ReadPair};
 use model_tables::table::law::Touched;
-use model_tables::units::PressureRise;
+use model_tables::units::{Nanometres, PressureRise};
 
 /// A design with its tables.
 pub trait Design {
@@ -51,6 +52,16 @@ pub trait Design {
     /// [`NoSuchObject`]; what was touched before still is.
     fn touch(&mut self, _touched: Touched) -> Result<(), NoSuchObject> {
         Err(NoSuchObject)
+    }
+
+    /// What was read last, if anything was that a known indentation tells more of. A design without `[object]` forgets it.
+    #[inline]
+    fn note(&mut self, _read: Option<ReadPair>) {}
+
+    /// What a known indentation, above 0, tells beside what was read last; nothing where nothing was.
+    #[inline]
+    fn tell(&self, _known: Nanometres) -> Option<KnownContact> {
+        None
     }
 }
 

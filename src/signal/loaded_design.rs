@@ -11,10 +11,11 @@ use model_tables::material::relaxation::MAX_TERMS;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
 use model_tables::table::blend::BlendedTables;
+use model_tables::table::known::{KnownContact, ReadPair};
 use model_tables::table::law::Touched;
 use model_tables::table::loaded::LoadedTables;
 use model_tables::table::objects::LoadedObjects;
-use model_tables::units::PressureRise;
+use model_tables::units::{Nanometres, PressureRise};
 
 /// A design that is known at run time only.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +26,7 @@ pub struct LoadedDesign<'a> {
     objects: Option<LoadedObjects<'a>>,
     /// Of what is touched, unless that is a plate.
     blended: Option<BlendedTables>,
+    read: Option<ReadPair>,
 }
 
 impl<'a> LoadedDesign<'a> {
@@ -49,6 +51,7 @@ impl<'a> LoadedDesign<'a> {
             relaxation: tip.relaxation,
             objects: tip.objects,
             blended: None,
+            read: None,
         };
         if let Some(objects) = &tip.objects {
             design
@@ -91,6 +94,16 @@ impl Design for LoadedDesign<'_> {
             Touched::Plate => None,
             touched => Some(objects.blended(touched).ok_or(NoSuchObject)?),
         };
+        self.read = None;
         Ok(())
+    }
+
+    fn note(&mut self, read: Option<ReadPair>) {
+        self.read = read;
+    }
+
+    fn tell(&self, known: Nanometres) -> Option<KnownContact> {
+        let (objects, read) = (self.objects.as_ref()?, self.read.as_ref()?);
+        Some(objects.tell(|rise| self.lookup(rise), self.last_rise(), read, known))
     }
 }

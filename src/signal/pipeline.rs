@@ -16,6 +16,7 @@ use crate::status::{Fault, Touch, Warnings};
 use crate::transducer::driver::Sample;
 use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
 use model_tables::constants::AIR;
+use model_tables::table::known::KnownContact;
 use model_tables::table::law::Touched;
 use model_tables::units::{Nanometres, PressureRise};
 
@@ -101,6 +102,8 @@ impl<D: Design> Pipeline<D> {
             }
         };
         let delay = u64::from(GROUP_DELAY * period);
+        self.design
+            .note(outcome.as_ref().ok().and_then(Measurement::pair));
         Report {
             time: match outcome {
                 Ok(_) => before,
@@ -382,6 +385,11 @@ impl<D: Design> Pipeline<D> {
     /// [`NoSuchObject`]; readings stay those of what was touched before.
     pub fn touch_object(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
         self.design.touch(touched)
+    }
+
+    /// What a known indentation, above 0, tells beside the last reading; nothing without one that holds, or without `[object]`.
+    pub fn tell(&self, known: Nanometres) -> Option<KnownContact> {
+        self.design.tell(known)
     }
 
     /// Wild samples replaced so far.

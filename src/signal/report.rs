@@ -2,6 +2,7 @@
 
 use crate::status::{Fault, Status, Touch, Warnings};
 use crate::units::Microseconds;
+use model_tables::table::known::ReadPair;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// Force and indentation at a pressure rise, with what qualifies them.
@@ -33,6 +34,27 @@ pub struct Measurement {
     pub touch: Touch,
     /// What qualifies the others.
     pub warnings: Warnings,
+}
+
+impl Measurement {
+    /// What a known indentation tells more of; nothing where force and indentation are bounds, 0, or of another volume of liquid.
+    #[inline]
+    pub fn pair(&self) -> Option<ReadPair> {
+        let refused = [
+            Warnings::SATURATED,
+            Warnings::BELOW_ZERO,
+            Warnings::RECOVERING,
+            Warnings::LEAK_SUSPECTED,
+            Warnings::BUBBLE_SUSPECTED,
+        ];
+        let holds = !refused.iter().any(|warning| self.warnings.contains(*warning));
+        (holds && self.touch != Touch::Untouched && self.indentation.0 > 0).then_some(ReadPair {
+            force: self.force,
+            force_sigma: self.sigma.force,
+            indentation: self.indentation,
+            indentation_sigma: self.sigma.indentation,
+        })
+    }
 }
 
 /// One standard deviation of each value, >= 0, and above 0 for force and indentation; the end of the word also stands for

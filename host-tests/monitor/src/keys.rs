@@ -5,7 +5,7 @@ use model_tables::table::law::Touched;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 /// Every key with its meaning, for the help.
-pub(crate) const HELP: [(&str, &str); 16] = [
+pub(crate) const HELP: [(&str, &str); 17] = [
     ("t", "tare: nothing presses, take a new zero"),
     ("u", "undo the last tare"),
     ("s", "save zero and gain in the board"),
@@ -16,6 +16,7 @@ pub(crate) const HELP: [(&str, &str); 16] = [
     ("r", "rate: every so many-th report"),
     ("a", "air around an absolute part, Pa"),
     ("o", "object: radius in mm; 0 a plate, below 0 a cup"),
+    ("d", "indentation now, in mm: force and curvature"),
     ("c", "chart force or pressure rise"),
     ("p", "pause the screen; a log goes on"),
     ("k", "forget the peak"),
@@ -33,6 +34,7 @@ pub(crate) enum Question {
     Rate,
     Air,
     Object,
+    Indentation,
 }
 
 impl Question {
@@ -43,6 +45,7 @@ impl Question {
             Self::SelfTest => "indentation now, mm (0: not known): ",
             Self::Rate => "every so many-th report (1 to 1000): ",
             Self::Air => "air, Pa (60000 to 108000): ",
+            Self::Indentation => "indentation now, mm: ",
             Self::Object => "radius, mm (0: a plate; below 0: a cup): ",
         }
     }
@@ -72,6 +75,9 @@ impl Question {
             },
             Self::SelfTest => Command::SelfTest {
                 indentation: (1e6 * within(0.0, 100.0)?).round() as i32,
+            },
+            Self::Indentation => Command::Indentation {
+                known: (1e6 * within(0.001, 100.0)?).round() as i32,
             },
             Self::Rate => Command::Rate {
                 every: within(1.0, 1000.0)?.round() as u16,
@@ -161,6 +167,7 @@ impl Keyboard {
             'r' => Question::Rate,
             'a' => Question::Air,
             'o' => Question::Object,
+            'd' => Question::Indentation,
             _ => return None,
         };
         self.question = Some((question, String::new()));
@@ -197,6 +204,7 @@ mod tests {
         assert_eq!(typed("o0\n"), send(Command::Object(Touched::Plate)));
         assert_eq!(typed("o8\n"), send(Command::Object(Touched::Ball(8000))));
         assert_eq!(typed("o-20\n"), send(Command::Object(Touched::Cup(20_000))));
+        assert_eq!(typed("d0.75\n"), send(Command::Indentation { known: 750_000 }));
         assert_eq!(typed("fy\n"), send(Command::Forget));
         for refused in [
             "g1e9\n", "r0\n", "r1001\n", "a1\n", "x-1\n", "f\n", "fn\n", "onan\n",

@@ -231,6 +231,7 @@ fn what_is_lost_or_broken_is_counted_and_answers_are_told() {
         command_sequence: 1,
         outcome: Outcome::Touched,
         findings: 0,
+        known: None,
     });
     hear(&mut monitor, 3, NOW, &[answer]);
     let screen = screen(&monitor, NOW);

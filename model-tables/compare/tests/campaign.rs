@@ -1,6 +1,10 @@
 //! A small campaign of random designs: no state may be wrong, and every refusal has a reason that holds.
 
+use compare::campaign::objects::{self, BandTally, ObjectWorld, TouchedKind};
 use compare::campaign::{self, Tally, lives, solids};
+use model_tables::design_file::DesignFile;
+use model_tables::generate;
+use std::path::Path;
 
 /// Reasons that are physics: the law unstable, a pole that inflation does not stretch so far, a plain membrane that
 /// would have to push where it leaves the plate, a compliance on which a softening dome inflates by itself.
@@ -55,4 +59,18 @@ fn in_random_lives_no_reading_with_ok_is_wrong() {
     }
     assert!(all.readings > 500_000 && all.ok_share() > 0.3, "{all}");
     assert!(all.most_deviations < 7.0, "{all}");
+}
+
+/// All of it: `cargo campaign objects --objects 2000`.
+#[test]
+fn the_truth_of_random_objects_lies_in_the_band() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/index-fingertip-elastic.toml");
+    let design = DesignFile::read(&file).expect("a shipped design");
+    let world = ObjectWorld::solve(&design, |_| {}).expect("presses");
+    for design in [design.clone(), objects::with_unknown(&design)] {
+        let generated = generate::from_design(design).expect("tables");
+        let tally = BandTally::of(&generated, &world, 7, 2000).expect("a band");
+        assert!(tally.share() >= 0.99, "{tally}\n{:?}", tally.outside);
+        assert!(tally.kinds[&TouchedKind::Ball][0] > 1000, "{tally}");
+    }
 }

@@ -7,7 +7,7 @@ pub const NAME: &str = "index-fingertip-elastic";
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0xe2df7fbb5c5fdaa7,
     table_version: 5,
-    certificate: 0xd4e10bef36dfb215,
+    certificate: 0x5a5f54a7cfe4ed93,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {

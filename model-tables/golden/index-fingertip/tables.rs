@@ -7,7 +7,7 @@ pub const NAME: &str = "index-fingertip";
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x2a86bd08600d07db,
     table_version: 5,
-    certificate: 0x67e753815d324c60,
+    certificate: 0xb388a31c80ba325c,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {

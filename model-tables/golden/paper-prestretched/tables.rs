@@ -7,7 +7,7 @@ pub const NAME: &str = "paper-prestretched";
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x0b0805c0f73222b7,
     table_version: 5,
-    certificate: 0x8c6b9f109ad03946,
+    certificate: 0xb2acdbb3b37c5451,
     rest_pressure: 179062,
     maximum_pressure: 278482,
     transducer: model_tables::constants::Transducer {

@@ -7,7 +7,7 @@ pub const NAME: &str = "skin-analogue";
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x390d166db74fda12,
     table_version: 5,
-    certificate: 0x6cb932f7f67ef255,
+    certificate: 0x54baeee43d94c088,
     rest_pressure: 8312,
     maximum_pressure: 16418,
     transducer: model_tables::constants::Transducer {

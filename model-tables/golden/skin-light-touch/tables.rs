@@ -7,7 +7,7 @@ pub const NAME: &str = "skin-light-touch";
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x8e7fbb454372d43d,
     table_version: 5,
-    certificate: 0x124922f41573d2f3,
+    certificate: 0x997e360468cd2df9,
     rest_pressure: 1825,
     maximum_pressure: 4483,
     transducer: model_tables::constants::Transducer {

@@ -11,9 +11,14 @@ use crate::table::law::{BlendLaw, LAW_BITS, Touched, WEIGHT_BITS, Weights};
 use crate::table::loaded::LoadedTables;
 use crate::units::PressureRise;
 
+mod band;
+mod press;
+pub mod quoted;
 mod solved;
 
-pub(super) use solved::plate_of;
+pub use band::{Band, BandRow};
+pub(super) use band::{TableError, Unknown};
+pub(super) use press::plate_of;
 pub use solved::{NoObjects, SolvedObject, SolvedObjects};
 
 /// What the tables of the reference ball are held to, as a multiple of what those of the plate are: its share of a blend's error.
@@ -154,9 +159,9 @@ impl SolvedObjects {
         };
         let both = |of: [solved::Coefficients; 2]| of.map(coefficients);
         BlendLaw {
-            reference: solved::micrometres(self.reference_radius),
-            offset: solved::micrometres(self.offset),
-            least: self.least.map(solved::micrometres),
+            reference: press::micrometres(self.reference_radius),
+            offset: press::micrometres(self.offset),
+            least: self.least.map(press::micrometres),
             last: self.last.map(counts),
             force: both(self.force),
             indentation: both(self.indentation),

@@ -1,9 +1,12 @@
 //! Tables of other objects than a plate that are known at run time only.
 
+use super::Reading;
 use super::blend::BlendedTables;
 use super::error::TablesError;
+use super::known::{KnownContact, Lookups, ReadPair};
 use super::law::{BlendLaw, Touched};
 use super::loaded::LoadedTables;
+use crate::units::{Nanometres, PressureRise};
 
 /// The reference ball's tables beside those of the plate, and the law of the weights.
 #[derive(Clone, Copy, Debug)]
@@ -48,5 +51,22 @@ impl<'a> LoadedObjects<'a> {
         let weights = self.law.weights(touched)?;
         let (plate, ball) = (self.plate.words(), self.ball.words());
         BlendedTables::new(self.plate.layout(), plate, ball, &weights).ok()
+    }
+
+    /// What a known indentation, above 0, tells beside a reading through tables that end at `last`.
+    pub fn tell(
+        &self,
+        touched: impl Fn(PressureRise) -> Reading,
+        last: PressureRise,
+        read: &ReadPair,
+        known: Nanometres,
+    ) -> KnownContact {
+        let lookups = Lookups {
+            touched,
+            last: [last, PressureRise(self.plate.layout().maximum)],
+            plate: |rise| self.plate.lookup(rise),
+            ball: |rise| self.ball.lookup(rise),
+        };
+        lookups.tell(&self.law, read, known)
     }
 }

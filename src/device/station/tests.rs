@@ -392,6 +392,7 @@ fn a_supply_that_sags_in_a_grasp_keeps_the_zero_and_ends_with_a_reason() {
 fn an_object_is_refused_by_a_design_that_has_none() {
     let mut bench = Bench::zeroed();
     bench.ask(Command::Object(Touched::Ball(8_000)));
+    bench.ask(Command::Indentation { known: 1_000_000 });
     let outcomes: Vec<Outcome> = bench
         .said
         .iter()
@@ -400,5 +401,5 @@ fn an_object_is_refused_by_a_design_that_has_none() {
             _ => None,
         })
         .collect();
-    assert_eq!(outcomes, [Outcome::NoSuchObject]);
+    assert_eq!(outcomes, [Outcome::NoSuchObject, Outcome::NoReading]);
 }

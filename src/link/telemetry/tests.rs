@@ -102,6 +102,35 @@ fn answer() -> Frame {
             command_sequence: 0x0304,
             outcome: Outcome::Done,
             findings: 0x12,
+            known: None,
+        }),
+    }
+}
+
+/// Sequence 9, 2 s; indentation 5 is done, found 1; 1.5 N and 0.09 N, 125 000 and 4 000 / km. By Python, as above.
+const KNOWN_FRAME: &[u8] = &[
+    0x04, 0x02, 0x04, 0x09, 0x04, 0x80, 0x84, 0x1E, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x03, 0x89, 0x05,
+    0x01, 0x02, 0x01, 0x04, 0x60, 0xE3, 0x16, 0x04, 0x90, 0x5F, 0x01, 0x04, 0x48, 0xE8, 0x01, 0x03, 0xA0,
+    0x0F, 0x01, 0x03, 0xF2, 0xBB, 0x00,
+];
+
+fn known() -> Frame {
+    Frame {
+        sequence: 9,
+        dropped: 0,
+        message: Message::Answer(Answer {
+            time: Microseconds(2_000_000),
+            command: CommandKind::Indentation,
+            command_sequence: 5,
+            outcome: Outcome::Done,
+            findings: 1,
+            known: Some(KnownContact {
+                force: Micronewtons(1_500_000),
+                force_sigma: Micronewtons(90_000),
+                curvature: 125_000,
+                curvature_sigma: 4_000,
+                doubts: 1,
+            }),
         }),
     }
 }
@@ -113,6 +142,7 @@ fn frames_are_the_documented_bytes() {
         (fault(), FAULT_FRAME),
         (hello(), HELLO_FRAME),
         (answer(), ANSWER_FRAME),
+        (known(), KNOWN_FRAME),
     ] {
         assert_eq!(encode(&frame).as_slice(), bytes);
         assert_eq!(decode(&bytes[..bytes.len() - 1]), Ok(frame));
@@ -231,13 +261,32 @@ fn any_frame() -> impl Strategy<Value = Frame> {
                 command_sequence: words[0],
                 outcome: Outcome::CODES[outcome].0,
                 findings: words[1],
+                known: None,
             })
         });
-    (any::<[u16; 2]>(), prop_oneof![report, hello, answer]).prop_map(|([sequence, dropped], message)| Frame {
-        sequence,
-        dropped,
-        message,
-    })
+    let known = (any::<u64>(), any::<[u16; 2]>(), any::<[i32; 4]>()).prop_map(|(time, words, numbers)| {
+        Message::Answer(Answer {
+            time: Microseconds(time),
+            command: CommandKind::Indentation,
+            command_sequence: words[0],
+            outcome: Outcome::Done,
+            findings: words[1],
+            known: Some(KnownContact {
+                force: Micronewtons(numbers[0]),
+                force_sigma: Micronewtons(numbers[1]),
+                curvature: numbers[2],
+                curvature_sigma: numbers[3],
+                doubts: words[1],
+            }),
+        })
+    });
+    (any::<[u16; 2]>(), prop_oneof![report, hello, answer, known]).prop_map(
+        |([sequence, dropped], message)| Frame {
+            sequence,
+            dropped,
+            message,
+        },
+    )
 }
 
 proptest! {

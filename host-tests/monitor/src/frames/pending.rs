@@ -2,6 +2,7 @@
 
 use fingertip::link::command::{Command, CommandKind, Outcome};
 use fingertip::link::telemetry::Answer;
+use model_tables::table::known::{KnownContact, doubts};
 use std::time::Duration;
 
 /// What a self-test finds, by the bits of its answer (PROTOCOL.md, kind 4).
@@ -86,6 +87,7 @@ pub(crate) fn name(kind: CommandKind) -> &'static str {
         CommandKind::Forget => "forget",
         CommandKind::Air => "air",
         CommandKind::Object => "object",
+        CommandKind::Indentation => "indentation",
     }
 }
 
@@ -108,10 +110,40 @@ pub(crate) fn describe(answer: &Answer) -> String {
         CommandKind::SelfTest => format!(": {}", findings(answer.findings)),
         _ => String::new(),
     };
+    let findings = answer.known.map_or(findings, |known| known_indentation(&known));
     format!(
         "{} {}: {outcome}{findings}",
         name(answer.command),
         answer.command_sequence
+    )
+}
+
+/// What an indentation that the host knows told.
+fn known_indentation(known: &KnownContact) -> String {
+    let doubts: String = [
+        (
+            doubts::LIGHT,
+            "; a light touch: the force is up to 17 % low, the curvature unknown",
+        ),
+        (
+            doubts::SHALLOW,
+            "; less deep than a plate: a cup, friction, or a wrong indentation",
+        ),
+        (
+            doubts::TIGHT,
+            "; curved more than any ball that was solved: at least this curvature",
+        ),
+    ]
+    .iter()
+    .filter(|(bit, _)| known.doubts & bit != 0)
+    .map(|(_, words)| *words)
+    .collect();
+    format!(
+        ", {:.4} N within {:.4} N, curvature {:.1} 1/m within {:.1} 1/m{doubts}",
+        known.force.newtons(),
+        known.force_sigma.newtons(),
+        1e-3 * f64::from(known.curvature),
+        1e-3 * f64::from(known.curvature_sigma),
     )
 }
 

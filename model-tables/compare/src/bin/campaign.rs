@@ -4,7 +4,10 @@ use clap::{Args, Parser, Subcommand};
 use compare::campaign::draw::Case;
 use compare::campaign::judge::{Judged, Verdict};
 use compare::campaign::lives::{self, tip};
+use compare::campaign::objects::{self, BandTally, ObjectWorld};
 use compare::campaign::{self, Tally, solids, walls};
+use model_tables::design_file::DesignFile;
+use model_tables::generate;
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use output::{Refusal, files};
@@ -35,6 +38,26 @@ enum Campaign {
     /// Lets fingertips live through the signal path, with all that moves a zero
     #[command(after_help = "Example:\n  cargo campaign lives --lives 5000 --days 50 --seed 2026")]
     Lives(LivesArguments),
+    /// Presses random objects that the chip is not told, against the band that a design states
+    #[command(after_help = "Example:\n  cargo campaign objects --objects 2000 --seed 2026")]
+    Objects(ObjectArguments),
+}
+
+#[derive(Debug, Args)]
+struct ObjectArguments {
+    /// Objects to draw
+    #[arg(long, default_value_t = 2000)]
+    objects: u64,
+    /// What the draw depends on
+    #[arg(long, default_value_t = 2026)]
+    seed: u64,
+    /// A design without [object]
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "model-tables/designs/index-fingertip-elastic.toml"
+    )]
+    design: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -160,6 +183,7 @@ fn main() -> ExitCode {
         Campaign::Walls(arguments) => Ok(judge_walls(&arguments)),
         Campaign::Solids(arguments) => Ok(judge_solids(&arguments)),
         Campaign::Lives(arguments) => Ok(judge_lives(&arguments)),
+        Campaign::Objects(arguments) => judge_objects(&arguments),
     };
     match kept {
         Ok(true) => ExitCode::SUCCESS,
@@ -255,6 +279,46 @@ fn judge_lives(arguments: &LivesArguments) -> bool {
     }
     println!("| all | {all}");
     all.wrong == all.replaced
+}
+
+/// Whether 99 % of the objects lay in the band, of the plate's tables and of those for an unknown object.
+fn judge_objects(arguments: &ObjectArguments) -> Result<bool, Box<dyn Error>> {
+    let design = DesignFile::read(&arguments.design)?;
+    if design.object.is_some() {
+        return Err(format!(
+            "{}: [object] is given: leave it out, the campaign presses objects of its own",
+            arguments.design.display()
+        )
+        .into());
+    }
+    let world = ObjectWorld::solve(&design, |done| eprint!("\r{} balls solved", done + 1))?;
+    eprintln!();
+    let mut kept = true;
+    for design in [design.clone(), objects::with_unknown(&design)] {
+        let generated = generate::from_design(design)?;
+        let tally = BandTally::of(&generated, &world, arguments.seed, arguments.objects)
+            .ok_or("the design states no band: a ball of 5 or of 20 mm has no press")?;
+        if let Some(band) = &generated.band {
+            println!("{band}");
+            for row in &band.rows {
+                println!(
+                    "  {:>9.1} to {:>9.1} Pa: force {:+.1} to {:+.1} %, indentation {:+.1} to {:+.1} %",
+                    row.from,
+                    row.to,
+                    row.force_percent[0],
+                    row.force_percent[1],
+                    row.indentation_percent[0],
+                    row.indentation_percent[1]
+                );
+            }
+        }
+        println!("{tally}");
+        for object in &tally.outside {
+            println!("  outside: {object:?}");
+        }
+        kept &= tally.share() >= 0.99;
+    }
+    Ok(kept)
 }
 
 /// Whether no state was wrong.

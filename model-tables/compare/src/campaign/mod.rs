@@ -6,6 +6,7 @@
 pub mod draw;
 pub mod judge;
 pub mod lives;
+pub mod objects;
 pub mod scaling;
 pub mod solids;
 pub mod walls;

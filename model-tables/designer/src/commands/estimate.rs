@@ -77,8 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
             Cell::Text(status.to_string()),
         ]);
     }
-    Ok(CommandAnswer {
-        rows,
-        notes: generated.own_error().iter().map(ToString::to_string).collect(),
-    })
+    let mut notes: Vec<String> = generated.own_error().iter().map(ToString::to_string).collect();
+    notes.extend(generated.band.iter().map(ToString::to_string));
+    Ok(CommandAnswer { rows, notes })
 }

@@ -58,6 +58,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         format!("{name}: {}", generated.choice()),
         format!("{name}: solved, fitted and certified in {seconds:.1} s"),
     ];
+    notes.extend(generated.band.iter().map(|band| format!("{name}: {band}")));
     notes.extend(generated.own_error().map(|error| format!("{name}: {error}")));
     Ok(CommandAnswer { rows, notes })
 }

@@ -18,8 +18,6 @@ pub enum GenerateError {
         /// The section.
         section: &'static str,
     },
-    /// `object.unknown` is set: tables are of one object.
-    UnknownObject,
     /// The wall relaxes, and the design is none that its convolution holds for: the key, and the remedy.
     NotConvolved(&'static str),
     /// `air.reference` is `"part"`: no board has a second transducer.
@@ -91,10 +89,6 @@ impl fmt::Display for GenerateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(error) => error.fmt(f),
-            Self::UnknownObject => write!(
-                f,
-                "`object.unknown` is true, and tables are of one object: give object.radius_mm, or leave [object] out for a plate"
-            ),
             Self::NotConvolved(reason) => f.write_str(reason),
             Self::SecondTransducer => write!(
                 f,

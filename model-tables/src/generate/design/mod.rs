@@ -2,12 +2,13 @@
 
 mod error;
 mod limit;
+mod share;
 
 pub use error::{DesignState, GenerateError};
 pub use limit::AccuracyLimit;
 
-use super::object::{NoObjects, SolvedObjects, plate_of};
-use super::{Certified, NoTables, tables_with};
+use super::object::{Band, NoObjects, SolvedObjects, TableError, Unknown, plate_of};
+use super::{Certificate, Certified, NoTables, tables_with};
 use crate::constants::{AirReference, BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{
@@ -16,6 +17,7 @@ use crate::design_file::{
 };
 use crate::model::own_error::{Comparison, OwnError};
 use crate::model::{Fingertip, Kind};
+use crate::table::law::Touched;
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
@@ -28,11 +30,6 @@ const BEYOND: f64 = 1.0 + 1.0 / 64.0;
 
 /// A relaxing wall's stress of a change in no time over the settled one: less than this.
 const MOST_STIFFENED: f64 = 65_535.0;
-
-/// States at which the share of the fluid in the contact's force is looked at.
-const SHARED_STATES: u32 = 12;
-/// The shares that its parameter is fitted to.
-const MIDDLE: std::ops::RangeInclusive<f64> = 0.2..=0.8;
 
 /// How often the accuracy is doubled at most where worse is allowed: a thousand times what was asked.
 const MOST_DOUBLINGS: u32 = 10;
@@ -74,6 +71,9 @@ pub struct Generated {
     pub fluid_half: Option<f64>,
     /// The membrane against the solid of the same wall; nothing where the model is a solid, or there is none.
     pub membrane_error: Option<OwnError>,
+    /// What an object that the chip is not told leaves open; nothing where the curve is of data, the object a punch, or a ball has no
+    /// press.
+    pub band: Option<Band>,
 }
 
 /// Reads a design file and makes its tables. Build scripts call this.
@@ -105,9 +105,6 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
     let missing = |section| GenerateError::MissingSection { section };
     is_convolved(&design)?;
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
-    if design.object.is_some_and(|object| object.unknown) {
-        return Err(GenerateError::UnknownObject);
-    }
     // A punch is no ball: its tables are of itself alone.
     let blends = design
         .object
@@ -127,8 +124,12 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
     };
     let fluid_half = match design.relaxation {
         None => None,
-        Some(_) => Some(half_borne_by_the_fluid(&touching, rung.as_ref(), end)?),
+        Some(_) => Some(share::half_borne_by_the_fluid(&touching, rung.as_ref(), end)?),
     };
+    let is_unknown = design.object.is_some_and(|object| object.unknown);
+    let unknown = rung
+        .as_ref()
+        .and_then(|tip| Unknown::solve(&design, tip, &curve, end));
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let (mut model_error, mut membrane_error) = (None, None);
     let kind = rung.as_ref().map(Fingertip::kind);
@@ -145,7 +146,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
     )?;
     let mut allowed = accuracy;
     let mut doubled = 0;
-    let certified = loop {
+    let mut certified = loop {
         match tables_with(&curve, end, &allowed, transducer.resolution_pa, objects.as_ref()) {
             Err(NoTables::Inaccurate { .. }) if doubled < doublings => {
                 allowed.force_percent_of_reading *= 2.0;
@@ -155,6 +156,15 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
             found => break found.map_err(GenerateError::NoTables)?,
         }
     };
+    if let Some(object) = &mut certified.object
+        && is_unknown
+    {
+        let unknown = unknown
+            .as_ref()
+            .ok_or(GenerateError::Objects(NoObjects::Unknown))?;
+        object.start = unknown.narrowest(&certified.tables, object);
+    }
+    let band = unknown.and_then(|unknown| band(&unknown, &certified));
     Ok(Generated {
         design,
         transducer,
@@ -165,46 +175,24 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         kind,
         fluid_half,
         membrane_error,
+        band,
     })
 }
 
-/// The pressure rise, pascals, at which the fluid bears half of the contact's force: the parameter of its share `P / (P_1 + P)` that fits
-/// the share `P A / F` of solved states, `A` the area of contact.
-fn half_borne_by_the_fluid(
-    design: &DesignFile,
-    solved: Option<&Fingertip>,
-    end: Contact,
-) -> Result<f64, GenerateError> {
-    let mut rung = match solved {
-        Some(solved) => solved.clone(),
-        None => Fingertip::for_curve(design).map_err(GenerateError::Model)?,
-    };
-    // Halves of the log-odds: in the middle, where the share matters, or where there is no middle at the state next to it.
-    let (mut sum, mut count) = (0.0, 0.0);
-    let mut nearest = (f64::INFINITY, end.pressure_rise);
-    for k in 1..=SHARED_STATES {
-        let indentation = end.indentation * f64::from(k) / f64::from(SHARED_STATES);
-        let state = rung.at_indentation(indentation).map_err(GenerateError::Model)?;
-        let area = std::f64::consts::PI * state.contact_radius * state.contact_radius;
-        let share = state.pressure_rise * area / state.force;
-        if !(share > 0.0 && share < 1.0) {
-            continue;
-        }
-        let half = state.pressure_rise * (1.0 / share - 1.0);
-        if MIDDLE.contains(&share) {
-            sum += libm::log(half);
-            count += 1.0;
-        }
-        let off = (share - 0.5).abs();
-        if off < nearest.0 {
-            nearest = (off, half);
-        }
+/// The band of what the chip reads to begin with.
+fn band(unknown: &Unknown, certified: &Certified) -> Option<Band> {
+    let Certificate {
+        force, indentation, ..
+    } = &certified.certificate;
+    let error = [(force, 1e-6), (indentation, 1e-9)].map(|(errors, unit)| TableError {
+        percent: errors.of_reading.max.max(errors.below_percent_of_from),
+        from: unit * errors.from,
+    });
+    let tables = &certified.tables;
+    match &certified.object {
+        None => unknown.band(tables, Touched::Plate, error),
+        Some(object) => unknown.band(&object.blended(tables, object.start)?, object.start, error),
     }
-    Ok(if count > 0.0 {
-        libm::exp(sum / count)
-    } else {
-        nearest.1
-    })
 }
 
 /// Solves a design down to `max_indentation_mm`, as its transducer reads it.
@@ -215,9 +203,6 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
     let indentation = design.max_indentation_mm.ok_or(missing("press"))?;
     let transducer = design.transducer.ok_or(missing("transducer"))?;
-    if design.object.is_some_and(|object| object.unknown) {
-        return Err(GenerateError::UnknownObject);
-    }
     if design.air == AirReference::Part {
         return Err(GenerateError::SecondTransducer);
     }

@@ -168,7 +168,6 @@ fn blended_tables_of_balls_give_their_force_and_indentation() {
 fn what_has_no_tables_is_refused_by_its_key() {
     let refused = |object: &str| from_design(against(object)).expect_err("no tables").to_string();
     for (object, says) in [
-        ("unknown = true", "`object.unknown` is true"),
         (
             "radius_mm = 2.5",
             "object.radius_mm = 2.5 is tighter than the objects that were solved",
@@ -181,6 +180,103 @@ fn what_has_no_tables_is_refused_by_its_key() {
         let text = refused(object);
         assert!(text.contains(says) && text.lines().count() == 1, "{text}");
     }
+}
+
+/// States of balls by an independent finite-element code (`tests/reference/object.json`): radius in millimetres, pressure in
+/// kilopascals, force in newtons, indentation in millimetres. 0: a plate.
+const STATES_OF_OBJECTS: [[f64; 4]; 12] = [
+    [5.0, 0.561_201, 0.064_487_8, 0.25],
+    [5.0, 3.548_23, 0.279_473, 1.0],
+    [5.0, 13.057_7, 0.916_671, 2.0],
+    [5.0, 21.250_7, 1.615_51, 2.5],
+    [8.0, 0.584_123, 0.066_901_6, 0.25],
+    [8.0, 8.498_38, 0.625_282, 1.5],
+    [8.0, 26.950_6, 2.370_74, 2.5],
+    [20.0, 0.621_192, 0.070_859_5, 0.25],
+    [20.0, 11.591, 0.991_338, 1.5],
+    [20.0, 42.510_8, 5.053_42, 2.5],
+    [0.0, 6.744_32, 0.638_795, 1.0],
+    [0.0, 41.548_7, 5.758_22, 2.0],
+];
+
+/// What is read and what is true at those states, with the band there.
+fn states_are_in_the_band(generated: &Generated) {
+    let band = generated.band.as_ref().expect("a solid has one");
+    for row in &band.rows {
+        println!("{row:?}");
+    }
+    println!("{band}");
+    let plate = &generated.certified.tables;
+    let blended = generated.certified.object.as_ref().map(|object| {
+        object
+            .blended(plate, band.tables_of)
+            .expect("what it begins with")
+    });
+    let tables = blended.as_ref().unwrap_or(plate);
+    for [radius, pressure, force, indentation] in STATES_OF_OBJECTS {
+        let rise = 1e3 * pressure;
+        let bits = tables.layout.pressure_fraction_bits;
+        let reading = tables.lookup(PressureRise::from_pascals(rise, bits));
+        assert!(!reading.saturated, "{radius} {pressure}");
+        let read = [reading.force.newtons(), 1e3 * reading.indentation.metres()];
+        let row = band.at(rise).expect("a row");
+        assert!(
+            row.holds(read, [force, indentation]),
+            "{radius} mm, {pressure} kPa: {read:?} {row:?}"
+        );
+    }
+}
+
+#[test]
+fn the_band_of_a_plate_table_holds_balls_and_is_no_wider_than_it_may_be() {
+    let generated = from_design(shipped("index-fingertip-elastic")).expect("tables");
+    states_are_in_the_band(&generated);
+    let band = generated.band.as_ref().expect("a solid has one");
+    assert_eq!(band.tables_of, Touched::Plate);
+    for row in &band.rows {
+        let ([less, more], [shallower, deeper]) = (row.force_percent, row.indentation_percent);
+        assert!(more <= 25.0 && shallower >= -5.0, "{row:?}");
+        if row.to <= 1e3 {
+            assert!(less >= -3.0, "{row:?}");
+        }
+        assert!(less >= -35.0 && deeper <= 65.0, "{row:?}");
+    }
+}
+
+#[test]
+fn an_unknown_object_is_read_as_that_with_the_smallest_band() {
+    let generated = from_design(against("unknown = true")).expect("tables");
+    states_are_in_the_band(&generated);
+    let object = generated.certified.object.as_ref().expect("of balls");
+    assert!(
+        matches!(object.start, Touched::Ball(8_001..300_000)),
+        "{:?}",
+        object.start
+    );
+    // The worst factor is smaller than with the plate's or a small ball's tables.
+    let factor = |generated: &Generated| {
+        let row = generated.band.as_ref().expect("a solid has one").widest();
+        [row.force_percent, row.indentation_percent]
+            .as_flattened()
+            .iter()
+            .map(|percent| libm::log(1.0 + percent / 100.0).abs())
+            .fold(0.0, f64::max)
+    };
+    let others = ["", "radius_mm = 8.0"].map(|object| factor(&from_design(against(object)).expect("tables")));
+    println!("{:.4} {others:.4?}", factor(&generated));
+    for other in others {
+        assert!(
+            factor(&generated) < other - 0.01,
+            "{} {other}",
+            factor(&generated)
+        );
+    }
+    // The object command still works: the tables of a ball are there.
+    assert!(
+        object
+            .blended(&generated.certified.tables, Touched::Ball(5_000))
+            .is_some()
+    );
 }
 
 /// The tables as the chip holds them, if they have this shape.

@@ -5,7 +5,7 @@ use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::generate::TABLE_VERSION;
 use crate::generate::design::{AccuracyLimit, Generated};
-use crate::generate::object::ObjectTables;
+use crate::generate::object::{Band, ObjectTables, quoted};
 use crate::generate::tally::Errors;
 use crate::model::own_error::OwnError;
 use crate::units::PressureRise;
@@ -126,13 +126,17 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     write_errors("force", "un", asked[0], &certificate.force, out)?;
     write_errors("indentation", "nm", asked[1], &certificate.indentation, out)?;
     if let Some(object) = &generated.certified.object {
-        write_blend(object, out)?;
+        let unknown = generated.design.object.is_some_and(|object| object.unknown);
+        write_blend(object, unknown, out)?;
+    }
+    if let Some(band) = &generated.band {
+        write_band(band, out)?;
     }
     write_transducer(generated, out)
 }
 
 /// What a blend of the plate's tables and the reference ball's is worth.
-fn write_blend(object: &ObjectTables, out: &mut String) -> fmt::Result {
+fn write_blend(object: &ObjectTables, unknown: bool, out: &mut String) -> fmt::Result {
     let law = &object.law;
     let bits = object.ball.layout.pressure_fraction_bits;
     let millimetres = |micrometres: i32| f64::from(micrometres) * 1e-3;
@@ -149,6 +153,9 @@ fn write_blend(object: &ObjectTables, out: &mut String) -> fmt::Result {
         2 * object.ball.bytes(),
         millimetres(law.least[0]),
     )?;
+    if unknown {
+        writeln!(out, "chosen = \"the start has the smallest band\"")?;
+    }
     if law.least[1] > 0 {
         writeln!(out, "least_cup_mm = {:?}", millimetres(law.least[1]))?;
     }
@@ -180,6 +187,33 @@ fn write_blend(object: &ObjectTables, out: &mut String) -> fmt::Result {
         }
     }
     Ok(())
+}
+
+/// What an object that the chip is not told leaves open.
+fn write_band(band: &Band, out: &mut String) -> fmt::Result {
+    writeln!(
+        out,
+        "\n[band] # where the chip is not told what it touches: the truth less the reading, percent of reading, least and most, over\n\
+         # balls (solved) on the axis, tilted plates and friction (quoted, of a dome of 9 x 7 mm), each alone\n\
+         tables_of = \"{}\"\n\
+         smallest_ball_mm = {:?}\n\
+         largest_tilt_degrees = {:?}",
+        band.tables_of,
+        band.smallest_ball_mm,
+        quoted::MOST_TILT
+    )?;
+    if let Some(cup) = band.cup_mm {
+        writeln!(out, "cup_mm = {cup:?}")?;
+    }
+    writeln!(out, "rows = [")?;
+    for row in &band.rows {
+        writeln!(
+            out,
+            "    {{ from_pa = {:?}, to_pa = {:.1}, force_percent = {:?}, indentation_percent = {:?} }},",
+            row.from, row.to, row.force_percent, row.indentation_percent
+        )?;
+    }
+    writeln!(out, "]")
 }
 
 /// What the transducer leaves undecided, beside which the errors of the tables are to be seen.

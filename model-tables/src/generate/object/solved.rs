@@ -1,9 +1,10 @@
 //! The objects that a law of weights is fitted to, solved by the design's own model.
 
+use super::press::{Depths, Failed, Presses, beyond, micrometres};
 use crate::curve::{Contact, Curve, CurveError};
-use crate::design_file::{Axes, DesignFile, ObjectSection, ShapeSection};
+use crate::design_file::{Axes, DesignFile, ShapeSection};
 use crate::generate::GenerateError;
-use crate::model::{Fingertip, Kind, ModelError};
+use crate::model::{Fingertip, ModelError};
 use crate::table::law::Touched;
 use std::fmt;
 
@@ -21,16 +22,13 @@ const BALLS: [(f64, bool); 5] = [
 const CUPS: [f64; 2] = [2.6, 5.2];
 /// The smallest part of the last pressure rise that counts: of less, objects are told apart by less than what tables are off.
 const FROM: f64 = 1.0 / 128.0;
-/// States of an object's curve, and its first one over the last.
-const STATES: usize = 72;
-const RANGE: f64 = 300.0;
-/// How much deeper an object is pressed at a time until it has the plate's last pressure.
-const DEEPER: f64 = 1.06;
+/// The states of an object's curve, on until it has the plate's last pressure.
+const DEPTHS: Depths = Depths {
+    states: 72,
+    most: f64::INFINITY,
+};
 /// Pressure rises that errors are looked at.
 const RISES: usize = 60;
-
-/// From where to its end a curve's powers are taken with which it is continued, over that end's pressure.
-const BACK: f64 = 0.95;
 
 /// Coefficients of a law: of `t`, `t^2`, `t^3`.
 pub(super) type Coefficients = [f64; 3];
@@ -95,6 +93,8 @@ pub enum NoObjects {
     },
     /// The tables come from data.
     Data,
+    /// A ball of the set that a band is of has no press.
+    Unknown,
 }
 
 impl fmt::Display for NoObjects {
@@ -122,6 +122,11 @@ impl fmt::Display for NoObjects {
                     write!(f, ", and no cups for this design")
                 }
             }
+            Self::Unknown => write!(
+                f,
+                "object.unknown is true, and this design has no press onto a ball of 5 or of 20 mm: give object.radius_mm, or leave out \
+                 [object]"
+            ),
             Self::Data => write!(
                 f,
                 "the tables come from the data in [calibration], and those of other objects cannot: leave out [object]"
@@ -130,30 +135,9 @@ impl fmt::Display for NoObjects {
     }
 }
 
-/// A length in micrometres.
-pub(super) fn micrometres(metres: f64) -> i32 {
-    libm::round(metres * 1e6) as i32
-}
-
 /// Pressure rises from one to another, evenly spaced in their logarithm.
 pub(super) fn rises(from: f64, to: f64) -> impl Iterator<Item = f64> {
     (0..=RISES).map(move |i| from * libm::pow(to / from, i as f64 / RISES as f64))
-}
-
-/// The object that a design's tables are of before any blend: its plate, with its friction.
-pub(in crate::generate) fn plate_of(design: &DesignFile) -> DesignFile {
-    with_shape(design, ShapeSection::Plate)
-}
-
-fn with_shape(design: &DesignFile, shape: ShapeSection) -> DesignFile {
-    DesignFile {
-        object: design.object.map(|object| ObjectSection {
-            shape,
-            unknown: false,
-            ..object
-        }),
-        ..design.clone()
-    }
 }
 
 impl SolvedObjects {
@@ -179,20 +163,19 @@ impl SolvedObjects {
         let rest = rung.rest();
         let pole = rest.edge_radius * rest.edge_radius / rest.height;
         let last = curve.end().pressure_rise;
-        let solver = Solver {
-            design,
-            kind: match rung {
-                Fingertip::Membrane(_) => Kind::Membrane,
-                Fingertip::Solid(press) => Kind::Solid(press.elements()),
-            },
-            deepest: end.indentation,
-            last,
-        };
+        let presses = Presses::of(design, rung, last, end.indentation);
         // Whole micrometres, as the chip has them.
         let radius = |share: f64| f64::from(micrometres(share * pole)) * 1e-6;
         let deep = |curve: &Curve| curve.at_indentation(end.indentation).pressure_rise.min(last);
         let reference_radius = radius(REFERENCE);
-        let reference = solver.ball(reference_radius)?;
+        let ball = |radius: f64| {
+            let radius_mm = radius * 1e3;
+            presses.curve(radius, DEPTHS).map_err(|failed| match failed {
+                Failed::Model(reason) => NoObjects::Ball { radius_mm, reason },
+                Failed::Curve(reason) => NoObjects::Curve { radius_mm, reason },
+            })
+        };
+        let reference = ball(reference_radius)?;
         let mut objects = vec![SolvedObject {
             touched: Touched::Ball(micrometres(reference_radius)),
             radius: reference_radius,
@@ -202,7 +185,7 @@ impl SolvedObjects {
         }];
         for (share, fitted) in BALLS {
             let radius = radius(share);
-            let curve = solver.ball(radius)?;
+            let curve = ball(radius)?;
             objects.push(SolvedObject {
                 touched: Touched::Ball(micrometres(radius)),
                 radius,
@@ -213,7 +196,7 @@ impl SolvedObjects {
         }
         for share in CUPS {
             let radius = radius(share);
-            if let Ok(curve) = solver.curve(-radius) {
+            if let Ok(curve) = presses.curve(-radius, DEPTHS) {
                 objects.push(SolvedObject {
                     touched: Touched::Cup(micrometres(radius)),
                     radius: -radius,
@@ -355,95 +338,4 @@ fn law_of_cups(nodes: &[[f64; 2]]) -> Coefficients {
         }
         [] => [0.0; 3],
     }
-}
-
-/// Solves objects of one design.
-struct Solver<'a> {
-    design: &'a DesignFile,
-    kind: Kind,
-    /// The plate's last indentation, metres.
-    deepest: f64,
-    /// The plate's last pressure rise, pascals.
-    last: f64,
-}
-
-enum Failed {
-    Model(ModelError),
-    Curve(CurveError),
-}
-
-impl Solver<'_> {
-    fn ball(&self, radius: f64) -> Result<Curve, NoObjects> {
-        let radius_mm = radius * 1e3;
-        self.curve(radius).map_err(|failed| match failed {
-            Failed::Model(reason) => NoObjects::Ball { radius_mm, reason },
-            Failed::Curve(reason) => NoObjects::Curve { radius_mm, reason },
-        })
-    }
-
-    /// A press onto a ball, or with a negative radius into a cup, until it has the plate's last pressure or ends.
-    fn curve(&self, radius: f64) -> Result<Curve, Failed> {
-        let radius_mm = radius * 1e3;
-        let design = with_shape(self.design, ShapeSection::Ball { radius_mm });
-        let gain = design.calibration.pressure_gain;
-        let mut tip = Fingertip::of(self.kind, &design.design_to(Axes::Outer)).map_err(Failed::Model)?;
-        let mut contact = |depth: f64| {
-            tip.contact_at(depth).map(|contact| Contact {
-                pressure_rise: gain * contact.pressure_rise,
-                ..contact
-            })
-        };
-        let first = self.deepest / RANGE;
-        let ratio = libm::pow(RANGE, 1.0 / (STATES as f64 - 1.0));
-        let mut points: Vec<Contact> = Vec::new();
-        let mut depth = first;
-        while points.last().is_none_or(|point| point.pressure_rise < self.last) {
-            match contact(depth) {
-                Ok(point) => points.push(point),
-                // The press ends.
-                Err(_) if depth > 0.5 * self.deepest => break,
-                Err(error) => return Err(Failed::Model(error)),
-            }
-            depth *= if depth < 0.8 * self.deepest {
-                ratio
-            } else {
-                DEEPER.min(ratio)
-            };
-        }
-        Curve::new(points).map_err(Failed::Curve)
-    }
-}
-
-/// A curve that goes on to where another ends, its outputs over the other's continued as powers of the pressure. What lies there
-/// is not read; it lets the tables of both be of one layout.
-fn beyond(curve: &Curve, other: &Curve) -> Result<Curve, CurveError> {
-    let (end, last) = (curve.end(), other.end());
-    let mut points = curve.points().to_vec();
-    if end.pressure_rise < last.pressure_rise {
-        let over = |rise: f64| {
-            let (own, other) = (curve.at_pressure_rise(rise), other.at_pressure_rise(rise));
-            [
-                libm::log(own.force / other.force),
-                libm::log(own.indentation / other.indentation),
-            ]
-        };
-        let (from, to) = (over(BACK * end.pressure_rise), over(end.pressure_rise));
-        let steps = 12;
-        let whole = libm::log(last.pressure_rise / end.pressure_rise);
-        for step in 1..=steps {
-            let further = whole * f64::from(step) / f64::from(steps);
-            let rise = end.pressure_rise * libm::exp(further);
-            let at = other.at_pressure_rise(rise);
-            let ratio = |output: usize| {
-                let slope = (to[output] - from[output]) / -libm::log(BACK);
-                libm::exp(to[output] + slope * further)
-            };
-            points.push(Contact {
-                pressure_rise: rise,
-                force: at.force * ratio(0),
-                indentation: at.indentation * ratio(1),
-            });
-        }
-    }
-    Curve::new(points)
 }

@@ -7,6 +7,7 @@ use super::shapes;
 use super::words::{KPA, MILLISECONDS, MM, MM3, NEWTON, PERCENT, count};
 use maud::{Markup, PreEscaped, html};
 use model_tables::design_file::DesignFile;
+use model_tables::generate::object::Band;
 use model_tables::generate::{Errors, Generated, TABLE_VERSION};
 use model_tables::model::Kind;
 use model_tables::model::own_error::OwnError;
@@ -281,6 +282,7 @@ fn certified(found: &Findings, generated: &Generated) -> Markup {
             (rows("The tables", &facts))
             (errors(&certificate.force, &certificate.indentation))
         }
+        @if let Some(band) = &generated.band { (unknown_object(band)) }
         div.figures {
             (figure(charts::depth(found), &html! { "The other table: what a pressure reading says of the indentation." }))
             @if let Some(svg) = charts::errors(found) {
@@ -290,6 +292,32 @@ fn certified(found: &Findings, generated: &Generated) -> Markup {
         details {
             summary { "The whole certificate" }
             pre { (generated.certificate()) }
+        }
+    }
+}
+
+/// What an object that the chip is not told leaves open.
+fn unknown_object(band: &Band) -> Markup {
+    let range = |[least, most]: [f64; 2]| format!("{least:+.1} to {most:+.1}\u{a0}%");
+    html! {
+        div.wide {
+            table {
+                caption { "Where the chip is not told what it touches: the truth less the reading" }
+                thead { tr { th scope="col" { "pressure rise" } th scope="col" { "force" } th scope="col" { "indentation" } } }
+                tbody {
+                    @for row in &band.rows {
+                        tr {
+                            th scope="row" { (plain(1e-3 * row.from, 4)) " to " (KPA.given(&plain(1e-3 * row.to, 4))) }
+                            td.value { (range(row.force_percent)) }
+                            td.value { (range(row.indentation_percent)) }
+                        }
+                    }
+                }
+            }
+        }
+        p.soft {
+            "Percent of reading. Tables of a " (band.tables_of) "; balls of " (band.smallest_ball_mm) " mm radius or more on the axis, solved; \
+             plates tilted by up to 20\u{a0}\u{b0} and friction, quoted of a dome of 9 x 7 mm; each alone."
         }
     }
 }

@@ -1,0 +1,230 @@
+//! What everything adds to a reading of 0.2, 1 and 5 N: the [budget](crate::budget) of a design, with what the world adds. The page
+//! `model-tables/ERROR_BUDGET.md`.
+
+use crate::budget::{Budget, rise_where};
+use fingertip::signal::zero::limits::Limits;
+use model_tables::generate::Generated;
+use model_tables::generate::object::quoted;
+use model_tables::model::own_error::OwnError;
+use model_tables::units::PressureRise;
+use std::fmt::Write as _;
+
+/// Readings at which the errors are stated, newtons.
+pub const FORCES: [f64; 3] = [0.2, 1.0, 5.0];
+/// How far the wall of an elastic design is from the temperature of its constants, kelvins, and that temperature.
+const KELVINS: f64 = 10.0;
+const ROOM: f64 = 293.15;
+/// Of a relaxing wall at its own temperature, percent of force and indentation over the largest pressed: as tested.
+const RELAXING: [f64; 2] = [3.0, 1.0];
+/// Of a relaxing wall a kelvin warmer or colder than the series, which nobody measures: percent of the force, and millimetres of
+/// indentation at 0.5, 1 and 2 mm.
+const KELVIN_FORCE: f64 = 5.0;
+const KELVIN_DEPTH: [(f64, f64); 3] = [(0.5, 0.05), (1.0, 0.08), (2.0, 0.11)];
+
+/// The sources that are of what is touched.
+const OBJECT: &str = "object not told: balls from 5 mm, tilts to 20 degrees";
+const FRICTION: &str = "friction of a plate, coefficient 0.3";
+
+/// What one source adds at each of the [`FORCES`]: percent of reading, least and most, of force and of indentation.
+struct Share {
+    name: String,
+    source: &'static str,
+    percent: [[[f64; 2]; 2]; FORCES.len()],
+}
+
+/// Everything of one design.
+pub struct RealUse {
+    name: String,
+    /// Whether the tables reach the force.
+    reached: [bool; FORCES.len()],
+    /// Largest errors, or a standard deviation: of the reading.
+    budget: Budget,
+    shares: Vec<Share>,
+}
+
+impl RealUse {
+    /// Of a design.
+    pub fn of(generated: &Generated) -> Self {
+        let tables = &generated.certified.tables;
+        let bits = tables.layout.pressure_fraction_bits;
+        let last = tables.lookup(PressureRise(tables.layout.maximum));
+        let rises = FORCES.map(|force| {
+            rise_where(generated, |reading| {
+                f64::from(reading.force.0) >= 1e6 * force.min(last.force.newtons())
+            })
+        });
+        let budget = Budget::at(generated, rises);
+        let read = |pascals: f64| {
+            let reading = tables.lookup(PressureRise::from_pascals(pascals, bits));
+            [reading.force.newtons(), reading.indentation.metres()]
+        };
+        let pascals = rises.map(|rise| PressureRise(rise).pascals(bits));
+        let height = 1e-3 * generated.design.membrane.axial_semi_axis_mm;
+        let mut shares = Vec::new();
+        let mut add = |name: &str, source: &'static str, percent: &dyn Fn(f64) -> [[f64; 2]; 2]| {
+            shares.push(Share {
+                name: name.to_owned(),
+                source,
+                percent: pascals.map(percent),
+            });
+        };
+        let constants = generated.constants();
+        let bound = f64::from(Limits::of(&constants, bits).bound) * PressureRise(1).pascals(bits);
+        add("zero, as far off as an ok reading allows", "derived", &|rise| {
+            let [low, at, high] = [(rise - bound).max(0.0), rise, rise + bound].map(read);
+            // At the end of the tables the slope below is that above.
+            [0, 1].map(|output| {
+                let below = 100.0 * (low[output] / at[output] - 1.0);
+                let above = 100.0 * (high[output] / at[output] - 1.0);
+                [below, if above > 0.0 { above } else { -below }]
+            })
+        });
+        if let Some(OwnError::Compared(found)) = &generated.membrane_error {
+            let both = [found.force_percent, found.indentation_percent];
+            add(
+                "model: a membrane, against the solid of its wall",
+                "measured",
+                &|_| both.map(|percent| [-percent, percent]),
+            );
+        }
+        if generated.design.relaxation.is_some() {
+            add("time: a press and hold", "tested", &|_| {
+                RELAXING.map(|percent| [-percent, percent])
+            });
+            add("temperature: the wall 1 K off", "quoted", &|rise| {
+                let [_, depth] = read(rise);
+                let percent = 0.1 * depth_error(1e3 * depth) / depth;
+                [[-KELVIN_FORCE, KELVIN_FORCE], [-percent, percent]]
+            });
+        } else {
+            add(
+                "temperature: the wall 10 K off, its stiffness as the absolute temperature",
+                "derived",
+                &|rise| {
+                    let at = read(rise);
+                    let ends = [1.0 - KELVINS / ROOM, 1.0 + KELVINS / ROOM].map(|stiffness| {
+                        let [force, depth] = read(rise / stiffness);
+                        [stiffness * force / at[0], depth / at[1]]
+                    });
+                    [0, 1].map(|output| {
+                        let [one, other] = ends.map(|ratios| 100.0 * (ratios[output] - 1.0));
+                        [one.min(other), one.max(other)]
+                    })
+                },
+            );
+        }
+        if let Some(band) = &generated.band {
+            add(OBJECT, "solved, quoted", &|rise| {
+                let row = band.at(rise).copied().unwrap_or_else(|| band.widest());
+                [row.force_percent, row.indentation_percent]
+            });
+        }
+        add(FRICTION, "quoted", &|rise| {
+            let [_, depth] = read(rise);
+            let force = 100.0 * (quoted::rubbed_force(depth / height) - 1.0);
+            let shallower = read(rise / quoted::rubbed_pressure(depth / height))[1];
+            [
+                [force.min(0.0), force.max(0.0)],
+                [100.0 * (shallower / depth - 1.0), 0.0],
+            ]
+        });
+        Self {
+            name: generated.design.name.clone(),
+            reached: FORCES.map(|force| force <= last.force.newtons()),
+            budget,
+            shares,
+        }
+    }
+}
+
+/// A percentage with its sign; none of what rounds to 0.
+fn signed(percent: f64) -> String {
+    if percent.abs() < 0.05 {
+        "0.0".to_owned()
+    } else {
+        format!("{percent:+.1}")
+    }
+}
+
+/// Millimetres a kelvin at a depth in millimetres, in proportion below the first.
+fn depth_error(depth: f64) -> f64 {
+    let mut before = (0.0, 0.0);
+    for at in KELVIN_DEPTH {
+        if depth <= at.0 {
+            return before.1 + (at.1 - before.1) * (depth - before.0) / (at.0 - before.0);
+        }
+        before = at;
+    }
+    before.1
+}
+
+/// The page.
+pub fn markdown(designs: &[RealUse]) -> String {
+    let mut text = "# What a reading is worth: everything that adds to its error\n\
+         \n\
+         What each source adds to a reading of 0.2, 1 and 5 N of a plate, percent of the force (F) and of the indentation (H): the truth\n\
+         less the reading, largest to either side; *sd* is one standard deviation. `UPDATE_EXPECT=1 cargo test --package host-tests --test\n\
+         golden` writes this page; the same test fails when it is stale. Stages of the chip are those of [their budget](../host-tests/BUDGET.md).\n\
+         \n\
+         - The zero: its bound of an ok reading, drift and transducer's temperature included.\n\
+         - Time: `index-fingertip` steps its wall in time; what is left is tested (`cargo test -p host-tests --test relaxing_wall`), of the\n\
+         \x20 first press. A wall like that read through tables alone, as those of `index-fingertip-elastic`, gives 8.2 N for 5 N pressed in 1 s\n\
+         \x20 (the same test). The other designs state no series, so nothing is known of their walls in time.\n\
+         - The wall's temperature: of a relaxing wall quoted from finite elements, a kelvin (5 % of F, 0.05, 0.08 and 0.11 mm of H at 0.5,\n\
+         \x20 1 and 2 mm); of the others as of ideal rubber, whose stiffness goes with the absolute temperature.\n\
+         - Object and friction: the band of [the certificate](golden), where the chip is not told what it touches; one effect at a time.\n\
+         - Not in it: material constants and thickness of one fingertip, which [a calibration](CALIBRATION.md) takes in.\n"
+        .to_owned();
+    for design in designs {
+        let _ = write!(
+            text,
+            "\n## {}\n\n| source | from | F at 0.2 N | H | F at 1 N | H | F at 5 N | H |\n|---|---|---|---|---|---|---|---|\n",
+            design.name
+        );
+        let line = |text: &mut String, name: &str, source: &str, cells: [[String; 2]; FORCES.len()]| {
+            let cells: Vec<String> = cells
+                .into_iter()
+                .zip(design.reached)
+                .flat_map(|(cells, reached)| {
+                    cells.map(|cell| if reached { cell } else { "beyond".to_owned() })
+                })
+                .collect();
+            let _ = writeln!(text, "| {name} | {source} | {} |", cells.join(" | "));
+        };
+        for term in &design.budget.terms {
+            let kind = if term.bound { "" } else { "sd " };
+            let cells = term
+                .percent
+                .map(|both| both.map(|percent| format!("{kind}{percent:.2}")));
+            line(&mut text, term.name, term.source, cells);
+        }
+        for share in &design.shares {
+            let cells = share
+                .percent
+                .map(|both| both.map(|ends| ends.map(signed).join(" to ")));
+            line(&mut text, &share.name, share.source, cells);
+        }
+        let chip = [0, 1, 2].map(|place| design.budget.sum(place).map(|percent| format!("{percent:.2}")));
+        line(&mut text, "**the chip's stages**", "sum", chip);
+        for (name, with_object) in [
+            ("**all on a plate, root of the squares**", false),
+            ("**all, root of the squares**", true),
+        ] {
+            let all = [0, 1, 2].map(|place| {
+                let chip = design.budget.sum(place);
+                [0, 1].map(|output| {
+                    let sum = |end: usize| {
+                        let shares = design.shares.iter().filter(|share| {
+                            with_object || ![OBJECT, FRICTION].contains(&share.name.as_str())
+                        });
+                        let squares = shares.map(|share| share.percent[place][output][end].powi(2));
+                        (squares.sum::<f64>() + chip[output].powi(2)).sqrt()
+                    };
+                    [-sum(0), sum(1)].map(signed).join(" to ")
+                })
+            });
+            line(&mut text, name, "sum", all);
+        }
+    }
+    text
+}
