@@ -23,6 +23,7 @@ mod size;
 mod solve;
 mod table;
 mod time_rows;
+mod tip;
 
 use crate::table_text::one_line;
 use clap::builder::PossibleValue;
@@ -73,6 +74,9 @@ enum Command {
         after_help = "Example:\n  cargo designer table model-tables/designs/index-fingertip.toml --out target/tables"
     )]
     Table(table::Arguments),
+    /// A tip file: everything that a hand needs of one fingertip, to be loaded without a compiler
+    #[command(after_help = tip::HELP)]
+    Tip(tip::Arguments),
     /// Everything about a design on one page: HTML that needs no network
     #[command(
         after_help = "Example:\n  cargo designer report model-tables/designs/index-fingertip.toml --out target/report"
@@ -184,6 +188,7 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::History(arguments) => history::run(arguments),
         Command::Profile(arguments) => profile::run(arguments),
         Command::Table(arguments) => table::run(arguments),
+        Command::Tip(arguments) => tip::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Chart(arguments) => compare::chart::run(arguments),
         Command::Atlas(arguments) => compare::atlas::run(arguments),
