@@ -20,9 +20,11 @@ FAULTS = {1: "sensor open", 2: "sensor short", 3: "zeroing", 4: "settling", 5: "
           23: "sensor reset", 24: "sensor implausible"}
 TOUCH = ["unknown", "untouched", "touched"]
 COMMANDS = {"tare": 0x81, "undo": 0x82, "save": 0x83, "info": 0x84, "self-test": 0x85, "rate": 0x86, "forget": 0x87,
-            "air": 0x8A}
+            "air": 0x8A, "arm": 0x90, "begin": 0x91, "chunk": 0x92, "verify": 0x93, "activate": 0x94, "roll-back": 0x95,
+            "read-back": 0x96}
 OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy", "nothing to undo", "zero unverified",
-            "memory failed"] + [None] * 5 + ["not in this image"]
+            "memory failed", "no such object", "no such tip", "out of order", "block refused", "other design",
+            "not in this image", "not armed"]
 CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
 STORED = ["none", "serves", "another design's", "damaged", "unreadable"]
 LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang", "non-maskable interrupt"]
@@ -58,7 +60,8 @@ def body_of(stuffed):
 
 def describe(body):
     """One line for a body of the board's."""
-    if len(body) < 14 or body[0] != VERSION or LENGTHS.get(body[1]) != len(body):
+    whole = len(body) > 13 and (LENGTHS.get(body[1]) == len(body) or body[1] == 7 and 21 <= len(body) <= 76)
+    if not whole or body[0] != VERSION:
         raise ValueError("version, kind or length")
     _, kind, sequence, time, dropped = struct.unpack_from("<BBHQH", body)
     head = f"{sequence} {time} us, {dropped} dropped: "
@@ -83,6 +86,9 @@ def describe(body):
         return head + (f"hello, firmware {firmware}, reset by {CAUSES[cause]}, design {design:016x}, tables {tables}, a report "
                        f"each {period} us, stored {STORED[stored]} ({saved}), before: {LAST[last]} {where:#x}, {resets} "
                        f"resets in a row; {lost} samples lost, {wild} wild, {frames} frames dropped, {refused} refused")
+    if kind == 7:
+        command_sequence, offset = struct.unpack_from("<HI", body, 14)
+        return head + f"read-back {command_sequence}: from {offset} on, {body[20:].hex()}"
     command, command_sequence, outcome, findings = struct.unpack_from("<BHBH", body, 14)
     names = {code: name for name, code in COMMANDS.items()}
     if command not in names or outcome >= len(OUTCOMES):

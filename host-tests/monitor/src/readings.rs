@@ -159,6 +159,8 @@ impl Monitor {
                 self.note(words(&answer));
                 None
             }
+            // Another program's: this one loads nothing.
+            Message::Load(_) => None,
         }
     }
 

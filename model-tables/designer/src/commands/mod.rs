@@ -11,6 +11,7 @@ mod estimate_in_time;
 mod feedback_loop;
 mod fit;
 mod history;
+mod load;
 mod materials;
 mod mesh_error;
 mod model;
@@ -77,6 +78,9 @@ enum Command {
     /// A tip file: everything that a hand needs of one fingertip, to be loaded without a compiler
     #[command(after_help = tip::HELP)]
     Tip(tip::Arguments),
+    /// A tip file onto a board over its serial port; back to the tip before; the tip in use as a file
+    #[command(after_help = load::HELP)]
+    Load(load::Arguments),
     /// Everything about a design on one page: HTML that needs no network
     #[command(
         after_help = "Example:\n  cargo designer report model-tables/designs/index-fingertip.toml --out target/report"
@@ -189,6 +193,7 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::Profile(arguments) => profile::run(arguments),
         Command::Table(arguments) => table::run(arguments),
         Command::Tip(arguments) => tip::run(arguments),
+        Command::Load(arguments) => load::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Chart(arguments) => compare::chart::run(arguments),
         Command::Atlas(arguments) => compare::atlas::run(arguments),

@@ -124,6 +124,21 @@ pub(super) fn block(file: &Path) -> Result<Option<Vec<u8>>, Refusal> {
     Ok(Some(bytes))
 }
 
+/// The bytes of a tip file, which has to be one.
+pub(super) fn needed(file: &Path) -> Result<Vec<u8>, Refusal> {
+    match block(file)? {
+        Some(block) => Ok(block),
+        None if file.is_file() => Err(Refusal::about(
+            file,
+            &"this is no tip file: it does not begin with FTIP; write one with `designer tip DESIGN --out tip.bin`",
+        )),
+        None => Err(Refusal::about(
+            file,
+            &"there is no such file; write one with `designer tip DESIGN --out tip.bin`",
+        )),
+    }
+}
+
 /// Refuses what a hand would refuse, and bytes behind the block, which no tip file has.
 fn whole(file: &Path, bytes: &[u8]) -> Result<(), Refusal> {
     LoadedDesign::read(bytes)
