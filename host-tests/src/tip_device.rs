@@ -80,6 +80,9 @@ pub struct TipDevice<F> {
 
 impl<F: NorFlash> TipDevice<F> {
     /// A board that is switched on, with slots of `slot` bytes.
+    ///
+    /// # Panics
+    /// Never: there are as many frames as it asks for.
     pub fn start(mut flash: F, slot: u32) -> Self {
         let mut loader = loader(slot);
         // A board has one for its whole life; a test has few.

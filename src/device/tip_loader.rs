@@ -25,6 +25,7 @@ const ARMED: u64 = 60_000_000;
 
 /// What a start found in the slots.
 #[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant)] // made once, and there is no heap
 pub enum FoundTip<'a> {
     /// Nothing is loaded, or it was rolled back: the image's own tables are in use.
     Image,

@@ -11,7 +11,7 @@ use model_tables::table::law::Touched;
 use model_tables::units::PressureRise;
 
 /// A loaded design, or else the one that is folded into the image.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant)] // one for a board, made once
 pub enum TipDesign<'a, I> {
     /// The image's own.
