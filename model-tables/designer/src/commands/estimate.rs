@@ -68,13 +68,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         }
         return estimate_in_time::run(file, history, arguments.allow_worse);
     }
-    let (block, notes) = match block {
-        Some(block) => (block, Vec::new()),
-        None => {
-            let generated = generated(file, read(file)?, arguments.allow_worse)?;
-            let notes = generated.own_error().iter().map(ToString::to_string).collect();
-            (generated.binary(), notes)
-        }
+    let (block, notes) = if let Some(block) = block {
+        (block, Vec::new())
+    } else {
+        let generated = generated(file, read(file)?, arguments.allow_worse)?;
+        let notes = generated.own_error().iter().map(ToString::to_string).collect();
+        (generated.binary(), notes)
     };
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;

@@ -64,14 +64,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     if let Some(file) = &arguments.file {
         return load(port, file, arguments.name.as_deref());
     }
-    match &arguments.read_back {
-        Some(out) => read_back(port, out),
-        None => {
-            let (loaded, seconds) = carry(port, LoadJob::RollBack)?;
-            let rows = row("rolled back", "0", loaded.hash, 0, seconds);
-            Ok(answer(rows, &loaded))
-        }
+    if let Some(out) = &arguments.read_back {
+        return read_back(port, out);
     }
+    let (loaded, seconds) = carry(port, LoadJob::RollBack)?;
+    let rows = row("rolled back", "0", loaded.hash, 0, seconds);
+    Ok(answer(rows, &loaded))
 }
 
 fn load(port: Address, file: &Path, name: Option<&str>) -> Result<CommandAnswer, Refusal> {

@@ -4,6 +4,7 @@ use super::{estimate, read};
 use fingertip::signal::calibration::LARGEST_GAIN;
 use fingertip::signal::loaded_design::LoadedDesign;
 use model_tables::block::read::{self as block_read, TipBlock};
+use model_tables::block::section::SectionKind;
 use model_tables::block::{MAGIC, StoredCalibration};
 use model_tables::design_file::{Calibration, DesignFile};
 use output::files;
@@ -159,7 +160,7 @@ fn whole(file: &Path, bytes: &[u8]) -> Result<(), Refusal> {
 fn rows(file: &Path, block: &[u8]) -> Result<Rows, Refusal> {
     let tip = TipBlock::read(block).map_err(|error| Refusal::about(file, &error))?;
     let (_, check) = block_read::stated(block).unwrap_or_default();
-    let sections: Vec<&str> = tip.sections().map(|kind| kind.word()).collect();
+    let sections: Vec<&str> = tip.sections().map(SectionKind::word).collect();
     let mut rows = Rows::new(COLUMNS);
     rows.push(vec![
         Cell::Text(file.display().to_string()),
