@@ -135,6 +135,10 @@ fn link_for_the_chip() -> Result<(), String> {
         println!("cargo::rerun-if-changed={sizes}");
         println!("cargo::rustc-link-arg-bins=-T{}", root.join(sizes).display());
     }
+    if env::var_os("CARGO_FEATURE_LOAD_TIP").is_some() {
+        // A block is judged on the stack, its tables blended there.
+        println!("cargo::rustc-link-arg-bins=--defsym=_stack_length=0x4000");
+    }
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");
     }

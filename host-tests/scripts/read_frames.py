@@ -23,12 +23,14 @@ FAULTS = {1: "sensor open", 2: "sensor short", 3: "zeroing", 4: "settling", 5: "
           23: "sensor reset", 24: "sensor implausible"}
 TOUCH = ["unknown", "untouched", "touched"]
 COMMANDS = {"tare": 0x81, "undo": 0x82, "save": 0x83, "info": 0x84, "self-test": 0x85, "rate": 0x86, "forget": 0x87,
-            "object": 0x88, "indentation": 0x89, "air": 0x8A}
-# Bytes that go with a command.
+            "object": 0x88, "indentation": 0x89, "air": 0x8A, "arm": 0x90, "begin": 0x91, "chunk": 0x92, "verify": 0x93,
+            "activate": 0x94, "roll-back": 0x95, "read-back": 0x96}
+# Bytes that go with a command; those that load a tip are for `designer load`.
 PAYLOADS = {"tare": 0, "undo": 0, "save": 4, "info": 0, "self-test": 4, "rate": 2, "forget": 0, "object": 5,
             "indentation": 4, "air": 4}
 OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy", "nothing to undo", "zero unverified",
-            "memory failed", "no such object"] + [None] * 4 + ["not in this image"]
+            "memory failed", "no such object", "no such tip", "out of order", "block refused", "other design",
+            "not in this image", "not armed"]
 CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
 STORED = ["none", "serves", "another design's", "damaged", "unreadable"]
 LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang", "non-maskable interrupt"]
@@ -67,7 +69,8 @@ def body_of(stuffed):
 def describe(body):
     """One line for a body of the board's."""
     tells = len(body) == 36 and body[1] == 4 and body[14] == COMMANDS["indentation"]
-    if len(body) < 14 or body[0] != VERSION or (LENGTHS.get(body[1]) != len(body) and not tells):
+    whole = len(body) > 13 and (LENGTHS.get(body[1]) == len(body) or tells or body[1] == 7 and 21 <= len(body) <= 76)
+    if not whole or body[0] != VERSION:
         raise ValueError("version, kind or length")
     _, kind, sequence, time, dropped = struct.unpack_from("<BBHQH", body)
     head = f"{sequence} {time} us, {dropped} dropped: "
@@ -92,6 +95,9 @@ def describe(body):
         return head + (f"hello, firmware {firmware}, reset by {CAUSES[cause]}, design {design:016x}, tables {tables}, a report "
                        f"each {period} us, stored {STORED[stored]} ({saved}), before: {LAST[last]} {where:#x}, {resets} "
                        f"resets in a row; {lost} samples lost, {wild} wild, {frames} frames dropped, {refused} refused")
+    if kind == 7:
+        command_sequence, offset = struct.unpack_from("<HI", body, 14)
+        return head + f"read-back {command_sequence}: from {offset} on, {body[20:].hex()}"
     command, command_sequence, outcome, findings = struct.unpack_from("<BHBH", body, 14)
     names = {code: name for name, code in COMMANDS.items()}
     if command not in names or outcome >= len(OUTCOMES) or not OUTCOMES[outcome]:
@@ -144,7 +150,7 @@ def encoded(arguments):
         payload = bytes.fromhex("".join(rest))
     except ValueError:
         raise ValueError(f"`{' '.join(rest)}` is not hexadecimal") from None
-    if len(payload) != PAYLOADS[kind]:
+    if len(payload) != PAYLOADS.get(kind, len(payload)):
         raise ValueError(f"with {kind} go {PAYLOADS[kind]} bytes, not {len(payload)}")
     if kind == "rate" and not 1 <= int.from_bytes(payload, "little") <= 1000:
         raise ValueError("a rate is 1 to 1000")

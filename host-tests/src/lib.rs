@@ -1,9 +1,10 @@
 //! What the tests across the crates share: documents, whose figures they hold to what the code gives, and the
-//! simulated flash.
+//! simulated flash, and a board that takes a tip's data.
 
 pub mod budget;
 pub mod nor_flash;
 pub mod real_use;
+pub mod tip_device;
 pub mod world;
 
 use std::fs;

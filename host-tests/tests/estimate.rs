@@ -8,6 +8,7 @@ use fingertip::signal::contact::contact;
 use fingertip::signal::design::{Design, NoSuchObject, Parameters};
 use fingertip::signal::loaded_design::LoadedDesign;
 use fingertip::signal::report::Report;
+use fingertip::signal::tip_design::TipDesign;
 use fingertip::signal::wall::Memory;
 use fingertip::signal::zero::surroundings::Surroundings;
 use fingertip::status::{Fault, Warnings};
@@ -128,6 +129,18 @@ fn reports_of_a_loaded_design_are_those_of_the_image() {
         return;
     };
     same_lives(&generated.binary(), ImageDesign);
+}
+
+/// The design of a board that a tip can be loaded onto, with its own tables and with the same ones loaded.
+#[test]
+fn reports_of_a_board_that_takes_a_tip_are_those_of_the_image() {
+    let Some(generated) = generated() else {
+        return;
+    };
+    let block = generated.binary();
+    for design in [TipDesign::Image(ImageDesign), TipDesign::Loaded(loaded(&block))] {
+        assert_eq!(life(design, 7), life(ImageDesign, 7));
+    }
 }
 
 /// With the memory of a wall that relaxes.

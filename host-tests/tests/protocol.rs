@@ -1,6 +1,7 @@
 //! The protocol's page, the reader in Python and the firmware agree, byte for byte.
 
 use fingertip::link::command::{self, Command, Request};
+use fingertip::link::load::{self, LoadCommand, LoadKind, LoadRequest};
 use fingertip::link::telemetry::{self, Frame, Hello, Message};
 use fingertip::signal::report::{Measurement, Report};
 use fingertip::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings};
@@ -71,6 +72,34 @@ const REQUESTS: [(&str, Request); 6] = [
     ),
 ];
 
+/// Of firmware that takes a tip.
+const LOADS: [(&str, LoadCommand); 4] = [
+    ("arm, sequence 5", LoadCommand::Arm),
+    (
+        "load begin, sequence 5",
+        LoadCommand::Begin {
+            tip: 0,
+            length: 516,
+            check: 0x0123_4567,
+        },
+    ),
+    (
+        "activate, sequence 5",
+        LoadCommand::Activate {
+            hash: 0x0123_4567_89AB_CDEF,
+        },
+    ),
+    (
+        "read back, sequence 5",
+        LoadCommand::ReadBack {
+            offset: 448,
+            length: 56,
+        },
+    ),
+];
+
+const LOAD_REPLIES: [&str; 2] = ["answer to a load, sequence 8", "data, sequence 8"];
+
 const FRAMES: [&str; 5] = [
     "fault, sequence 65535",
     "answer, sequence 8",
@@ -84,7 +113,11 @@ fn the_pages_examples_are_what_the_firmware_sends_and_takes() {
     for (what, request) in REQUESTS {
         assert_eq!(command::encode(&request).as_slice(), example(what), "{what}");
     }
-    for what in FRAMES {
+    for (what, command) in LOADS {
+        let request = LoadRequest { sequence: 5, command };
+        assert_eq!(load::encode(&request).as_slice(), example(what), "{what}");
+    }
+    for what in FRAMES.into_iter().chain(LOAD_REPLIES) {
         let bytes = example(what);
         let frame = telemetry::decode(&bytes[..bytes.len() - 1]).expect("it is a frame");
         assert_eq!(telemetry::encode(&frame).as_slice(), bytes, "{what}");
@@ -102,6 +135,12 @@ fn the_page_names_every_code() {
             .replace("SelfTest", "self-test")
             .to_lowercase();
         assert!(page.contains(&format!("| {code:#04x} | {words} |")), "{words}");
+    }
+    for (kind, code) in LoadKind::CODES {
+        assert!(
+            page.contains(&format!("| {code:#04x} | {} |", kind.word())),
+            "{kind:?}"
+        );
     }
     for bit in 0..9_u16 {
         let warning = Warnings::from_bits(1 << bit).expect("it is known");
@@ -131,7 +170,7 @@ fn reader(arguments: &[&str], input: &[u8]) -> Option<Vec<u8>> {
 fn the_reader_in_python_reads_what_the_firmware_sends() {
     let mut stream = vec![0x55; 100];
     stream.push(0);
-    for what in FRAMES {
+    for what in FRAMES.into_iter().chain(LOAD_REPLIES) {
         stream.extend(example(what));
     }
     let Some(said) = reader(&[], &stream) else {
@@ -153,6 +192,8 @@ fn the_reader_in_python_reads_what_the_firmware_sends() {
             "7 1000000 us, 259 dropped: hello, firmware 0.1.0, reset by watchdog, design 0123456789abcdef, tables 1, a \
              report each 1000 us, stored serves (17), before: late task 0x3, 2 resets in a row; 2 samples lost, 6 wild, \
              259 frames dropped, 4 refused",
+            "8 2000000 us, 0 dropped: verify 5: block refused, findings 0x8",
+            "8 2000000 us, 0 dropped: read-back 5: from 0 on, 46544950",
         ]
     );
 }

@@ -11,7 +11,7 @@ use embedded_storage_async::nor_flash::{
 /// Longest erasure of a slot: 16 KB take 0.5 s, 8 bits at a time 0.8 s (DS9405 table 48).
 const ERASE: Duration = Duration::from_secs(2);
 
-/// Longest write of a record: 12 words of 0.1 ms.
+/// Longest write of a record: 12 words of 0.1 ms, or of a chunk of a tip, 16 words.
 const WRITE: Duration = Duration::from_millis(10);
 
 /// Forgets what the caches hold. The flash changes beneath them (RM0351 3.3.5, RM0090 3.5.1: a cache is reset while it
@@ -42,6 +42,15 @@ impl<F> Patient<F> {
     /// The flash from `base` on.
     pub const fn new(flash: F, base: u32) -> Self {
         Self { flash, base }
+    }
+
+    /// The same flash from another base on.
+    #[cfg(feature = "load-tip")]
+    pub const fn at(&mut self, base: u32) -> Patient<&mut F> {
+        Patient {
+            flash: &mut self.flash,
+            base,
+        }
     }
 }
 

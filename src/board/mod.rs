@@ -31,6 +31,8 @@ mod chosen;
 pub mod ecc;
 
 pub use chosen::SLOT;
+#[cfg(feature = "load-tip")]
+pub use chosen::{TIP_SLOT, TIPS};
 pub use common::{Board, Clock, Ears, FlashMemory, Line, Port, Watchdog, begin};
 
 #[cfg(not(any(feature = "board-nucleo-f429zi", feature = "board-nucleo-l432kc")))]

@@ -8,6 +8,7 @@
 //! | transducer, bus | PB8, PB9, I2C1 | D15 and D14 of that header, with pull-ups at the transducer |
 //! | serial port | PD8, PD9, USART3 | the ST-LINK's virtual COM port by default (UM1974 6.9) |
 //! | calibration | flash from `0x0810_0000`, two sectors of 16 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
+//! | a loaded tip (`load-tip`) | the two sectors behind it, from `0x0810_8000` | the same |
 //!
 //! The transducer's output reaches A0 at no more than 10 kilo-ohm, as a share of the board's 3.3 V, which are the
 //! converter's reference and supply the transducer too. A transducer with another supply (`supply = "measured"`: 5 V,
@@ -99,6 +100,14 @@ pub const SLOT: u32 = 16 * 1024;
 
 /// The first of them, from the start of the region.
 pub(super) const CALIBRATION: u32 = 0;
+
+/// Bytes of each slot of a loaded tip: a sector.
+#[cfg(feature = "load-tip")]
+pub const TIP_SLOT: u32 = 16 * 1024;
+
+/// The first of them, from the start of the region: behind the calibration.
+#[cfg(feature = "load-tip")]
+pub const TIPS: u32 = CALIBRATION + 2 * SLOT;
 
 /// The flash of the calibration.
 pub(super) fn region(flash: Peri<'static, peripherals::FLASH>) -> Region {

@@ -8,6 +8,7 @@
 //! | transducer, bus | PB6, PB7, I2C1 | D5 and D4 of that header, with pull-ups at the transducer; A5 and A4 (PA5, PA6) are wired to them by default (SB16, SB18) and stay inputs |
 //! | serial port | PA2, PA15, USART2 | the ST-LINK's virtual COM port by default (UM1956 6.8) |
 //! | calibration | the last two pages of flash, 2 KB each | erasing one stalls the code for 25 ms at most (DS11451 table 58): samples are lost, which is said |
+//! | a loaded tip (`load-tip`) | the six pages before them | erasing three stalls the code for 75 ms at most |
 //!
 //! The transducer's output reaches A0 at no more than 10 kilo-ohm, as a share of the board's 3.3 V, which are the
 //! converter's reference and supply the transducer too. A transducer with another supply (`supply = "measured"`: 5 V,
@@ -95,6 +96,14 @@ pub const SLOT: u32 = 2 * 1024;
 
 /// The first of them, from the start of the flash.
 pub(super) const CALIBRATION: u32 = 256 * 1024 - 2 * SLOT;
+
+/// Bytes of each slot of a loaded tip: three pages, as a block may have two.
+#[cfg(feature = "load-tip")]
+pub const TIP_SLOT: u32 = 6 * 1024;
+
+/// The first of them, from the start of the flash: before the calibration.
+#[cfg(feature = "load-tip")]
+pub const TIPS: u32 = CALIBRATION - 2 * TIP_SLOT;
 
 /// The flash of the calibration.
 pub(super) fn region(flash: Peri<'static, peripherals::FLASH>) -> Region {

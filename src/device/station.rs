@@ -356,6 +356,12 @@ impl<D: Design> Station<D> {
         }
     }
 
+    /// What the signal path needs of the design.
+    #[inline]
+    pub fn parameters(&self) -> &Parameters {
+        self.pipeline.parameters()
+    }
+
     /// The zero that serves: what a reset that nobody saw coming has to keep.
     pub fn zero(&self) -> Option<Zero> {
         self.pipeline.zero()

@@ -1,33 +1,41 @@
 //! The tasks of the firmware: [`signal`] makes reports, [`send`] puts them on the line, [`listen`] takes commands from
 //! it, [`remember`] stores the calibration. The first one feeds the watchdog, while all four report.
 
+#[cfg(not(feature = "load-tip"))]
+use crate::firmware::queues::REMEMBER;
+use crate::firmware::queues::{
+    FRAMES, IDLE, LISTEN, OUTBOX, REFUSED, REQUESTS, ROSTER, SEND, SENT, STORED, TO_STORE, Waiting, alive,
+};
 use crate::firmware::retained;
+#[cfg(feature = "load-tip")]
+use crate::firmware::tip;
 use crate::firmware::transducer::{self as chosen, SampleTimer};
 use core::cell::RefCell;
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::Ordering;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
-use embassy_sync::blocking_mutex::ThreadModeMutex;
-use embassy_sync::blocking_mutex::raw::{NoopRawMutex, ThreadModeRawMutex};
-use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
-use embassy_time::{Delay, Duration, with_timeout};
-use fingertip::board::{self, Board, Clock, Ears, FlashMemory, Line, SLOT, Watchdog};
-use fingertip::device::station::{Beginning, Station, ToStore};
-use fingertip::device::supervisor::{Breadcrumb, GOOD_RUN, Roster, Stage};
+use embassy_time::{Delay, with_timeout};
+use fingertip::board::{self, Board, Clock, Ears, Line, SLOT, Watchdog};
+use fingertip::device::station::{Beginning, Station};
+use fingertip::device::supervisor::{Breadcrumb, GOOD_RUN, Stage};
 use fingertip::image::generated::NAME;
-use fingertip::image::{self, FirmwareDesign, ImageDesign};
-use fingertip::link::command::{self, Request};
+use fingertip::image::{self, ImageDesign};
+use fingertip::link::command;
+#[cfg(feature = "load-tip")]
+use fingertip::link::load;
 use fingertip::link::outbox::Outbox;
-use fingertip::link::telemetry::Message;
 use fingertip::link::wire::{Deframer, Encoded};
+use fingertip::signal::design::Design;
 use fingertip::signal::report::Report;
 use fingertip::status::{Fault, LastFault, Status, Stored};
-use fingertip::storage::store::{Identity, Store, StoreError};
+use fingertip::storage::store::{Identity, Store};
 use fingertip::transducer::driver::Driver;
 use fingertip::transducer::keeper::Keeper;
-use fingertip::units::Microseconds;
-use static_cell::{ConstStaticCell, StaticCell};
+#[cfg(not(feature = "load-tip"))]
+use fingertip::{
+    board::FlashMemory, device::station::ToStore, image::FirmwareDesign, storage::store::StoreError,
+};
 
 /// Every how many reports one goes to the log.
 const LOGGED: u32 = 250;
@@ -41,61 +49,29 @@ const MEALS: u64 = 16_000;
 /// From one note of the zero for the next run to the next, microseconds.
 const NOTES: u64 = 1_000_000;
 
-/// Tasks that wait for the host wake so often to report, and may be late by as much again; who sends frames is known by
-/// leaving none. The memory is given the time of an erasure.
-const IDLE: Duration = Duration::from_millis(50);
-const ALLOWED: [u64; 3] = [150_000, 150_000, 5_000_000];
-const SEND: usize = 0;
-const LISTEN: usize = 1;
-const REMEMBER: usize = 2;
-
-/// 8 ms of reports.
-const WAITING: usize = 8;
-
-/// Frames waiting for the line.
-struct Waiting {
-    frames: RefCell<Outbox<'static, WAITING, { image::HAS_OBJECT }>>,
-    more: Signal<NoopRawMutex, ()>,
-}
-
-/// The frames themselves, and the one on the line.
-static FRAMES: ConstStaticCell<[Encoded; WAITING]> = ConstStaticCell::new([Encoded::NOTHING; WAITING]);
-static SENT: ConstStaticCell<Encoded> = ConstStaticCell::new(Encoded::NOTHING);
-static OUTBOX: StaticCell<Waiting> = StaticCell::new();
-
-impl Waiting {
-    fn put(&self, message: &Message) {
-        self.frames.borrow_mut().put(message);
-        self.more.signal(());
-    }
-}
-
-/// Commands waiting for the next report. When full the newest is refused, and counted.
-static REQUESTS: Channel<ThreadModeRawMutex, Request, 2> = Channel::new();
-
-/// What came over the line and was no command.
-static REFUSED: AtomicU32 = AtomicU32::new(0);
-
-/// To be stored, and what came of it.
-static TO_STORE: Channel<ThreadModeRawMutex, ToStore, 1> = Channel::new();
-static STORED: Channel<ThreadModeRawMutex, (Result<(), StoreError>, u32), 1> = Channel::new();
-
-/// Who reported when.
-static ROSTER: ThreadModeMutex<RefCell<Roster<3>>> =
-    ThreadModeMutex::new(RefCell::new(Roster::new(ALLOWED, Microseconds(0))));
-
-fn alive(task: usize, clock: Clock) {
-    ROSTER.lock(|roster| roster.borrow_mut().report(task, clock.now()));
-}
-
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let constants = ImageDesign::CONSTANTS;
     // Before anything that can hang, so that every reset is counted.
     let reset_cause = board::begin();
-    let start = Breadcrumb::start(retained::read(), reset_cause, constants.hash);
+    let start = Breadcrumb::start(retained::read(), reset_cause, ImageDesign::CONSTANTS.hash);
     retained::write(&start.crumb);
+    #[cfg(not(feature = "load-tip"))]
     let board = Board::take(start.give_up);
+    #[cfg(not(feature = "load-tip"))]
+    let design = FirmwareDesign::start();
+    #[cfg(feature = "load-tip")]
+    let mut board = Board::take(start.give_up);
+    #[cfg(feature = "load-tip")]
+    let tip::Tip {
+        design,
+        loader,
+        known,
+        is_refused,
+    } = tip::start(&mut board.memory, start.give_up).await;
+    #[cfg(not(feature = "load-tip"))]
+    let constants = ImageDesign::CONSTANTS;
+    #[cfg(feature = "load-tip")]
+    let constants = design.parameters().constants;
     let number = |text: &str| text.parse().unwrap_or(u8::MAX);
     let firmware = [
         number(env!("CARGO_PKG_VERSION_MAJOR")),
@@ -126,6 +102,8 @@ async fn main(spawner: Spawner) {
         clock_failed: !board.crystal,
         firmware,
     };
+    #[cfg(feature = "load-tip")]
+    let beginning = tip::beginning(beginning, known, is_refused);
     defmt::info!(
         "fingertip {=str}, design {=str} ({=u64:016x}), reset by {=str}",
         env!("CARGO_PKG_VERSION"),
@@ -140,9 +118,12 @@ async fn main(spawner: Spawner) {
     });
     spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
     spawner.spawn(listen(board.ears, clock).expect("spawned once"));
+    #[cfg(not(feature = "load-tip"))]
     spawner.spawn(remember(store, clock).expect("spawned once"));
+    #[cfg(feature = "load-tip")]
+    spawner.spawn(tip::remember(store, loader, clock, waiting).expect("spawned once"));
     let transducer = board.port.map(chosen::transducer);
-    signal(clock, transducer, waiting, board.watchdog, &beginning).await
+    signal(design, clock, transducer, waiting, board.watchdog, &beginning).await
 }
 
 /// Turns samples into reports, and answers commands. Period: one sample, 1 ms of a converter. Deadline: the next one;
@@ -150,13 +131,14 @@ async fn main(spawner: Spawner) {
 /// there are none, as long as the other tasks report too; who does not is left for the next run to say. Without a
 /// transducer it measures nothing and says so at the same pace.
 async fn signal(
+    design: impl Design,
     clock: Clock,
     transducer: Option<impl Driver>,
     waiting: &'static Waiting,
     mut watchdog: Watchdog,
     beginning: &Beginning,
 ) -> ! {
-    let mut station = Station::new(FirmwareDesign::start(), beginning);
+    let mut station = Station::new(design, beginning);
     let mut crumb = Breadcrumb {
         detail: Stage::Running as u32,
         ..beginning.start.crumb
@@ -182,7 +164,7 @@ async fn signal(
             station.counters.samples_lost = station.counters.samples_lost.saturating_add(lost);
         }
         let report = station.step(now, sample, |message| waiting.put(message));
-        log.report(&report);
+        log.report(&report, station.parameters().pressure_fraction_bits);
         if let Ok(request) = REQUESTS.try_receive()
             && let Some(to_store) = station.request(now, request, |message| waiting.put(message))
         {
@@ -233,6 +215,9 @@ async fn send(mut line: Line, waiting: &'static Waiting, mut frame: &'static mut
     }
 }
 
+/// A loaded tip may have an `[object]` where the image's design has none.
+const OBJECT: bool = image::HAS_OBJECT || cfg!(feature = "load-tip");
+
 /// Takes commands. Period: as they come. Deadline: the ring of bytes is full, 2.8 ms of a line that never pauses; when
 /// late, bytes are lost, which is counted. Work is bounded by the rate of the line, and other tasks run in between.
 #[embassy_executor::task]
@@ -250,10 +235,19 @@ async fn listen(mut ears: Ears, clock: Clock) {
             Err(_idle) => continue,
         };
         for &byte in heard {
-            let taken = match deframer.push(byte) {
-                None => continue,
-                Some(body) => body.and_then(|body| command::read_known_body::<{ image::HAS_OBJECT }>(&body)),
+            let Some(body) = deframer.push(byte) else {
+                continue;
             };
+            #[cfg(feature = "load-tip")]
+            if let Ok(body) = &body
+                && load::is_load(body)
+            {
+                if !load::read_body(body).is_ok_and(|request| tip::LOADS.try_send(request).is_ok()) {
+                    refuse();
+                }
+                continue;
+            }
+            let taken = body.and_then(|body| command::read_known_body::<OBJECT>(&body));
             if !taken.is_ok_and(|request| REQUESTS.try_send(request).is_ok()) {
                 refuse();
             }
@@ -272,6 +266,7 @@ fn refuse() {
 
 /// Stores the calibration. Period: when asked for. Deadline: none; other tasks run meanwhile. Without a store every save
 /// fails.
+#[cfg(not(feature = "load-tip"))]
 #[embassy_executor::task]
 async fn remember(mut store: Option<Store<FlashMemory>>, clock: Clock) {
     loop {
@@ -295,7 +290,7 @@ struct Log {
 }
 
 impl Log {
-    fn report(&mut self, report: &Report) {
+    fn report(&mut self, report: &Report, fraction_bits: u32) {
         let status = report.status();
         if self.status != Some(status) {
             self.status = Some(status);
@@ -320,7 +315,7 @@ impl Log {
             defmt::info!(
                 "{=u64} us: {=i32} Pa over rest, {=i32} uN, {=i32} nm",
                 report.time.0,
-                measurement.pressure_rise.0 >> ImageDesign::PARAMETERS.pressure_fraction_bits,
+                measurement.pressure_rise.0 >> fraction_bits,
                 measurement.force.0,
                 measurement.indentation.0
             );

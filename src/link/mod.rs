@@ -2,6 +2,8 @@
 //! host may ask ([`command`]). `PROTOCOL.md` beside this file is the page to write a client from.
 
 pub mod command;
+#[cfg(feature = "load-tip")]
+pub mod load;
 pub mod outbox;
 pub mod telemetry;
 pub mod wire;

@@ -4,6 +4,8 @@
 //! A frame of another version, an unknown kind, code or length is refused as a whole: none of it is a number.
 
 use crate::link::command::{CommandKind, Outcome};
+#[cfg(feature = "load-tip")]
+use crate::link::load::{self, LoadReply};
 use crate::link::wire::{DecodeError, Deframer, Encoded, PROTOCOL_VERSION, Reader, unstuff};
 use crate::signal::report::{Measurement, Report, Sigma};
 use crate::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings, code_of, named_by};
@@ -85,6 +87,9 @@ pub enum Message {
     Hello(Hello),
     /// What came of a command.
     Answer(Answer),
+    /// What the loader of a tip's data says.
+    #[cfg(feature = "load-tip")]
+    Load(LoadReply),
 }
 
 impl Message {
@@ -94,6 +99,8 @@ impl Message {
             Self::Report { report, .. } => report.time,
             Self::Hello(hello) => hello.time,
             Self::Answer(answer) => answer.time,
+            #[cfg(feature = "load-tip")]
+            Self::Load(LoadReply::Answer { time, .. } | LoadReply::Data { time, .. }) => *time,
         }
     }
 }
@@ -168,6 +175,14 @@ pub fn write<const OBJECT: bool>(body: &mut Encoded, sequence: u16, dropped: u16
                 }
             }
         }
+        #[cfg(feature = "load-tip")]
+        Message::Load(reply) => {
+            match reply {
+                LoadReply::Answer { time, .. } => header(4, *time),
+                LoadReply::Data { time, .. } => header(load::DATA, *time),
+            }
+            load::write_reply(body, reply);
+        }
     }
     body.finish();
 }
@@ -215,6 +230,21 @@ fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
     let sequence = u16::from_le_bytes(fields.take()?);
     let time = Microseconds(u64::from_le_bytes(fields.take()?));
     let dropped = u16::from_le_bytes(fields.take()?);
+    #[cfg(feature = "load-tip")]
+    {
+        let reply = match kind {
+            4 if body.len() == ANSWER => load::read_answer(Reader(fields.0), time),
+            load::DATA => Some(load::read_data(Reader(fields.0), time)),
+            _ => None,
+        };
+        if let Some(reply) = reply {
+            return Ok(Frame {
+                sequence,
+                dropped,
+                message: Message::Load(reply?),
+            });
+        }
+    }
     let expected = match kind {
         1 => READING,
         2 => FAULT,

@@ -113,6 +113,14 @@ impl Encoded {
         }
     }
 
+    /// A field of no fixed length.
+    #[cfg(feature = "load-tip")]
+    pub(crate) fn put_all(&mut self, field: &[u8]) {
+        for &byte in field {
+            self.put([byte]);
+        }
+    }
+
     /// Makes the body a frame.
     ///
     /// Below 254 bytes COBS is a chain through the zeros, each replaced by the distance to the next: done in place and in

@@ -16,6 +16,8 @@ pub mod stuck;
 pub mod temperature;
 #[cfg(test)]
 pub(crate) mod test_design;
+#[cfg(feature = "load-tip")]
+pub mod tip_design;
 pub mod touch;
 pub mod uncertainty;
 pub mod wall;

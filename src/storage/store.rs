@@ -208,6 +208,12 @@ impl<F: NorFlash> Store<F> {
         self.flash
     }
 
+    /// The memory, for what lies outside of the two slots.
+    #[cfg(feature = "load-tip")]
+    pub fn flash_mut(&mut self) -> &mut F {
+        &mut self.flash
+    }
+
     /// Stores a calibration, or that there is none.
     ///
     /// # Errors

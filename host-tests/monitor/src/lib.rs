@@ -2,13 +2,15 @@
 //!
 //! [`link`] (bytes, and the connection again when it is lost) or [`replay`] (a log) -> [`readings`] (frames in order, counted; the
 //! latest report, unless the line held it back; commands and their answers) -> [`view`] (the terminal), [`output`] (CSV, JSON,
-//! MCAP), run by [`command`]. A force is shown only while its report is `ok`; otherwise the reason is.
+//! MCAP), run by [`command`]; [`load`] brings a tip's data onto the board. A force is shown only while its report is `ok`; otherwise
+//! the reason is.
 #![forbid(unsafe_code)]
 
 pub mod command;
 mod frames;
 mod keys;
 pub mod link;
+pub mod load;
 pub mod output;
 pub mod readings;
 pub mod replay;

@@ -238,6 +238,8 @@ impl Monitor {
                 self.note(format!("{}{elsewhere}", pending::describe(&answer)));
                 None
             }
+            // Another program's: this one loads nothing.
+            Message::Load(_) => None,
         }
     }
 

@@ -12,13 +12,15 @@ use commands::{
     Command, Document, Shown, assert_names_exist, assert_one_chip, documents, resolved, split, value,
     workspace,
 };
+use host_tests::nor_flash::SimulatedFlash;
+use host_tests::tip_device::{BadLine, ServedDevice};
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs;
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::process;
-use std::time::{Duration, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Commands that begin so are not run, and why.
 const NOT_RUN: [(&str, &str); 6] = [
@@ -66,6 +68,7 @@ const PLACEHOLDERS: [(&str, &str); 3] = [
 /// The README's reader has files that a guide shows: theirs, and the guide's.
 const README_FILES: [(&str, &str); 2] = [("my.toml", "tip.toml"), ("bench.csv", "bench.csv")];
 const CALIBRATE: &str = "host-tests/guides/calibrate.md";
+const CALIBRATE_HAND: &str = "host-tests/guides/calibrate-a-hand.md";
 
 fn document(path: &str) -> Document {
     let found = documents().into_iter().find(|document| document.path == path);
@@ -106,6 +109,15 @@ fn run(command: &Command, folder: &Path, to_the_end: bool) -> String {
         return String::new();
     }
     let (program, arguments) = command.words.split_first().expect("a program");
+    if program == "designer" {
+        // Installed; what wants a board is followed in a test of its own.
+        let mut words = arguments.to_vec();
+        if !to_the_end || ["monitor", "load"].contains(&words[0].as_str()) {
+            words.push("--help".to_owned());
+        }
+        let mut designer = process::Command::new(env!("CARGO_BIN_EXE_designer"));
+        return succeed(line, designer.args(words).current_dir(folder));
+    }
     if program != "cargo" {
         return succeed(
             line,
@@ -121,8 +133,8 @@ fn run(command: &Command, folder: &Path, to_the_end: bool) -> String {
     if value(cargos, "--bin") != Some("designer") || programs.is_empty() {
         return String::new();
     }
-    // The monitor wants a board.
-    if !to_the_end || programs[0] == "monitor" {
+    // They want a board.
+    if !to_the_end || ["monitor", "load"].contains(&programs[0].as_str()) {
         // Refuses what it does not know before it comes to this.
         programs.push("--help".to_owned());
     }
@@ -227,6 +239,57 @@ fn a_calibration_finds_the_device_of_its_data() {
     );
 }
 
+/// From the bench's file to the tip on a board, with the guide's own commands: a board on the host stands at the port, and no command of
+/// these is a compiler.
+#[test]
+fn a_hand_is_calibrated_without_a_compiler() {
+    const SLOT: usize = 16 * 1024;
+    let board = ServedDevice::start(
+        SimulatedFlash::<SLOT>::erased(1),
+        SLOT as u32,
+        [BadLine::new(1, 0), BadLine::new(2, 0)],
+    );
+    let port = format!("tcp:{}", board.address);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("calibrate-a-hand");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the test folder");
+    let mut printed = String::new();
+    for shown in document(CALIBRATE_HAND).shown() {
+        let command = match shown {
+            Shown::File(name, text) => {
+                fs::write(folder.join(name), text).expect("the test folder");
+                continue;
+            }
+            Shown::Command(command) if command.words[0] == "designer" => command,
+            _ => continue,
+        };
+        let at_port = |word: &String| word.replace("/dev/ttyACM0", &port);
+        let mut words: Vec<String> = command.words[1..].iter().map(at_port).collect();
+        if words[0] == "monitor" {
+            words.extend(["--for-s", "1.5", "--format", "csv"].map(str::to_owned));
+        }
+        let begun = Instant::now();
+        let mut designer = process::Command::new(env!("CARGO_BIN_EXE_designer"));
+        printed += &succeed(&command.line, designer.args(words).current_dir(&folder));
+        println!("{:.1} s: {}", begun.elapsed().as_secs_f64(), command.line);
+    }
+    let [sent, back] =
+        ["left-index.bin", "in-use.bin"].map(|name| fs::read(folder.join(name)).expect("written"));
+    assert_eq!(sent, back);
+    // Loaded, read, rolled back: two restarts; and the monitor saw a zeroed fingertip.
+    assert_eq!(board.end(), 2);
+    for word in [
+        "material_factor",
+        "left-index",
+        "loaded",
+        "read back",
+        ",ok,untouched,",
+        "rolled back",
+    ] {
+        assert!(printed.contains(word), "{word}: {printed}");
+    }
+}
+
 #[test]
 fn every_command_of_the_readme_works() {
     let (folder, _) = follow(&document("README.md"));
@@ -238,6 +301,7 @@ fn every_command_of_every_other_document_works() {
     let told_apart = [
         "README.md",
         CALIBRATE,
+        CALIBRATE_HAND,
         "host-tests/guides/new-membrane.md",
         "host-tests/guides/wire-a-transducer.md",
     ];

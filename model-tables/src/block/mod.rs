@@ -99,10 +99,12 @@ impl fmt::Display for BlockError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NoBlock => f.write_str("this is no tip's data: it does not begin with FTIP"),
-            Self::LayoutVersion(found) => write!(
-                f,
-                "the tip's data has layout {found}, and layout {LAYOUT_VERSION} is read: write it anew with `designer table`"
-            ),
+            Self::LayoutVersion(found) => {
+                write!(
+                    f,
+                    "the tip's data has layout {found}, and layout {LAYOUT_VERSION} is read"
+                )
+            }
             Self::Short { needed, found } => {
                 write!(f, "the tip's data is cut off: {found} of {needed} bytes")
             }

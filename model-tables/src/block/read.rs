@@ -103,6 +103,32 @@ impl<'a> TipBlock<'a> {
             objects,
         })
     }
+
+    /// What it holds, in the order of the sections.
+    pub fn sections(&self) -> impl Iterator<Item = SectionKind> + use<> {
+        let held = [
+            true,
+            true,
+            self.calibration.is_some(),
+            true,
+            self.relaxation.is_some(),
+            self.objects.is_some(),
+            self.constants.zero != ZeroAssumptions::NONE,
+        ];
+        SectionKind::ALL
+            .into_iter()
+            .zip(held)
+            .filter_map(|(kind, held)| held.then_some(kind))
+    }
+}
+
+/// Bytes of the block that begins as these do, and the CRC-32 that it states; nothing for what is no block of this layout.
+/// It may be longer than `bytes`, and nothing of it is checked yet.
+pub fn stated(bytes: &[u8]) -> Option<(u32, u32)> {
+    let head = bytes.get(..HEAD)?;
+    let [length, check] = <[u32; 2]>::get(head.get(8..16)?)?;
+    let known = head.starts_with(&MAGIC) && head.get(4..6)? == LAYOUT_VERSION.to_le_bytes();
+    known.then_some((length, check))
 }
 
 /// The wall in time: at least one term, and as many as the section has bytes for.

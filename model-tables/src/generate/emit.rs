@@ -6,6 +6,7 @@ use super::TABLE_VERSION;
 use super::design::{Generated, integer};
 use super::object::ObjectTables;
 use super::owned::OwnedTables;
+use crate::block::StoredCalibration;
 use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::block::write::{ObjectData, TipData};
@@ -46,13 +47,18 @@ impl Generated {
 
     /// The tip's data as a [`crate::block`], without a calibration.
     pub fn binary(&self) -> Vec<u8> {
+        self.tip(None)
+    }
+
+    /// The tip's data as a [`crate::block`], with what is known of the one fingertip.
+    pub fn tip(&self, calibration: Option<StoredCalibration>) -> Vec<u8> {
         let tables = &self.certified.tables;
         TipData {
             constants: self.constants(),
             layout: tables.layout,
             words: &tables.words,
             name: &self.design.name,
-            calibration: None,
+            calibration,
             relaxation: self.wall(),
             object: self.certified.object.as_ref().map(|object| ObjectData {
                 start: object.start,

@@ -1,6 +1,6 @@
 //! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
 
-use super::{estimate_in_time, finite, read};
+use super::{estimate_in_time, finite, read, tip};
 use fingertip::signal::contact::contact;
 use fingertip::signal::design::Design;
 use fingertip::signal::loaded_design::LoadedDesign;
@@ -16,7 +16,7 @@ const COLUMNS: &[&str] = &["pressure_rise_pa", "force_n", "indentation_mm", "sta
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// The design file
+    /// The design file, or a tip file of `designer tip`
     design: PathBuf,
     /// Pressure rises over the rest pressure in pascals, separated by commas
     #[arg(long, value_name = "LIST", required_unless_present = "history", value_delimiter = ',',
@@ -58,11 +58,24 @@ pub(super) fn refusal(file: &Path, error: GenerateError) -> Refusal {
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
+    let block = tip::block(file)?;
     if let Some(history) = &arguments.history {
+        if block.is_some() {
+            return Err(Refusal::about(
+                file,
+                &"--history needs the design, whose series a temperature shifts; this is a tip file: give the design it was made of",
+            ));
+        }
         return estimate_in_time::run(file, history, arguments.allow_worse);
     }
-    let generated = generated(file, read(file)?, arguments.allow_worse)?;
-    let block = generated.binary();
+    let (block, notes) = if let Some(block) = block {
+        (block, Vec::new())
+    } else {
+        let generated = generated(file, read(file)?, arguments.allow_worse)?;
+        let mut notes: Vec<String> = generated.own_error().iter().map(ToString::to_string).collect();
+        notes.extend(generated.band.iter().map(ToString::to_string));
+        (generated.binary(), notes)
+    };
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;
     let mut rows = Rows::new(COLUMNS);
@@ -77,7 +90,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
             Cell::Text(status.to_string()),
         ]);
     }
-    let mut notes: Vec<String> = generated.own_error().iter().map(ToString::to_string).collect();
-    notes.extend(generated.band.iter().map(ToString::to_string));
     Ok(CommandAnswer { rows, notes })
 }

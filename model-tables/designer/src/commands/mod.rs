@@ -11,6 +11,7 @@ mod estimate_in_time;
 mod feedback_loop;
 mod fit;
 mod history;
+mod load;
 mod materials;
 mod mesh_error;
 mod model;
@@ -23,6 +24,7 @@ mod size;
 mod solve;
 mod table;
 mod time_rows;
+mod tip;
 
 use crate::table_text::one_line;
 use clap::builder::PossibleValue;
@@ -73,6 +75,12 @@ enum Command {
         after_help = "Example:\n  cargo designer table model-tables/designs/index-fingertip.toml --out target/tables"
     )]
     Table(table::Arguments),
+    /// A tip file: everything that a hand needs of one fingertip, to be loaded without a compiler
+    #[command(after_help = tip::HELP)]
+    Tip(tip::Arguments),
+    /// A tip file onto a board over its serial port; back to the tip before; the tip in use as a file
+    #[command(after_help = load::HELP)]
+    Load(load::Arguments),
     /// Everything about a design on one page: HTML that needs no network
     #[command(
         after_help = "Example:\n  cargo designer report model-tables/designs/index-fingertip.toml --out target/report"
@@ -184,6 +192,8 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::History(arguments) => history::run(arguments),
         Command::Profile(arguments) => profile::run(arguments),
         Command::Table(arguments) => table::run(arguments),
+        Command::Tip(arguments) => tip::run(arguments),
+        Command::Load(arguments) => load::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Chart(arguments) => compare::chart::run(arguments),
         Command::Atlas(arguments) => compare::atlas::run(arguments),

@@ -60,7 +60,9 @@ pub(crate) struct Command {
 }
 
 /// Programs whose name begins a command.
-const PROGRAMS: [&str; 6] = ["cargo", "cat", "probe-rs", "python3", "rustup", "stty"];
+const PROGRAMS: [&str; 7] = [
+    "cargo", "cat", "designer", "probe-rs", "python3", "rustup", "stty",
+];
 
 impl Command {
     /// The command in a line, if it is one; a comment behind it is left out.
@@ -130,7 +132,10 @@ impl Document {
 
 fn mentions(prose: &str, shown: &mut Vec<Shown>) {
     let code = prose.split('`').skip(1).step_by(2);
-    let begins = |code: &&str| code.split_whitespace().any(|word| PROGRAMS.contains(&word));
+    // The names of the tool's subcommands are no commands.
+    let begins = |code: &&str| {
+        !code.starts_with("designer") && code.split_whitespace().any(|word| PROGRAMS.contains(&word))
+    };
     shown.extend(code.filter(begins).filter_map(Command::of).map(Shown::Mention));
 }
 

@@ -1,0 +1,191 @@
+//! `designer load`: a tip file onto a hand, back to what was before, or read back.
+
+use super::tip;
+use model_tables::block::read::TipBlock;
+use monitor::link::{Address, BAUD, Link, LinkEvent};
+use monitor::load::{LoadJob, Loaded, Loading};
+use output::files;
+use output::progress::Ticks;
+use output::rows::{Cell, Rows};
+use output::{CommandAnswer, Refusal};
+use std::io::IsTerminal as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+const COLUMNS: &[&str] = &["action", "tip", "design_hash", "size_bytes", "seconds"];
+
+/// Tips that a command can name.
+const TIPS: u8 = 16;
+
+/// From one look at the time to the next.
+const LOOK: Duration = Duration::from_millis(2);
+
+/// What `--help` says after the options.
+pub(super) const HELP: &str = "\
+The firmware has to be built with the feature load-tip. The new tip is in use, with a new zero, after the board's restart, which the
+load ends with; a line that breaks on the way is waited for, and the load goes on.
+
+--tip is the tip's number on the board, 0 on a board with one, or the name of the design in the file: another name is refused.
+
+Examples:
+  cargo designer load /dev/ttyACM0 tip.bin --tip 0
+  cargo designer load tcp:127.0.0.1:4000 tip.bin --tip index-fingertip
+  cargo designer load /dev/ttyACM0 --roll-back
+  cargo designer load /dev/ttyACM0 --read-back in-use.bin";
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// A serial port (/dev/ttyACM0, COM3) or tcp:HOST:PORT
+    port: Address,
+    /// The tip file that `designer tip` wrote
+    #[arg(required_unless_present_any = ["roll_back", "read_back"], conflicts_with_all = ["roll_back", "read_back"])]
+    file: Option<PathBuf>,
+    /// Which tip of the board: its number, or the name of the design in the file
+    #[arg(long = "tip", value_name = "NAME", requires = "file")]
+    name: Option<String>,
+    /// Use what was in use before the last load
+    #[arg(long, conflicts_with = "read_back")]
+    roll_back: bool,
+    /// Write the tip that is in use to this file
+    #[arg(long, value_name = "FILE")]
+    read_back: Option<PathBuf>,
+    /// Speed of the serial port, bits a second
+    #[arg(long, value_name = "BAUD", default_value_t = BAUD)]
+    baud: u32,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
+    let mut port = arguments.port.clone();
+    if let Address::Serial { baud, .. } = &mut port {
+        *baud = arguments.baud;
+    }
+    if let Some(file) = &arguments.file {
+        return load(port, file, arguments.name.as_deref());
+    }
+    if let Some(out) = &arguments.read_back {
+        return read_back(port, out);
+    }
+    let (loaded, seconds) = carry(port, LoadJob::RollBack)?;
+    let rows = row("rolled back", "0", loaded.hash, 0, seconds);
+    Ok(answer(rows, &loaded))
+}
+
+fn load(port: Address, file: &Path, name: Option<&str>) -> Result<CommandAnswer, Refusal> {
+    let block = tip::needed(file)?;
+    let held = TipBlock::read(&block).map_err(|error| Refusal::about(file, &error))?;
+    let (hash, own) = (held.constants.hash, held.name.to_owned());
+    let tip = number(file, name, &own)?;
+    let length = block.len();
+    let (loaded, seconds) = carry(port, LoadJob::Load { tip, block, hash })?;
+    let rows = row("loaded", &own, loaded.hash, length, seconds);
+    Ok(answer(rows, &loaded))
+}
+
+/// The number of the tip that is named.
+fn number(file: &Path, name: Option<&str>, own: &str) -> Result<u8, Refusal> {
+    let Some(name) = name.filter(|name| *name != own) else {
+        return Ok(0);
+    };
+    match name.parse::<u8>() {
+        Ok(number) if number < TIPS => Ok(number),
+        _ => Err(Refusal::about(
+            file,
+            &format!(
+                "--tip {name} is no number from 0 to {}, and the file holds the tip `{own}`: give the number, or the file of that tip",
+                TIPS - 1
+            ),
+        )),
+    }
+}
+
+fn read_back(port: Address, out: &Path) -> Result<CommandAnswer, Refusal> {
+    files::expect_room(out)?;
+    let address = port.to_string();
+    let (mut loaded, seconds) = carry(port, LoadJob::ReadBack)?;
+    let block = std::mem::take(&mut loaded.block);
+    let held = TipBlock::read(&block).map_err(|error| {
+        Refusal(format!(
+            "{address}: what was read back cannot be used: {error}; read it again"
+        ))
+    })?;
+    let (name, hash) = (held.name.to_owned(), held.constants.hash);
+    let length = block.len();
+    files::write_one(out, block)?;
+    let rows = row("read back", &name, hash, length, seconds);
+    Ok(answer(rows, &loaded))
+}
+
+/// Carries a job over the line to its end; how long it took, seconds.
+fn carry(port: Address, job: LoadJob) -> Result<(Loaded, f64), Refusal> {
+    let address = port.to_string();
+    let whole = match &job {
+        LoadJob::Load { block, .. } => block.len(),
+        LoadJob::RollBack | LoadJob::ReadBack => 0,
+    };
+    let start = Instant::now();
+    let link = Link::start(port);
+    let mut loading = Loading::new(job);
+    let done = Arc::new(AtomicUsize::new(0));
+    let shown = Arc::clone(&done);
+    let tell = move || {
+        let done = shown.load(Ordering::Relaxed);
+        if whole > 0 {
+            format!("load: {done} of {whole} bytes")
+        } else {
+            format!("load: {done} bytes")
+        }
+    };
+    let _ticks = std::io::stderr().is_terminal().then(|| Ticks::begin(tell));
+    let mut connected = false;
+    loop {
+        match link.next(LOOK) {
+            Some(LinkEvent::Connected) => {
+                connected = true;
+                loading.connected();
+            }
+            Some(LinkEvent::Bytes(bytes)) => loading.hear(start.elapsed(), &bytes),
+            Some(LinkEvent::Lost(reason)) if !connected => {
+                return Err(Refusal(format!(
+                    "{address} cannot be opened: {reason}; see that the board is plugged in and that no other program has its port"
+                )));
+            }
+            Some(LinkEvent::Lost(reason)) => loading.lost(start.elapsed(), &reason),
+            None => {}
+        }
+        if connected && let Some(bytes) = loading.next(start.elapsed()) {
+            link.send(&bytes);
+        }
+        done.store(loading.done(), Ordering::Relaxed);
+        if let Some(outcome) = loading.outcome() {
+            let seconds = start.elapsed().as_secs_f64();
+            return match outcome {
+                Ok(loaded) => Ok((loaded.clone(), seconds)),
+                Err(failure) => Err(Refusal(format!("{address}: {failure}"))),
+            };
+        }
+    }
+}
+
+fn row(action: &'static str, tip: &str, hash: u64, bytes: usize, seconds: f64) -> Rows {
+    let mut rows = Rows::new(COLUMNS);
+    rows.push(vec![
+        Cell::word(action),
+        Cell::Text(tip.to_owned()),
+        Cell::Text(format!("{hash:016x}")),
+        Cell::Count(bytes),
+        Cell::Number(seconds),
+    ]);
+    rows
+}
+
+fn answer(rows: Rows, loaded: &Loaded) -> CommandAnswer {
+    let notes = match loaded.repeated {
+        0 => Vec::new(),
+        times => vec![format!(
+            "the line lost something: {times} commands were sent again"
+        )],
+    };
+    CommandAnswer { rows, notes }
+}

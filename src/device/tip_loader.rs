@@ -1,0 +1,355 @@
+//! What a board does with the commands that load a tip's data (feature `load-tip`): policy over the two [slots](TipSlots), without
+//! a clock or a line of its own.
+//!
+//! Arm, begin, chunks, verify, activate: each step is refused where the one before it is missing. What is activated or rolled back
+//! to is used from a restart on, which the caller makes once the answer is on the line: a signal path has one design as long as it
+//! lives.
+
+use crate::link::load::{CHUNK, LoadCommand, LoadOutcome, LoadReply, LoadRequest, Piece, READ_BACK, refused};
+use crate::signal::calibration::Calibration;
+use crate::signal::design::Design as _;
+use crate::signal::loaded_design::LoadedDesign;
+use crate::storage::store::StoreError;
+use crate::storage::tip_slots::{SlotBlock, TipSlots};
+use crate::units::Microseconds;
+use embedded_storage_async::nor_flash::NorFlash;
+use model_tables::block::BlockError;
+use model_tables::block::read::stated;
+use model_tables::constants::Transducer;
+
+/// Most bytes of a block: the shipped designs take a few hundred.
+pub const LARGEST_BLOCK: usize = 4096;
+
+/// How long loading is allowed after `arm` and after each command that does something, microseconds.
+const ARMED: u64 = 60_000_000;
+
+/// What a start found in the slots.
+#[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant)] // made once, and there is no heap
+pub enum FoundTip<'a> {
+    /// Nothing is loaded, or it was rolled back: the image's own tables are in use.
+    Image,
+    /// A loaded tip, with what it holds of the one fingertip.
+    Loaded(LoadedDesign<'a>, Option<Calibration>),
+    /// A loaded tip that cannot be used: the image's own tables are in use, and say so.
+    Refused,
+}
+
+/// How far a load has come.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Progress {
+    Nothing,
+    /// The slot was erased for this.
+    Begun {
+        length: u32,
+        check: u32,
+        /// Nothing was written yet.
+        blank: bool,
+    },
+    Verified(SlotBlock),
+}
+
+/// The commands' state.
+#[derive(Clone, Debug)]
+pub struct TipLoader {
+    slots: TipSlots,
+    transducer: Transducer,
+    progress: Progress,
+    /// When loading is no longer allowed.
+    armed_until: u64,
+    restarting: bool,
+}
+
+impl TipLoader {
+    /// For a board whose image drives this transducer.
+    pub const fn new(slots: TipSlots, transducer: Transducer) -> Self {
+        Self {
+            slots,
+            transducer,
+            progress: Progress::Nothing,
+            armed_until: 0,
+            restarting: false,
+        }
+    }
+
+    /// Reads the slots at a start, and the block in use into `buffer`.
+    pub async fn start<'a>(&mut self, flash: &mut impl NorFlash, buffer: &'a mut [u8]) -> FoundTip<'a> {
+        self.slots.scan(flash).await;
+        let Some(block) = self.slots.in_use() else {
+            return FoundTip::Image;
+        };
+        match self.judge(flash, block, buffer).await {
+            Ok((design, calibration)) => FoundTip::Loaded(design, calibration),
+            Err(_) => FoundTip::Refused,
+        }
+    }
+
+    /// Whether an answer said that the board restarts.
+    pub const fn is_restarting(&self) -> bool {
+        self.restarting
+    }
+
+    /// Does what is asked for; `buffer` is for a block that is judged.
+    pub async fn request(
+        &mut self,
+        now: Microseconds,
+        flash: &mut impl NorFlash,
+        request: LoadRequest,
+        buffer: &mut [u8],
+    ) -> LoadReply {
+        let LoadRequest { sequence, command } = request;
+        let outcome = if self.restarting {
+            Err((LoadOutcome::Busy, 0))
+        } else if let LoadCommand::ReadBack { offset, length } = command {
+            match self.read_back(flash, offset, length).await {
+                Ok(bytes) => {
+                    return LoadReply::Data {
+                        time: now,
+                        sequence,
+                        offset,
+                        bytes,
+                    };
+                }
+                Err(outcome) => Err((outcome, 0)),
+            }
+        } else if command == LoadCommand::Arm || now.0 < self.armed_until {
+            self.armed_until = now.0.saturating_add(ARMED);
+            self.step(flash, command, buffer).await
+        } else {
+            Err((LoadOutcome::NotArmed, 0))
+        };
+        let (outcome, findings) = outcome.err().unwrap_or((LoadOutcome::Done, 0));
+        LoadReply::Answer {
+            time: now,
+            kind: command.kind(),
+            sequence,
+            outcome,
+            findings,
+        }
+    }
+
+    async fn step(
+        &mut self,
+        flash: &mut impl NorFlash,
+        command: LoadCommand,
+        buffer: &mut [u8],
+    ) -> Result<(), (LoadOutcome, u16)> {
+        match command {
+            LoadCommand::Arm | LoadCommand::ReadBack { .. } => Ok(()),
+            LoadCommand::Begin { tip, length, check } => {
+                self.begin(flash, tip, length, check).await.map_err(plain)
+            }
+            LoadCommand::Chunk { offset, bytes } => {
+                self.chunk(flash, offset, bytes.as_slice()).await.map_err(plain)
+            }
+            LoadCommand::Verify => self.verify(flash, buffer).await,
+            LoadCommand::Activate { hash } => self.activate(flash, hash).await.map_err(plain),
+            LoadCommand::RollBack => self.roll_back(flash, buffer).await,
+        }
+    }
+
+    async fn begin(
+        &mut self,
+        flash: &mut impl NorFlash,
+        tip: u8,
+        length: u32,
+        check: u32,
+    ) -> Result<(), LoadOutcome> {
+        if tip != 0 {
+            return Err(LoadOutcome::WrongTip);
+        }
+        if length as usize > LARGEST_BLOCK || length > self.slots.room() {
+            return Err(LoadOutcome::OutOfBounds);
+        }
+        let begun = Progress::Begun {
+            length,
+            check,
+            blank: true,
+        };
+        // The answer was lost: once is enough for the memory.
+        if self.progress == begun {
+            return Ok(());
+        }
+        self.progress = Progress::Nothing;
+        self.slots
+            .erase_free(flash)
+            .await
+            .map_err(|_| LoadOutcome::MemoryFailed)?;
+        self.progress = begun;
+        Ok(())
+    }
+
+    async fn chunk(
+        &mut self,
+        flash: &mut impl NorFlash,
+        offset: u32,
+        bytes: &[u8],
+    ) -> Result<(), LoadOutcome> {
+        let (length, check) = match self.progress {
+            Progress::Nothing => return Err(LoadOutcome::OutOfOrder),
+            Progress::Begun { length, check, .. } => (length, check),
+            Progress::Verified(block) => (block.length, block.check),
+        };
+        let expected = length.saturating_sub(offset).min(CHUNK as u32);
+        if expected as usize != bytes.len() {
+            return Err(LoadOutcome::OutOfBounds);
+        }
+        self.progress = Progress::Begun {
+            length,
+            check,
+            blank: false,
+        };
+        self.slots
+            .write_free::<CHUNK>(flash, offset, bytes)
+            .await
+            .map_err(|_| LoadOutcome::MemoryFailed)
+    }
+
+    async fn verify(
+        &mut self,
+        flash: &mut impl NorFlash,
+        buffer: &mut [u8],
+    ) -> Result<(), (LoadOutcome, u16)> {
+        let (length, check) = match self.progress {
+            Progress::Nothing => return Err(plain(LoadOutcome::OutOfOrder)),
+            Progress::Begun { length, check, .. } => (length, check),
+            Progress::Verified(block) => (block.length, block.check),
+        };
+        let mut block = SlotBlock {
+            slot: self.slots.free(),
+            length,
+            check,
+            hash: 0,
+        };
+        block.hash = self
+            .judge(flash, block, buffer)
+            .await
+            .map(|(design, _)| hash(&design))?;
+        self.progress = Progress::Verified(block);
+        Ok(())
+    }
+
+    async fn activate(&mut self, flash: &mut impl NorFlash, hash: u64) -> Result<(), LoadOutcome> {
+        let Progress::Verified(block) = self.progress else {
+            return Err(LoadOutcome::OutOfOrder);
+        };
+        if block.hash != hash {
+            return Err(LoadOutcome::OtherHash);
+        }
+        let activated = self.slots.activate(flash, block).await;
+        // After a failure the slot may hold half an activation: only a new load makes sure.
+        self.progress = Progress::Nothing;
+        activated.map_err(failed)?;
+        self.restarting = true;
+        Ok(())
+    }
+
+    async fn roll_back(
+        &mut self,
+        flash: &mut impl NorFlash,
+        buffer: &mut [u8],
+    ) -> Result<(), (LoadOutcome, u16)> {
+        let to = self
+            .slots
+            .rolls_back_to()
+            .ok_or(plain(LoadOutcome::NothingToRollBack))?;
+        if let Some(block) = to {
+            self.judge(flash, block, buffer).await?;
+        }
+        self.progress = Progress::Nothing;
+        self.slots
+            .roll_back(flash, to)
+            .await
+            .map_err(|error| plain(failed(error)))?;
+        self.restarting = true;
+        Ok(())
+    }
+
+    async fn read_back(
+        &mut self,
+        flash: &mut impl NorFlash,
+        offset: u32,
+        length: u8,
+    ) -> Result<Piece<READ_BACK>, LoadOutcome> {
+        let block = self.slots.in_use().ok_or(LoadOutcome::OutOfOrder)?;
+        let mut bytes = [0; READ_BACK];
+        let within = block.length.saturating_sub(offset).min(u32::from(length));
+        let part = bytes
+            .get_mut(..within as usize)
+            .filter(|part| !part.is_empty())
+            .ok_or(LoadOutcome::OutOfBounds)?;
+        self.slots
+            .read(flash, block.slot, offset, part)
+            .await
+            .map_err(failed)?;
+        Piece::of(part).ok_or(LoadOutcome::OutOfBounds)
+    }
+
+    /// Reads a block whole, and the design in it, if this image uses it.
+    async fn judge<'a>(
+        &self,
+        flash: &mut impl NorFlash,
+        block: SlotBlock,
+        buffer: &'a mut [u8],
+    ) -> Result<(LoadedDesign<'a>, Option<Calibration>), (LoadOutcome, u16)> {
+        let refuse = |why: u16| (LoadOutcome::BlockRefused, why);
+        let bytes = buffer
+            .get_mut(..block.length as usize)
+            .ok_or(refuse(refused::LENGTH))?;
+        self.slots
+            .read(flash, block.slot, 0, bytes)
+            .await
+            .map_err(|error| plain(failed(error)))?;
+        let bytes: &'a [u8] = bytes;
+        let (design, calibration) = LoadedDesign::read(bytes).map_err(|error| refuse(finding(error)))?;
+        let (length, check) = stated(bytes).ok_or(refuse(refused::LAYOUT))?;
+        let Transducer {
+            range,
+            quantity,
+            kind,
+            ..
+        } = design.parameters().constants.transducer;
+        let other = (range, quantity, kind)
+            != (
+                self.transducer.range,
+                self.transducer.quantity,
+                self.transducer.kind,
+            );
+        let known = block.hash == 0 || block.hash == hash(&design);
+        let why = match () {
+            () if length != block.length => refused::LENGTH,
+            () if check != block.check || !known => refused::CHECK,
+            () if other => refused::TRANSDUCER,
+            () => return Ok((design, calibration)),
+        };
+        Err(refuse(why))
+    }
+}
+
+fn plain(outcome: LoadOutcome) -> (LoadOutcome, u16) {
+    (outcome, 0)
+}
+
+fn failed(_: StoreError) -> LoadOutcome {
+    LoadOutcome::MemoryFailed
+}
+
+fn hash(design: &LoadedDesign<'_>) -> u64 {
+    design.parameters().constants.hash
+}
+
+/// The bit that says why.
+const fn finding(error: BlockError) -> u16 {
+    match error {
+        BlockError::NoBlock | BlockError::Short { .. } => refused::LENGTH,
+        BlockError::Check => refused::CHECK,
+        BlockError::LayoutVersion(_)
+        | BlockError::Directory
+        | BlockError::UnknownSection(_)
+        | BlockError::SectionVersion(..)
+        | BlockError::Missing(_)
+        | BlockError::SectionLength(_) => refused::LAYOUT,
+        BlockError::Value(..) => refused::VALUE,
+        BlockError::Tables(_) => refused::TABLES,
+    }
+}

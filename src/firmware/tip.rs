@@ -1,0 +1,137 @@
+//! What an image with the feature `load-tip` adds: the tip in use, read at the start, and the task that loads another one.
+
+use crate::firmware::queues::{IDLE, REMEMBER, STORED, TO_STORE, Waiting, alive};
+use crate::firmware::retained;
+use embassy_futures::select::{Either, select};
+use embassy_sync::blocking_mutex::raw::ThreadModeRawMutex;
+use embassy_sync::channel::Channel;
+use embassy_time::{Duration, Timer, with_timeout};
+use fingertip::board::{Clock, FlashMemory, TIP_SLOT, TIPS};
+use fingertip::device::station::{Beginning, ToStore};
+use fingertip::device::supervisor::Breadcrumb;
+use fingertip::device::tip_loader::{FoundTip, LARGEST_BLOCK, TipLoader};
+use fingertip::image::{FirmwareDesign, ImageDesign};
+use fingertip::link::load::{LoadOutcome, LoadReply, LoadRequest};
+use fingertip::link::telemetry::Message;
+use fingertip::signal::calibration::Calibration;
+use fingertip::signal::tip_design::TipDesign;
+use fingertip::status::{LastFault, Stored};
+use fingertip::storage::store::{Store, StoreError};
+use fingertip::storage::tip_slots::TipSlots;
+use static_cell::ConstStaticCell;
+
+/// The block in use, and the one that is judged.
+static IN_USE: ConstStaticCell<[u8; LARGEST_BLOCK]> = ConstStaticCell::new([0; LARGEST_BLOCK]);
+static JUDGED: ConstStaticCell<[u8; LARGEST_BLOCK]> = ConstStaticCell::new([0; LARGEST_BLOCK]);
+
+/// Commands for the loader. When full the newest is refused, and counted; its sender repeats it.
+pub(super) static LOADS: Channel<ThreadModeRawMutex, LoadRequest, 2> = Channel::new();
+
+/// From an answer after which the board restarts to the restart: the frames before it take 4 ms.
+const FAREWELL: Duration = Duration::from_millis(50);
+
+/// What a start finds.
+pub(super) struct Tip {
+    /// What is measured with.
+    pub(super) design: TipDesign<'static, FirmwareDesign>,
+    /// What the flash's slots are known to hold.
+    pub(super) loader: TipLoader,
+    /// What the block holds of the one fingertip.
+    pub(super) known: Option<Calibration>,
+    /// A loaded tip cannot be used.
+    pub(super) is_refused: bool,
+}
+
+/// The tip in use. After reset upon reset the flash is left alone.
+pub(super) async fn start(memory: &mut FlashMemory, gave_up: bool) -> Tip {
+    let slots = TipSlots::new(0, TIP_SLOT);
+    let mut loader = TipLoader::new(slots, ImageDesign::CONSTANTS.transducer);
+    let found = if gave_up {
+        FoundTip::Image
+    } else {
+        loader.start(&mut memory.at(TIPS), IN_USE.take()).await
+    };
+    let is_refused = matches!(found, FoundTip::Refused);
+    let (design, known) = match found {
+        FoundTip::Loaded(design, known) => (TipDesign::Loaded(design), known),
+        FoundTip::Image | FoundTip::Refused => (TipDesign::Image(FirmwareDesign::start()), None),
+    };
+    Tip {
+        design,
+        loader,
+        known,
+        is_refused,
+    }
+}
+
+/// With what the tip's data add: a calibration where none is stored, and that its tables could not be used.
+pub(super) fn beginning(beginning: Beginning, known: Option<Calibration>, is_refused: bool) -> Beginning {
+    Beginning {
+        stored: if is_refused {
+            Stored::Damaged
+        } else {
+            beginning.stored
+        },
+        calibration: beginning.calibration.or(known),
+        ..beginning
+    }
+}
+
+/// Stores the calibration, and loads a tip. Period: when asked for. Deadline: none; other tasks run meanwhile, but while a block is
+/// judged. Without a store everything fails.
+#[embassy_executor::task]
+pub(super) async fn remember(
+    mut store: Option<Store<FlashMemory>>,
+    mut loader: TipLoader,
+    clock: Clock,
+    waiting: &'static Waiting,
+) {
+    let judged = JUDGED.take();
+    loop {
+        alive(REMEMBER, clock);
+        match with_timeout(IDLE, select(TO_STORE.receive(), LOADS.receive())).await {
+            Err(_idle) => {}
+            Ok(Either::First(ToStore(calibration))) => {
+                let result = match &mut store {
+                    Some(store) => store.save(calibration).await,
+                    None => Err(StoreError::Failed),
+                };
+                let sequence = store.as_ref().map_or(0, Store::sequence);
+                STORED.send((result, sequence)).await;
+            }
+            Ok(Either::Second(request)) => {
+                let now = clock.now();
+                let reply = match &mut store {
+                    Some(store) => {
+                        let mut flash = store.flash_mut().at(TIPS);
+                        loader.request(now, &mut flash, request, judged).await
+                    }
+                    None => LoadReply::Answer {
+                        time: now,
+                        kind: request.command.kind(),
+                        sequence: request.sequence,
+                        outcome: LoadOutcome::MemoryFailed,
+                        findings: 0,
+                    },
+                };
+                waiting.put(&Message::Load(reply));
+                if loader.is_restarting() {
+                    Timer::after(FAREWELL).await;
+                    restart();
+                }
+            }
+        }
+    }
+}
+
+/// Restarts with the other tip: on purpose, and without the zero of the one before.
+fn restart() -> ! {
+    let kept = retained::read().unwrap_or_default();
+    retained::write(&Breadcrumb {
+        fault: LastFault::None,
+        good: true,
+        zero: None,
+        ..kept
+    });
+    cortex_m::peripheral::SCB::sys_reset()
+}

@@ -1,0 +1,545 @@
+//! Loading a tip's data over the line (feature `load-tip`): commands 0x90 to 0x96, their answers, and data read back.
+//! `PROTOCOL.md` beside this file has the layout of every body.
+
+use crate::link::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, unstuff};
+use crate::status::{code_of, named_by};
+use crate::units::Microseconds;
+
+/// Bytes of a chunk: each begins at a multiple of it, and only the last of a block may be shorter.
+pub const CHUNK: usize = 64;
+
+/// Most bytes that are read back at a time.
+pub const READ_BACK: usize = 56;
+
+/// What the command `arm` has to hold: no other command resembles it.
+pub const ARM_WORD: [u8; 4] = *b"LOAD";
+
+/// Bytes before what goes with a command: version, kind, sequence number.
+const HEADER: usize = 4;
+
+/// Between 1 and `N` bytes.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Piece<const N: usize> {
+    bytes: [u8; N],
+    length: usize,
+}
+
+impl<const N: usize> Piece<N> {
+    /// A piece of these; nothing for none, and for more than `N`.
+    pub fn of(from: &[u8]) -> Option<Self> {
+        let mut bytes = [0; N];
+        bytes.get_mut(..from.len())?.copy_from_slice(from);
+        (!from.is_empty()).then_some(Self {
+            bytes,
+            length: from.len(),
+        })
+    }
+
+    /// The bytes.
+    pub fn as_slice(&self) -> &[u8] {
+        self.bytes.get(..self.length).unwrap_or(&[])
+    }
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum LoadCommand {
+    /// Allow loading for a while.
+    Arm,
+    /// Erase the free slot for a block.
+    Begin {
+        /// Which tip of the board, from 0.
+        tip: u8,
+        /// Bytes of the whole block.
+        length: u32,
+        /// The CRC-32 in its head.
+        check: u32,
+    },
+    /// Write a part of it.
+    Chunk {
+        /// Where it begins, a multiple of [`CHUNK`].
+        offset: u32,
+        /// The bytes.
+        bytes: Piece<CHUNK>,
+    },
+    /// Read the whole block and judge it.
+    Verify,
+    /// Use it from a restart on.
+    Activate {
+        /// The design's, as a check.
+        hash: u64,
+    },
+    /// Use what was used before.
+    RollBack,
+    /// Send a part of the block in use.
+    ReadBack {
+        /// Where it begins.
+        offset: u32,
+        /// Bytes, 1 to [`READ_BACK`].
+        length: u8,
+    },
+}
+
+/// Which command, without what goes with it.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum LoadKind {
+    /// [`LoadCommand::Arm`].
+    Arm,
+    /// [`LoadCommand::Begin`].
+    Begin,
+    /// [`LoadCommand::Chunk`].
+    Chunk,
+    /// [`LoadCommand::Verify`].
+    Verify,
+    /// [`LoadCommand::Activate`].
+    Activate,
+    /// [`LoadCommand::RollBack`].
+    RollBack,
+    /// [`LoadCommand::ReadBack`].
+    ReadBack,
+}
+
+impl LoadKind {
+    /// Every kind with its code on the wire.
+    pub const CODES: [(Self, u8); 7] = [
+        (Self::Arm, 0x90),
+        (Self::Begin, 0x91),
+        (Self::Chunk, 0x92),
+        (Self::Verify, 0x93),
+        (Self::Activate, 0x94),
+        (Self::RollBack, 0x95),
+        (Self::ReadBack, 0x96),
+    ];
+
+    /// What it is called.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Arm => "arm",
+            Self::Begin => "load begin",
+            Self::Chunk => "load chunk",
+            Self::Verify => "load verify",
+            Self::Activate => "activate",
+            Self::RollBack => "roll back",
+            Self::ReadBack => "read back",
+        }
+    }
+}
+
+impl LoadCommand {
+    /// Which it is.
+    pub const fn kind(self) -> LoadKind {
+        match self {
+            Self::Arm => LoadKind::Arm,
+            Self::Begin { .. } => LoadKind::Begin,
+            Self::Chunk { .. } => LoadKind::Chunk,
+            Self::Verify => LoadKind::Verify,
+            Self::Activate { .. } => LoadKind::Activate,
+            Self::RollBack => LoadKind::RollBack,
+            Self::ReadBack { .. } => LoadKind::ReadBack,
+        }
+    }
+}
+
+/// What came of a command.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum LoadOutcome {
+    /// It is done.
+    Done,
+    /// The block, or the part asked for, is outside of the memory's or the block's length.
+    OutOfBounds,
+    /// The board is about to restart.
+    Busy,
+    /// There is nothing to roll back.
+    NothingToRollBack,
+    /// The memory did not take it; what is in use still is.
+    MemoryFailed,
+    /// The board has no such tip.
+    WrongTip,
+    /// Another command has to come before.
+    OutOfOrder,
+    /// The block is none that this image uses: the findings say why.
+    BlockRefused,
+    /// The block is of another design than the one named.
+    OtherHash,
+    /// Loading is not allowed: `arm` first.
+    NotArmed,
+}
+
+impl LoadOutcome {
+    /// Every outcome with its code on the wire.
+    pub const CODES: [(Self, u8); 10] = [
+        (Self::Done, 0),
+        (Self::OutOfBounds, 3),
+        (Self::Busy, 5),
+        (Self::NothingToRollBack, 6),
+        (Self::MemoryFailed, 8),
+        (Self::WrongTip, 10),
+        (Self::OutOfOrder, 11),
+        (Self::BlockRefused, 12),
+        (Self::OtherHash, 13),
+        (Self::NotArmed, 15),
+    ];
+}
+
+/// Why a block is refused, one bit each.
+pub mod refused {
+    /// It is shorter or longer than `load begin` announced, or no block.
+    pub const LENGTH: u16 = 1;
+    /// Its CRC-32 differs.
+    pub const CHECK: u16 = 2;
+    /// Its layout is another one.
+    pub const LAYOUT: u16 = 4;
+    /// Its tables may answer wrongly.
+    pub const TABLES: u16 = 8;
+    /// A value is out of its range.
+    pub const VALUE: u16 = 16;
+    /// It is for another transducer than the image's.
+    pub const TRANSDUCER: u16 = 32;
+}
+
+/// A command with the number its sender gave it.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct LoadRequest {
+    /// Comes back in the answer.
+    pub sequence: u16,
+    /// What is asked for.
+    pub command: LoadCommand,
+}
+
+/// What the board says to it.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum LoadReply {
+    /// What came of a command.
+    Answer {
+        /// When.
+        time: Microseconds,
+        /// Which command.
+        kind: LoadKind,
+        /// Its sequence number, as it came.
+        sequence: u16,
+        /// What came of it.
+        outcome: LoadOutcome,
+        /// Of a refused block: why, as in [`refused`].
+        findings: u16,
+    },
+    /// A part of the block in use.
+    Data {
+        /// When.
+        time: Microseconds,
+        /// The sequence number of the command that asked for it.
+        sequence: u16,
+        /// Where it begins.
+        offset: u32,
+        /// The bytes.
+        bytes: Piece<READ_BACK>,
+    },
+}
+
+/// The bytes of a request, ready for the wire.
+pub fn encode(request: &LoadRequest) -> Encoded {
+    let mut body = Encoded::NOTHING;
+    body.begin();
+    body.put([
+        PROTOCOL_VERSION,
+        code_of(&LoadKind::CODES, request.command.kind()),
+    ]);
+    body.put(request.sequence.to_le_bytes());
+    match request.command {
+        LoadCommand::Arm => body.put(ARM_WORD),
+        LoadCommand::Begin { tip, length, check } => {
+            body.put([tip]);
+            body.put(length.to_le_bytes());
+            body.put(check.to_le_bytes());
+        }
+        LoadCommand::Chunk { offset, bytes } => {
+            body.put(offset.to_le_bytes());
+            body.put_all(bytes.as_slice());
+        }
+        LoadCommand::Verify | LoadCommand::RollBack => {}
+        LoadCommand::Activate { hash } => body.put(hash.to_le_bytes()),
+        LoadCommand::ReadBack { offset, length } => {
+            body.put(offset.to_le_bytes());
+            body.put([length]);
+        }
+    }
+    body.finish();
+    body
+}
+
+/// The request in the bytes between two zeros (the zeros themselves left out).
+///
+/// # Errors
+/// [`DecodeError`] for anything that [`encode`] would not have written for a request that can be.
+pub fn decode(stuffed: &[u8]) -> Result<LoadRequest, DecodeError> {
+    read_body(&unstuff(stuffed)?)
+}
+
+/// Whether a body asks for one of these commands: the others are [`command`](super::command)'s.
+pub fn is_load(body: &[u8]) -> bool {
+    body.get(1)
+        .is_some_and(|&code| named_by(&LoadKind::CODES, code).is_some())
+}
+
+/// The request of a body.
+///
+/// # Errors
+/// As [`decode`].
+pub fn read_body(body: &[u8]) -> Result<LoadRequest, DecodeError> {
+    if body.len() < HEADER {
+        return Err(DecodeError::Short);
+    }
+    let mut fields = Reader(body);
+    let [version, code] = fields.take()?;
+    if version != PROTOCOL_VERSION {
+        return Err(DecodeError::Version(version));
+    }
+    let kind = named_by(&LoadKind::CODES, code).ok_or(DecodeError::Kind(code))?;
+    let sequence = u16::from_le_bytes(fields.take()?);
+    let command = match kind {
+        LoadKind::Arm => {
+            if fields.take()? != ARM_WORD {
+                return Err(DecodeError::Field(4));
+            }
+            LoadCommand::Arm
+        }
+        LoadKind::Begin => {
+            let [tip] = fields.take()?;
+            LoadCommand::Begin {
+                tip,
+                length: u32::from_le_bytes(fields.take()?),
+                check: u32::from_le_bytes(fields.take()?),
+            }
+        }
+        LoadKind::Chunk => {
+            let offset = u32::from_le_bytes(fields.take()?);
+            if !(offset as usize).is_multiple_of(CHUNK) {
+                return Err(DecodeError::Field(4));
+            }
+            let bytes = Piece::of(core::mem::take(&mut fields.0)).ok_or(DecodeError::Length)?;
+            LoadCommand::Chunk { offset, bytes }
+        }
+        LoadKind::Verify => LoadCommand::Verify,
+        LoadKind::Activate => LoadCommand::Activate {
+            hash: u64::from_le_bytes(fields.take()?),
+        },
+        LoadKind::RollBack => LoadCommand::RollBack,
+        LoadKind::ReadBack => {
+            let offset = u32::from_le_bytes(fields.take()?);
+            let [length] = fields.take()?;
+            if !(1..=READ_BACK).contains(&usize::from(length)) {
+                return Err(DecodeError::Field(8));
+            }
+            LoadCommand::ReadBack { offset, length }
+        }
+    };
+    if fields.0.is_empty() {
+        Ok(LoadRequest { sequence, command })
+    } else {
+        Err(DecodeError::Length)
+    }
+}
+
+/// The kind of a frame with data read back.
+pub(crate) const DATA: u8 = 7;
+
+/// Adds what follows the header of a reply.
+pub(crate) fn write_reply(body: &mut Encoded, reply: &LoadReply) {
+    match reply {
+        LoadReply::Answer {
+            kind,
+            sequence,
+            outcome,
+            findings,
+            ..
+        } => {
+            body.put([code_of(&LoadKind::CODES, *kind)]);
+            body.put(sequence.to_le_bytes());
+            body.put([code_of(&LoadOutcome::CODES, *outcome)]);
+            body.put(findings.to_le_bytes());
+        }
+        LoadReply::Data {
+            sequence,
+            offset,
+            bytes,
+            ..
+        } => {
+            body.put(sequence.to_le_bytes());
+            body.put(offset.to_le_bytes());
+            body.put_all(bytes.as_slice());
+        }
+    }
+}
+
+/// The reply in what follows the header of an answer; nothing for an answer to another command.
+pub(crate) fn read_answer(
+    mut fields: Reader<'_>,
+    time: Microseconds,
+) -> Option<Result<LoadReply, DecodeError>> {
+    let [code] = fields.take().ok()?;
+    let kind = named_by(&LoadKind::CODES, code)?;
+    let mut read = || {
+        let sequence = u16::from_le_bytes(fields.take()?);
+        let [outcome] = fields.take()?;
+        Ok(LoadReply::Answer {
+            time,
+            kind,
+            sequence,
+            outcome: named_by(&LoadOutcome::CODES, outcome).ok_or(DecodeError::Field(17))?,
+            findings: u16::from_le_bytes(fields.take()?),
+        })
+    };
+    Some(read())
+}
+
+/// The reply in what follows the header of data read back.
+pub(crate) fn read_data(mut fields: Reader<'_>, time: Microseconds) -> Result<LoadReply, DecodeError> {
+    Ok(LoadReply::Data {
+        time,
+        sequence: u16::from_le_bytes(fields.take()?),
+        offset: u32::from_le_bytes(fields.take()?),
+        bytes: Piece::of(fields.0).ok_or(DecodeError::Length)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::telemetry::{self, Frame, Message};
+    use proptest::prelude::*;
+
+    /// Bodies by the page, CRC by Python's `binascii.crc_hqx(body, 0xFFFF)`, stuffed by a script of its own.
+    const GOLDEN: [(LoadCommand, &[u8]); 4] = [
+        (
+            LoadCommand::Arm,
+            &[
+                0x04, 0x02, 0x90, 0x05, 0x07, 0x4C, 0x4F, 0x41, 0x44, 0x94, 0x47, 0x00,
+            ],
+        ),
+        (
+            LoadCommand::Begin {
+                tip: 0,
+                length: 516,
+                check: 0x0123_4567,
+            },
+            &[
+                0x04, 0x02, 0x91, 0x05, 0x01, 0x03, 0x04, 0x02, 0x01, 0x07, 0x67, 0x45, 0x23, 0x01, 0xF8,
+                0x67, 0x00,
+            ],
+        ),
+        (
+            LoadCommand::Activate {
+                hash: 0x0123_4567_89AB_CDEF,
+            },
+            &[
+                0x04, 0x02, 0x94, 0x05, 0x0B, 0xEF, 0xCD, 0xAB, 0x89, 0x67, 0x45, 0x23, 0x01, 0x47, 0xED,
+                0x00,
+            ],
+        ),
+        (
+            LoadCommand::ReadBack {
+                offset: 448,
+                length: 56,
+            },
+            &[
+                0x04, 0x02, 0x96, 0x05, 0x03, 0xC0, 0x01, 0x01, 0x04, 0x38, 0x1B, 0x15, 0x00,
+            ],
+        ),
+    ];
+
+    #[test]
+    fn requests_are_the_documented_bytes() {
+        for (command, bytes) in GOLDEN {
+            let request = LoadRequest { sequence: 5, command };
+            assert_eq!(encode(&request).as_slice(), bytes, "{request:?}");
+            assert_eq!(decode(&bytes[..bytes.len() - 1]), Ok(request));
+        }
+    }
+
+    #[test]
+    fn what_the_layout_does_not_allow_is_refused() {
+        for (body, error) in [
+            (&[2_u8, 0x90, 0][..], DecodeError::Short),
+            (&[1, 0x93, 0, 0], DecodeError::Version(1)),
+            (&[2, 0x97, 0, 0], DecodeError::Kind(0x97)),
+            (&[2, 0x81, 0, 0], DecodeError::Kind(0x81)),
+            // Armed by another word, with one byte more, a chunk off the grid, without a byte, with one too many.
+            (&[2, 0x90, 0, 0, b'L', b'O', b'A', b'F'], DecodeError::Field(4)),
+            (&[2, 0x93, 0, 0, 0], DecodeError::Length),
+            (&[2, 0x92, 0, 0, 32, 0, 0, 0, 1], DecodeError::Field(4)),
+            (&[2, 0x92, 0, 0, 64, 0, 0, 0], DecodeError::Length),
+            (
+                &[[2, 0x92, 0, 0, 0, 0, 0, 0].as_slice(), &[7; CHUNK + 1]].concat(),
+                DecodeError::Length,
+            ),
+            (&[2, 0x96, 0, 0, 0, 0, 0, 0, 0], DecodeError::Field(8)),
+            (&[2, 0x96, 0, 0, 0, 0, 0, 0, 57], DecodeError::Field(8)),
+        ] {
+            assert_eq!(read_body(body), Err(error), "{body:?}");
+        }
+    }
+
+    fn any_command() -> impl Strategy<Value = LoadCommand> {
+        let chunk = (any::<u16>(), prop::collection::vec(any::<u8>(), 1..=CHUNK)).prop_map(|(at, bytes)| {
+            LoadCommand::Chunk {
+                offset: u32::from(at) * CHUNK as u32,
+                bytes: Piece::of(&bytes).expect("of that length"),
+            }
+        });
+        prop_oneof![
+            Just(LoadCommand::Arm),
+            (0..16_u8, any::<[u32; 2]>()).prop_map(|(tip, [length, check])| LoadCommand::Begin {
+                tip,
+                length,
+                check
+            }),
+            chunk,
+            Just(LoadCommand::Verify),
+            any::<u64>().prop_map(|hash| LoadCommand::Activate { hash }),
+            Just(LoadCommand::RollBack),
+            (any::<u32>(), 1..=READ_BACK as u8)
+                .prop_map(|(offset, length)| LoadCommand::ReadBack { offset, length }),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn a_request_survives_the_wire(sequence in any::<u16>(), command in any_command()) {
+            let request = LoadRequest { sequence, command };
+            let encoded = encode(&request);
+            let (_, stuffed) = encoded.split_last().expect("never empty");
+            prop_assert_eq!(decode(stuffed), Ok(request));
+        }
+
+        #[test]
+        fn a_reply_survives_the_wire(
+            numbers in any::<(u64, u16, u16, u32)>(), kind in 0..LoadKind::CODES.len(), outcome in 0..LoadOutcome::CODES.len(),
+            data in prop::collection::vec(any::<u8>(), 0..=READ_BACK),
+        ) {
+            let (time, sequence, findings, offset) = numbers;
+            let time = Microseconds(time);
+            let reply = match Piece::of(&data) {
+                Some(bytes) => LoadReply::Data { time, sequence, offset, bytes },
+                None => LoadReply::Answer {
+                    time, sequence, findings, kind: LoadKind::CODES[kind].0, outcome: LoadOutcome::CODES[outcome].0,
+                },
+            };
+            let frame = Frame { sequence, dropped: findings, message: Message::Load(reply) };
+            let encoded = telemetry::encode(&frame);
+            let (_, stuffed) = encoded.split_last().expect("never empty");
+            prop_assert_eq!(telemetry::decode(stuffed), Ok(frame));
+        }
+
+        #[test]
+        fn no_body_makes_the_reader_panic(mut body in prop::collection::vec(any::<u8>(), 0..80), kind in 0x8F_u8..0x98) {
+            if let Some([a, b]) = body.first_chunk_mut() {
+                *a = PROTOCOL_VERSION;
+                *b = kind;
+            }
+            if let Ok(request) = read_body(&body) {
+                let encoded = encode(&request);
+                let (_, stuffed) = encoded.split_last().expect("never empty");
+                prop_assert_eq!(decode(stuffed), Ok(request));
+            }
+        }
+    }
+}

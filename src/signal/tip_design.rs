@@ -1,0 +1,65 @@
+//! The design of a board that a tip can be loaded onto (feature `load-tip`): the image's own, or a loaded one.
+
+use crate::signal::design::{Design, NoSuchObject, Parameters};
+use crate::signal::loaded_design::LoadedDesign;
+use crate::signal::wall::Memory;
+use crate::signal::zero::surroundings::Surroundings;
+use model_tables::material::relaxation::MAX_TERMS;
+use model_tables::material::series::WallSeries;
+use model_tables::table::Reading;
+use model_tables::table::law::Touched;
+use model_tables::units::PressureRise;
+
+/// A loaded design, or else the one that is folded into the image.
+#[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant)] // one for a board, made once
+pub enum TipDesign<'a, I> {
+    /// The image's own.
+    Image(I),
+    /// That of a block in the flash.
+    Loaded(LoadedDesign<'a>),
+}
+
+impl<I: Design> Design for TipDesign<'_, I> {
+    type Wall = Memory<MAX_TERMS>;
+    type Around = [Surroundings; 1];
+
+    #[inline]
+    fn parameters(&self) -> &Parameters {
+        match self {
+            Self::Image(image) => image.parameters(),
+            Self::Loaded(loaded) => loaded.parameters(),
+        }
+    }
+
+    #[inline]
+    fn series(&self) -> Option<&WallSeries> {
+        match self {
+            Self::Image(image) => image.series(),
+            Self::Loaded(loaded) => loaded.series(),
+        }
+    }
+
+    #[inline]
+    fn lookup(&self, rise: PressureRise) -> Reading {
+        match self {
+            Self::Image(image) => image.lookup(rise),
+            Self::Loaded(loaded) => loaded.lookup(rise),
+        }
+    }
+
+    #[inline]
+    fn last_rise(&self) -> PressureRise {
+        match self {
+            Self::Image(image) => image.last_rise(),
+            Self::Loaded(loaded) => loaded.last_rise(),
+        }
+    }
+
+    fn touch(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
+        match self {
+            Self::Image(image) => image.touch(touched),
+            Self::Loaded(loaded) => loaded.touch(touched),
+        }
+    }
+}
