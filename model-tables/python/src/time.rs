@@ -63,7 +63,7 @@ fn advance(
     };
     let begin = match drive(first) {
         Drive::Indentation(metres) => metres,
-        Drive::Force(newtons) if newtons == 0.0 => 0.0,
+        Drive::Force(0.0) => 0.0,
         Drive::Force(newtons) => {
             return Err(format!(
                 "the first force_n is {newtons}: it has to be the untouched fingertip, with 0"
