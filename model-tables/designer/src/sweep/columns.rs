@@ -41,7 +41,7 @@ enum Kind {
 /// The columns of a sweep.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
-    columns: Vec<(String, Kind)>,
+    fields: Vec<(String, Kind)>,
     schema: TypePtr,
     metadata: Vec<KeyValue>,
 }
@@ -76,7 +76,7 @@ impl Columns {
         let schema = Type::group_type_builder("design").with_fields(fields).build()?;
         let pair = |(key, value): &(&str, &str)| KeyValue::new((*key).to_owned(), (*value).to_owned());
         Ok(Self {
-            columns,
+            fields: columns,
             schema: Arc::new(schema),
             metadata: metadata.iter().map(pair).collect(),
         })
@@ -105,7 +105,7 @@ impl Columns {
                     let optional = (column > 0).then_some(levels.as_slice());
                     writer.write_batch(&found, optional, None)?;
                 }
-                ColumnWriter::DoubleColumnWriter(writer) if self.columns[column].1 == Kind::Numbers => {
+                ColumnWriter::DoubleColumnWriter(writer) if self.fields[column].1 == Kind::Numbers => {
                     let (found, definition, repetition) = lists(values);
                     writer.write_batch(&found, Some(&definition), Some(&repetition))?;
                 }

@@ -1,7 +1,8 @@
 //! One design of a sweep: its row, or how far it came and the line that refuses the rest.
 
 use super::columns::Datum;
-use super::space::{Space, number, plain};
+use super::space::Space;
+use super::vary::{number, plain};
 use model_tables::curve::Contact;
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{Generated, from_design, from_design_or_worse};

@@ -1,6 +1,6 @@
 //! Sweeps: many designs of one space, to Parquet.
 //!
-//! [`space`] (what varies and what is computed) -> [`sample`] (points, each a function of its number; [`sobol`] among
+//! [`space`] (what is computed, and what of a design varies: [`vary`]) -> [`sample`] (points, each a function of its number; [`sobol`] among
 //! them) -> `evaluate` (a design's row, on every core) -> `columns` (rows to Parquet) -> [`folder`] (parts that appear
 //! whole, a manifest, shards).
 //!
@@ -13,6 +13,7 @@ pub mod folder;
 pub mod sample;
 pub mod sobol;
 pub mod space;
+pub mod vary;
 
 use columns::{Columns, Datum};
 use folder::{Folder, Shard};

@@ -2,6 +2,7 @@
 
 use super::sample::{Method, Sample};
 use super::sobol::MOST_DIMENSIONS;
+use super::vary::{Variable, missing, refuse, variables};
 use model_tables::design_file::bounds::Bounds;
 use model_tables::design_file::section::{KeyFault, Section, line_at};
 use model_tables::design_file::{DesignFile, DesignFileError, Problem};
@@ -50,85 +51,6 @@ pub struct Space {
     pub allow_worse: bool,
     /// Designs of a part.
     pub designs_per_part: u64,
-}
-
-/// One key of the design that varies.
-#[derive(Clone, Debug)]
-pub struct Variable {
-    /// The design's key, `membrane.thickness_mm`.
-    pub key: String,
-    values: Values,
-}
-
-#[derive(Clone, Debug)]
-enum Values {
-    Range {
-        from: f64,
-        to: f64,
-        logarithmic: bool,
-        steps: Option<u64>,
-    },
-    List(Vec<Value>),
-}
-
-impl Variable {
-    /// Whether every value is a number.
-    pub fn is_numeric(&self) -> bool {
-        match &self.values {
-            Values::Range { .. } => true,
-            Values::List(values) => values.iter().all(|value| number(value).is_some()),
-        }
-    }
-
-    /// Values of a grid.
-    fn steps(&self) -> u64 {
-        match &self.values {
-            Values::Range { steps, .. } => steps.unwrap_or(1),
-            Values::List(values) => values.len() as u64,
-        }
-    }
-
-    /// The value at a part of the way, 0 to 1; a list's is the one whose share of the way that is.
-    fn at(&self, part: f64) -> Value {
-        match &self.values {
-            Values::List(values) => {
-                let place = (part * values.len() as f64) as usize;
-                values[place.min(values.len() - 1)].clone()
-            }
-            &Values::Range {
-                from,
-                to,
-                logarithmic,
-                ..
-            } => {
-                // Exact at both ends.
-                Value::from(if part <= 0.0 {
-                    from
-                } else if part >= 1.0 {
-                    to
-                } else if logarithmic {
-                    from * libm::pow(to / from, part)
-                } else {
-                    from + (to - from) * part
-                })
-            }
-        }
-    }
-
-    /// The value of a grid's step.
-    fn step(&self, step: u64) -> Value {
-        match &self.values {
-            Values::List(values) => values[step as usize].clone(),
-            Values::Range { .. } => self.at(step as f64 / (self.steps() - 1).max(1) as f64),
-        }
-    }
-}
-
-/// The number that a value is.
-pub fn number(value: &Value) -> Option<f64> {
-    value
-        .as_float()
-        .or_else(|| value.as_integer().map(|whole| whole as f64))
 }
 
 impl Space {
@@ -191,17 +113,7 @@ impl Space {
             self.sample, self.computed, self.curve_states, self.allow_worse, self.designs_per_part
         );
         for variable in &self.variables {
-            let _ = write!(text, "{} ", variable.key);
-            match &variable.values {
-                Values::Range { .. } => {
-                    let _ = write!(text, "{:?}", variable.values);
-                }
-                Values::List(values) => {
-                    for value in values {
-                        let _ = write!(text, "{},", plain(value));
-                    }
-                }
-            }
+            text += &variable.describe();
             text.push('\n');
         }
         let hash = Sha256::digest(text.as_bytes());
@@ -210,11 +122,6 @@ impl Space {
             hex
         })
     }
-}
-
-/// A value without the spaces and comments around it.
-pub fn plain(value: &Value) -> String {
-    value.clone().decorated("", "").to_string()
 }
 
 /// Every key and value of a table, sorted.
@@ -261,25 +168,6 @@ fn read(path: &Path) -> Result<String, DesignFileError> {
         line: None,
         problem: Problem::Unreadable(error.to_string()),
     })
-}
-
-/// A value that is not allowed.
-fn refuse<T>(
-    key: impl Into<String>,
-    found: impl Into<String>,
-    allowed: impl Into<String>,
-) -> Result<T, KeyFault> {
-    let problem = Problem::Value {
-        key: key.into(),
-        found: found.into(),
-        allowed: allowed.into(),
-    };
-    Err((None, problem))
-}
-
-fn missing<T>(key: &str, allowed: &str) -> Result<T, KeyFault> {
-    let (key, allowed) = (key.to_owned(), allowed.to_owned());
-    Err((None, Problem::Missing { key, allowed }))
 }
 
 fn whole(section: &mut Section<'_>, key: &'static str, bounds: Bounds) -> Result<Option<u64>, KeyFault> {
@@ -339,40 +227,20 @@ fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
     } else {
         0
     };
-    let variables = variables(&mut root, &document, method)?;
+    root.needed_sub(
+        "vary",
+        "keys of the design, each with a range or a list of values",
+    )?;
+    let varied = document["vary"].as_table_like();
+    let variables = varied.map_or(Ok(Vec::new()), |table| variables(table, method))?;
     if method == Method::Sobol && variables.len() > MOST_DIMENSIONS {
         return Err(section.refuse(
             "method",
             &format!("another one: sobol has {MOST_DIMENSIONS} keys at most"),
         ));
     }
-    let count = match (method, count) {
-        (Method::Grid, None) => {
-            let all = variables
-                .iter()
-                .try_fold(1_u64, |all, variable| all.checked_mul(variable.steps()))
-                .filter(|&all| all <= MOST_DESIGNS);
-            all.ok_or_else(|| section.refuse("method", "another one: this grid has more than 2^32 designs"))?
-        }
-        (Method::Grid, Some(_)) => {
-            return Err(section.refuse(
-                "count",
-                "left out: a grid has as many designs as its values combine to",
-            ));
-        }
-        (_, Some(count)) => count,
-        (_, None) => return Err(section.missing("count", "a whole number of designs")),
-    };
-    let numbers = NUMBERS_A_ROW + variables.len() as u64 + NUMBERS_A_STATE * curve_states;
-    let most = (MOST_NUMBERS / numbers).max(1);
-    let designs_per_part = match per_part {
-        Some(given) if given > most => {
-            let allowed =
-                format!("at most {most} with so many columns and states, which keeps the memory small");
-            return Err(section.refuse("designs_per_part", &allowed));
-        }
-        given => given.unwrap_or(DESIGNS_PER_PART.min(most)),
-    };
+    let count = designs(&section, method, count, &variables)?;
+    let designs_per_part = part_size(&section, per_part, variables.len() as u64, curve_states)?;
     section.finish()?;
     root.finish()?;
     let sample = Sample {
@@ -392,6 +260,46 @@ fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
     };
     check(&space)?;
     Ok(space)
+}
+
+/// How many designs there are.
+fn designs(
+    section: &Section<'_>,
+    method: Method,
+    count: Option<u64>,
+    variables: &[Variable],
+) -> Result<u64, KeyFault> {
+    match (method, count) {
+        (Method::Grid, None) => {
+            let all = variables
+                .iter()
+                .try_fold(1_u64, |all, variable| all.checked_mul(variable.steps()))
+                .filter(|&all| all <= MOST_DESIGNS);
+            all.ok_or_else(|| section.refuse("method", "another one: this grid has more than 2^32 designs"))
+        }
+        (Method::Grid, Some(_)) => Err(section.refuse(
+            "count",
+            "left out: a grid has as many designs as its values combine to",
+        )),
+        (_, Some(count)) => Ok(count),
+        (_, None) => Err(section.missing("count", "a whole number of designs")),
+    }
+}
+
+/// Designs of a part, so few that its numbers take little memory.
+fn part_size(
+    section: &Section<'_>,
+    asked: Option<u64>,
+    variables: u64,
+    curve_states: u64,
+) -> Result<u64, KeyFault> {
+    let numbers = NUMBERS_A_ROW + variables + NUMBERS_A_STATE * curve_states;
+    let most = (MOST_NUMBERS / numbers).max(1);
+    if asked.is_some_and(|asked| asked > most) {
+        let allowed = format!("at most {most} with so many columns and states, which keeps the memory small");
+        return Err(section.refuse("designs_per_part", &allowed));
+    }
+    Ok(asked.unwrap_or(DESIGNS_PER_PART.min(most)))
 }
 
 /// The base design: a file, from the folder of the sweep's, or inline.
@@ -441,158 +349,6 @@ fn computed(section: &mut Section<'_>) -> Result<Computed, KeyFault> {
         }
     }
     Ok(computed)
-}
-
-fn variables(
-    root: &mut Section<'_>,
-    document: &DocumentMut,
-    method: Method,
-) -> Result<Vec<Variable>, KeyFault> {
-    root.needed_sub(
-        "vary",
-        "keys of the design, each with a range or a list of values",
-    )?;
-    let mut found = Vec::new();
-    if let Some(table) = document["vary"].as_table_like() {
-        gather(table, "", method, &mut found)?;
-    }
-    if found.is_empty() {
-        return missing(
-            "vary",
-            "one key of the design at least, with a range or a list of values",
-        );
-    }
-    for (place, variable) in found.iter().enumerate() {
-        let inside = |other: &Variable| {
-            let (a, b) = (format!("{}.", variable.key), format!("{}.", other.key));
-            a.starts_with(&b) || b.starts_with(&a)
-        };
-        if let Some(other) = found[..place].iter().find(|other| inside(other)) {
-            let allowed = format!("left out, as {} is given, which holds the same key", other.key);
-            return refuse(format!("vary.{}", variable.key), "given", allowed);
-        }
-    }
-    Ok(found)
-}
-
-/// Ranges and lists of a table and of those in it: `membrane.thickness_mm` may stand in quotes or not.
-fn gather(
-    table: &dyn TableLike,
-    above: &str,
-    method: Method,
-    found: &mut Vec<Variable>,
-) -> Result<(), KeyFault> {
-    const ALLOWED: &str = "a list of values, or a range { from, to } with steps or scale";
-    for (name, item) in table.iter() {
-        let key = format!("{above}{name}");
-        let full = format!("vary.{key}");
-        if let Some(list) = item.as_array() {
-            let values: Vec<Value> = list.iter().map(|value| value.clone().decorated("", "")).collect();
-            if values.is_empty() {
-                return refuse(full, "[]", "a list with one value at least");
-            }
-            let values = Values::List(values);
-            found.push(Variable { key, values });
-        } else if let Some(below) = item.as_table_like() {
-            if below.contains_key("from") || below.contains_key("to") {
-                let values = range(below, &full, method)?;
-                found.push(Variable { key, values });
-            } else if below.is_empty() {
-                return refuse(full, "{}", ALLOWED);
-            } else {
-                gather(below, &format!("{key}."), method, found)?;
-            }
-        } else {
-            return refuse(full, item.to_string().trim(), ALLOWED);
-        }
-    }
-    Ok(())
-}
-
-fn range(table: &dyn TableLike, key: &str, method: Method) -> Result<Values, KeyFault> {
-    let known = ["from", "to", "steps", "scale"];
-    if let Some((name, _)) = table.iter().find(|(name, _)| !known.contains(name)) {
-        let (key, allowed) = (format!("{key}.{name}"), known.join(", "));
-        return Err((None, Problem::Unknown { key, allowed }));
-    }
-    let end = |name: &str| -> Result<f64, KeyFault> {
-        let Some(item) = table.get(name) else {
-            return missing(&format!("{key}.{name}"), "the number at this end of the range");
-        };
-        match item
-            .as_value()
-            .and_then(number)
-            .filter(|number| number.is_finite())
-        {
-            Some(number) => Ok(number),
-            None => refuse(
-                format!("{key}.{name}"),
-                item.to_string().trim(),
-                "a finite number",
-            ),
-        }
-    };
-    let (from, to) = (end("from")?, end("to")?);
-    if from >= to {
-        return refuse(
-            format!("{key}.to"),
-            to.to_string(),
-            format!("more than from, {from}"),
-        );
-    }
-    let logarithmic = match table.get("scale") {
-        None => false,
-        Some(item) => match item.as_str() {
-            Some("linear") => false,
-            Some("log") => true,
-            _ => {
-                return refuse(
-                    format!("{key}.scale"),
-                    item.to_string().trim(),
-                    "\"linear\" or \"log\"",
-                );
-            }
-        },
-    };
-    if logarithmic && from <= 0.0 {
-        return refuse(
-            format!("{key}.from"),
-            from.to_string(),
-            "above 0, as scale is \"log\"",
-        );
-    }
-    let steps = match (table.get("steps"), method == Method::Grid) {
-        (None, false) => None,
-        (None, true) => {
-            return missing(
-                &format!("{key}.steps"),
-                "a whole number of values, 2 or more, as the method is \"grid\"",
-            );
-        }
-        (Some(item), false) => {
-            return refuse(
-                format!("{key}.steps"),
-                item.to_string().trim(),
-                "left out: only a grid has steps",
-            );
-        }
-        (Some(item), true) => match item.as_integer().filter(|steps| (2..=1_000_000).contains(steps)) {
-            Some(steps) => Some(steps as u64),
-            None => {
-                return refuse(
-                    format!("{key}.steps"),
-                    item.to_string().trim(),
-                    "a whole number from 2 to 1 000 000",
-                );
-            }
-        },
-    };
-    Ok(Values::Range {
-        from,
-        to,
-        logarithmic,
-        steps,
-    })
 }
 
 /// Refuses what would be refused of every design alike.
