@@ -1,6 +1,5 @@
 //! Rows to Parquet: which columns a sweep has, and a part's bytes.
 
-use super::evaluate::{CURVE, REST, TABLES};
 use super::space::Space;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::column::writer::ColumnWriter;
@@ -11,6 +10,38 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 use std::sync::Arc;
+
+/// Columns of the rest state, as `designer rest` has them.
+pub(super) const REST: [&str; 8] = [
+    "model",
+    "rest_pressure_kpa",
+    "pole_stretch",
+    "equator_radius_mm",
+    "height_mm",
+    "volume_mm3",
+    "max_indentation_mm",
+    "ends_by",
+];
+/// Columns of a curve, lists of the columns of `designer solve`; the last is the worst of the states.
+pub(super) const CURVE: [&str; 6] = [
+    "curve_indentation_mm",
+    "curve_pressure_rise_kpa",
+    "curve_force_n",
+    "curve_contact_radius_mm",
+    "curve_min_tension_n_per_m",
+    "wrinkled",
+];
+/// Columns of the tables, as `designer table` and its certificate state them.
+pub(super) const TABLES: [&str; 8] = [
+    "table_end_pressure_rise_kpa",
+    "table_end_force_n",
+    "table_inputs",
+    "table_bytes",
+    "table_force_error_percent",
+    "table_indentation_error_percent",
+    "model_error_percent",
+    "tables_bin",
+];
 
 /// One value of a row.
 #[derive(Clone, Debug, PartialEq)]

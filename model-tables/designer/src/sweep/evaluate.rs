@@ -1,6 +1,6 @@
 //! One design of a sweep: its row, or how far it came and the line that refuses the rest.
 
-use super::columns::Datum;
+use super::columns::{CURVE, Datum, REST, TABLES};
 use super::space::Space;
 use super::vary::{number, plain};
 use model_tables::curve::Contact;
@@ -66,38 +66,6 @@ pub(super) fn row(space: &Space, design_number: u64) -> (Vec<Datum>, Option<Stri
     }
     (row, refused.map(|(_, reason)| reason))
 }
-
-/// Columns of the rest state, as `designer rest` has them.
-pub(super) const REST: [&str; 8] = [
-    "model",
-    "rest_pressure_kpa",
-    "pole_stretch",
-    "equator_radius_mm",
-    "height_mm",
-    "volume_mm3",
-    "max_indentation_mm",
-    "ends_by",
-];
-/// Columns of a curve, lists of the columns of `designer solve`; the last is the worst of the states.
-pub(super) const CURVE: [&str; 6] = [
-    "curve_indentation_mm",
-    "curve_pressure_rise_kpa",
-    "curve_force_n",
-    "curve_contact_radius_mm",
-    "curve_min_tension_n_per_m",
-    "wrinkled",
-];
-/// Columns of the tables, as `designer table` and its certificate state them.
-pub(super) const TABLES: [&str; 8] = [
-    "table_end_pressure_rise_kpa",
-    "table_end_force_n",
-    "table_inputs",
-    "table_bytes",
-    "table_force_error_percent",
-    "table_indentation_error_percent",
-    "model_error_percent",
-    "tables_bin",
-];
 
 /// What a design came to.
 #[derive(Default)]

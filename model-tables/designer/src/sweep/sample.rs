@@ -11,7 +11,7 @@ const ROUNDS: u64 = 6;
 
 /// How points are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum Sampling {
     /// Every combination of the values.
     Grid,
     /// One point in each of `count` equal strata of every key.
@@ -22,7 +22,7 @@ pub enum Method {
     Random,
 }
 
-impl Method {
+impl Sampling {
     /// The method that a file names.
     pub fn named(name: &str) -> Option<Self> {
         Some(match name {
@@ -37,9 +37,9 @@ impl Method {
 
 /// The points of one sweep.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct SamplePoints {
     /// How they are drawn; a grid has no points in the cube.
-    pub method: Method,
+    pub method: Sampling,
     /// How many.
     pub count: u64,
     /// What chance starts from.
@@ -48,21 +48,21 @@ pub struct Sample {
     pub dimensions: usize,
 }
 
-impl Sample {
+impl SamplePoints {
     /// Coordinate `dimension` of point `number`, in `0 .. 1`.
     pub fn unit(&self, number: u64, dimension: usize) -> f64 {
         let seed = self.seed.unwrap_or(0);
         match self.method {
-            Method::Grid => 0.0,
-            Method::Random => self.chance(seed, number, dimension),
-            Method::LatinHypercube => {
+            Sampling::Grid => 0.0,
+            Sampling::Random => self.chance(seed, number, dimension),
+            Sampling::LatinHypercube => {
                 let key = Random(seed ^ (dimension as u64).wrapping_mul(0xd1b5_4a32_d192_ed03)).bits();
                 let stratum = permuted(number, self.count, key);
                 let within = self.chance(seed ^ 0x5bd1_e995, number, dimension);
                 // Rounding may reach the end of the last stratum, which belongs to no point.
                 ((stratum as f64 + within) / self.count as f64).min(1.0 - f64::EPSILON)
             }
-            Method::Sobol => {
+            Sampling::Sobol => {
                 let shift = self.seed.map_or(0, |seed| self.random(seed, 0, dimension) >> 32);
                 f64::from(sobol::coordinate(number as u32, dimension) ^ shift as u32) / 4_294_967_296.0
             }
@@ -105,8 +105,8 @@ fn permuted(number: u64, count: u64, key: u64) -> u64 {
 mod tests {
     use super::*;
 
-    fn sample(method: Method, count: u64) -> Sample {
-        Sample {
+    fn sample(method: Sampling, count: u64) -> SamplePoints {
+        SamplePoints {
             method,
             count,
             seed: Some(7),
@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn a_latin_hypercube_has_one_point_in_every_stratum() {
         for count in [1, 2, 3, 17, 64, 1000] {
-            let sample = sample(Method::LatinHypercube, count);
+            let sample = sample(Sampling::LatinHypercube, count);
             for dimension in 0..3 {
                 let mut seen = vec![false; count as usize];
                 for number in 0..count {
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn coordinates_are_independent_and_uniform() {
         const COUNT: u64 = 4096;
-        for method in [Method::LatinHypercube, Method::Random, Method::Sobol] {
+        for method in [Sampling::LatinHypercube, Sampling::Random, Sampling::Sobol] {
             let sample = sample(method, COUNT);
             for (a, b) in [(0, 1), (1, 2), (0, 2)] {
                 let (mut mean, mut product) = (0.0, 0.0);
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn random_points_are_the_stream_of_the_seed() {
-        let sample = sample(Method::Random, 10);
+        let sample = sample(Sampling::Random, 10);
         let mut stream = Random(7);
         for number in 0..10 {
             for dimension in 0..3 {

@@ -1,6 +1,6 @@
 //! The file of a sweep: a base design, what varies, and what is computed.
 
-use super::sample::{Method, Sample};
+use super::sample::{SamplePoints, Sampling};
 use super::sobol::MOST_DIMENSIONS;
 use super::vary::{Variable, missing, refuse, variables};
 use model_tables::design_file::bounds::Bounds;
@@ -42,7 +42,7 @@ pub struct Space {
     /// What varies, in the order of the file.
     pub variables: Vec<Variable>,
     /// Its points.
-    pub sample: Sample,
+    pub sample: SamplePoints,
     /// What is computed.
     pub computed: Computed,
     /// States of a curve, equally spaced, the last at `press.max_indentation_mm`.
@@ -67,7 +67,7 @@ impl Space {
 
     /// The values of design `number`, in the order of [`Space::variables`].
     pub fn values(&self, number: u64) -> Vec<Value> {
-        if self.sample.method == Method::Grid {
+        if self.sample.method == Sampling::Grid {
             // The last key changes fastest.
             let mut left = number;
             let mut values: Vec<Value> = self
@@ -190,7 +190,7 @@ fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
     let base = base(&mut root, &document, path)?;
     let mut section = root.needed_sub("sweep", "method, compute")?;
     let method = section.needed_text("method", METHODS)?;
-    let method = Method::named(method).ok_or_else(|| section.refuse("method", METHODS))?;
+    let method = Sampling::named(method).ok_or_else(|| section.refuse("method", METHODS))?;
     let count = whole(
         &mut section,
         "count",
@@ -216,7 +216,11 @@ fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
             "\"curve\"",
         ),
         (allow_worse && !computed.tables, "allow_worse", "\"tables\""),
-        (seed.is_some() && method == Method::Grid, "seed", "another method"),
+        (
+            seed.is_some() && method == Sampling::Grid,
+            "seed",
+            "another method",
+        ),
     ] {
         if given {
             return Err(section.refuse(key, &format!("left out, as it needs {needs} in [sweep]")));
@@ -233,7 +237,7 @@ fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
     )?;
     let varied = document["vary"].as_table_like();
     let variables = varied.map_or(Ok(Vec::new()), |table| variables(table, method))?;
-    if method == Method::Sobol && variables.len() > MOST_DIMENSIONS {
+    if method == Sampling::Sobol && variables.len() > MOST_DIMENSIONS {
         return Err(section.refuse(
             "method",
             &format!("another one: sobol has {MOST_DIMENSIONS} keys at most"),
@@ -243,7 +247,7 @@ fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
     let designs_per_part = part_size(&section, per_part, variables.len() as u64, curve_states)?;
     section.finish()?;
     root.finish()?;
-    let sample = Sample {
+    let sample = SamplePoints {
         method,
         count,
         seed,
@@ -265,19 +269,19 @@ fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
 /// How many designs there are.
 fn designs(
     section: &Section<'_>,
-    method: Method,
+    method: Sampling,
     count: Option<u64>,
     variables: &[Variable],
 ) -> Result<u64, KeyFault> {
     match (method, count) {
-        (Method::Grid, None) => {
+        (Sampling::Grid, None) => {
             let all = variables
                 .iter()
                 .try_fold(1_u64, |all, variable| all.checked_mul(variable.steps()))
                 .filter(|&all| all <= MOST_DESIGNS);
             all.ok_or_else(|| section.refuse("method", "another one: this grid has more than 2^32 designs"))
         }
-        (Method::Grid, Some(_)) => Err(section.refuse(
+        (Sampling::Grid, Some(_)) => Err(section.refuse(
             "count",
             "left out: a grid has as many designs as its values combine to",
         )),

@@ -1,6 +1,6 @@
 //! What varies in a sweep: keys of the design, each with a range or a list of values.
 
-use super::sample::Method;
+use super::sample::Sampling;
 use model_tables::design_file::Problem;
 use model_tables::design_file::section::KeyFault;
 use std::fmt::Write as _;
@@ -126,7 +126,7 @@ pub(super) fn missing<T>(key: &str, allowed: &str) -> Result<T, KeyFault> {
 }
 
 /// The keys of `[vary]`.
-pub(super) fn variables(table: &dyn TableLike, method: Method) -> Result<Vec<Variable>, KeyFault> {
+pub(super) fn variables(table: &dyn TableLike, method: Sampling) -> Result<Vec<Variable>, KeyFault> {
     let mut found = Vec::new();
     gather(table, "", method, &mut found)?;
     if found.is_empty() {
@@ -152,7 +152,7 @@ pub(super) fn variables(table: &dyn TableLike, method: Method) -> Result<Vec<Var
 fn gather(
     table: &dyn TableLike,
     above: &str,
-    method: Method,
+    method: Sampling,
     found: &mut Vec<Variable>,
 ) -> Result<(), KeyFault> {
     const ALLOWED: &str = "a list of values, or a range { from, to } with steps or scale";
@@ -182,7 +182,7 @@ fn gather(
     Ok(())
 }
 
-fn range(table: &dyn TableLike, key: &str, method: Method) -> Result<Values, KeyFault> {
+fn range(table: &dyn TableLike, key: &str, method: Sampling) -> Result<Values, KeyFault> {
     let known = ["from", "to", "steps", "scale"];
     if let Some((name, _)) = table.iter().find(|(name, _)| !known.contains(name)) {
         let (key, allowed) = (format!("{key}.{name}"), known.join(", "));
@@ -234,7 +234,7 @@ fn range(table: &dyn TableLike, key: &str, method: Method) -> Result<Values, Key
             "above 0, as scale is \"log\"",
         );
     }
-    let steps = match (table.get("steps"), method == Method::Grid) {
+    let steps = match (table.get("steps"), method == Sampling::Grid) {
         (None, false) => None,
         (None, true) => {
             return missing(
