@@ -1,7 +1,8 @@
 //! Files that appear whole or not at all, also when the program is interrupted.
 
 use crate::Refusal;
-use std::fs;
+use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -47,6 +48,39 @@ fn remove(partial: &mut Vec<PathBuf>) {
 pub fn write_one(path: &Path, content: Vec<u8>) -> Result<(), Refusal> {
     let (folder, name) = place(path)?;
     write_all(folder, &[(name, content)])
+}
+
+/// Writes one file so that it is there whole or not at all also after the machine loses its power: beside its place, to the
+/// disc, then moved in.
+///
+/// # Errors
+/// [`Refusal`] with the file and the reason; nothing half-written is left.
+pub fn write_durably(path: &Path, content: &[u8]) -> Result<(), Refusal> {
+    let (folder, name) = place(path)?;
+    expect_replaceable(path)?;
+    let temporary = folder.join(format!(".{name}.{}", std::process::id()));
+    PARTIAL
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .push(temporary.clone());
+    let written = File::create(&temporary)
+        .and_then(|mut file| file.write_all(content).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&temporary, path))
+        .and_then(|()| sync_folder(folder))
+        .map_err(|error| cannot(path, &error));
+    remove(&mut PARTIAL.lock().unwrap_or_else(PoisonError::into_inner));
+    written
+}
+
+/// Has the disc know the names of a folder, where the system lets a folder be opened.
+#[cfg(unix)]
+fn sync_folder(folder: &Path) -> std::io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+#[cfg(not(unix))]
+fn sync_folder(_: &Path) -> std::io::Result<()> {
+    Ok(())
 }
 
 /// Refuses a file that could not be written, before the work for it starts.

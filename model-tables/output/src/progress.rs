@@ -40,10 +40,10 @@ impl Progress {
     }
 }
 
-/// How often [`Ticks`] tells.
+/// How often [`Ticks`] tells where nothing else is asked.
 const EVERY: Duration = Duration::from_secs(1);
 
-/// A line each second on standard error, terminal or not, until it is dropped.
+/// A line each second, or as often as asked, on standard error, terminal or not, until it is dropped.
 pub struct Ticks {
     stop: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -52,9 +52,14 @@ pub struct Ticks {
 impl Ticks {
     /// Begins; `tell` gives the line of now.
     pub fn begin(tell: impl Fn() -> String + Send + 'static) -> Self {
+        Self::every(EVERY, tell)
+    }
+
+    /// The same with a line after each `interval`.
+    pub fn every(interval: Duration, tell: impl Fn() -> String + Send + 'static) -> Self {
         let (stop, stopped) = mpsc::channel::<()>();
         let thread = std::thread::spawn(move || {
-            while stopped.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+            while stopped.recv_timeout(interval) == Err(RecvTimeoutError::Timeout) {
                 eprintln!("progress: {}", tell());
             }
         });

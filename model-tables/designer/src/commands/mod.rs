@@ -22,6 +22,7 @@ mod report;
 mod rest;
 mod size;
 mod solve;
+mod sweep;
 mod table;
 mod time_rows;
 mod tip;
@@ -115,6 +116,9 @@ enum Command {
     /// Finds membranes for a wanted force over the indentation
     #[command(after_help = size::HELP)]
     Size(size::Arguments),
+    /// Many designs at once, to Parquet: grids, Latin hypercubes, Sobol sequences; resumable, in shards
+    #[command(after_help = sweep::HELP)]
+    Sweep(sweep::Arguments),
     /// The materials that a design can name, with where their constants come from
     #[command(
         after_help = "Example:\n  cargo designer materials --format json\n\nIn a design: [material] preset = \"ecoflex-00-30\""
@@ -204,6 +208,7 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::Fit(arguments) => fit::run(arguments),
         Command::Calibration(arguments) => calibration::run(arguments),
         Command::Size(arguments) => size::run(arguments),
+        Command::Sweep(arguments) => sweep::run(arguments),
         Command::Materials => Ok(materials::run()),
         Command::Published(arguments) => published::run(arguments),
         Command::Completions { shell } => return completions(*shell),

@@ -1,0 +1,69 @@
+//! What the Python package `fingertip` calls. Designs come in as TOML, numbers go out as bytes that numpy takes as they
+//! are; names, units and dataclasses are in `fingertip/__init__.py`. Every function lets go of Python's lock while it solves.
+#![forbid(unsafe_code)]
+// PyO3 takes arguments by value.
+#![allow(clippy::needless_pass_by_value)]
+
+mod states;
+mod time;
+
+use model_tables::design_file::DesignFile;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+pyo3::create_exception!(
+    _fingertip,
+    FingertipError,
+    pyo3::exceptions::PyException,
+    "What was asked cannot be given."
+);
+pyo3::create_exception!(
+    _fingertip,
+    DesignError,
+    FingertipError,
+    "A design that cannot be: the key, what was found, what is allowed."
+);
+pyo3::create_exception!(
+    _fingertip,
+    ModelError,
+    FingertipError,
+    "No such state: what was asked, and the limit."
+);
+pyo3::create_exception!(
+    _fingertip,
+    TableError,
+    FingertipError,
+    "No such tables, with the numbers."
+);
+
+/// Reads a design; `name` is what its errors call it.
+fn design(text: &str, name: &str) -> PyResult<DesignFile> {
+    DesignFile::parse(text, name).map_err(|error| DesignError::new_err(error.to_string()))
+}
+
+/// A line of an error, with the design's name before it as on the command line.
+fn about(name: &str, reason: impl std::fmt::Display) -> String {
+    format!("{name}: {reason}")
+}
+
+/// Numbers as numpy takes them: native 64-bit floats.
+fn bytes<'py>(python: Python<'py>, numbers: &[f64]) -> Bound<'py, PyBytes> {
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_ne_bytes()).collect();
+    PyBytes::new(python, &bytes)
+}
+
+/// Checks a design; gives its canonical text, every value written out.
+#[pyfunction]
+fn canonical(text: &str, name: &str) -> PyResult<String> {
+    Ok(design(text, name)?.canonical())
+}
+
+#[pymodule]
+mod _fingertip {
+    #[pymodule_export]
+    use super::states::{estimate, rest, solve, table};
+    #[pymodule_export]
+    use super::time::history;
+    #[pymodule_export]
+    use super::{DesignError, FingertipError, ModelError, TableError, canonical};
+}
