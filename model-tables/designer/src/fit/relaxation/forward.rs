@@ -1,7 +1,9 @@
 //! What a wall with a series would have read: quasi-linear, over the settled wall's pressure and force at each indentation.
 //!
-//! `P = P_e + sum g_i h_i` with `h_i` the convolution of `exp(-t / tau_i)` with the changes of `P_e`. The force is half way between the same
-//! convolution of `F_e` and the contact's area times the pressure, `A P` with `A = F_e / P_e`, as on the chip. Both are linear in the weights.
+//! `P = P_e + sum g_i h_i` with `h_i` the convolution of `exp(-t / tau_i)` with the changes of `P_e`. The force is half way between the
+//! same
+//! convolution of `F_e` and the contact's area times the pressure, `A P` with `A = F_e / P_e`, as on the chip. Both are linear in the
+//! weights.
 //! Each reading has a factor beside, by which the solid in time differs from this (`solid`).
 
 use super::error::HoldError;

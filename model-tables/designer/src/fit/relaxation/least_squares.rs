@@ -1,4 +1,6 @@
-//! Times and weights of a given number of terms, by least squares on their logarithms.
+//! Times and weights of a given number of terms, by least squares: the readings are linear in the weights (and in the relaxed modulus),
+//! which
+//! are solved for at each set of times, and the times vary alone (Golub and Pereyra 1973, with Kaufman's slopes, 1975).
 
 use super::forward::{Forward, GROUPS};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
@@ -8,11 +10,13 @@ use nalgebra::{DMatrix, DVector, Dyn};
 /// Step of a logarithm for a slope.
 const STEP: f64 = 1e-4;
 /// Relative tolerances of the sum of squares and of the parameters.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-12;
 /// Evaluations over the number of parameters.
-const PATIENCE: usize = 20;
+const PATIENCE: usize = 30;
 /// Rounds in which noise is taken from what is left.
 const ROUNDS: usize = 3;
+/// Logarithm of a weight that least squares want at zero or below.
+const NONE: f64 = -60.0;
 /// Noise is never below this part of the largest reading: rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -126,50 +130,117 @@ pub(super) fn precision(forward: &Forward, noise: &Noise) -> DVector<f64> {
     )
 }
 
-/// Slopes of the readings by what is varied, over their noise.
-pub(super) fn slopes(forward: &Forward, series: &Series, precision: &DVector<f64>) -> DMatrix<f64> {
-    let varied = series.varied();
+/// Slope of the readings by one of what is varied.
+fn slope(forward: &Forward, series: &Series, which: Varied) -> DVector<f64> {
     let modulus = libm::exp(series.modulus.0);
-    let terms: Vec<[f64; 2]> = series.terms().collect();
-    let columns: Vec<DVector<f64>> = varied
-        .iter()
-        .map(|&which| match which {
-            Varied::Modulus => readings(forward, series),
-            Varied::Weight(i) => {
-                let [time, weight] = terms[i];
-                let term = forward.term(time, series.shift.0) * (modulus * weight);
-                term.component_mul(&forward.factors)
-            }
-            Varied::Time(i) => {
-                let [time, weight] = terms[i];
-                let [later, sooner] =
-                    [STEP, -STEP].map(|step| forward.term(time * libm::exp(step), series.shift.0));
-                let slope = (later - sooner) * (modulus * weight / (2.0 * STEP));
-                slope.component_mul(&forward.factors)
-            }
-            Varied::Shift => {
-                let [more, less] = [STEP, -STEP].map(|step| {
-                    let mut moved = series.clone();
-                    moved.shift.0 += step;
-                    readings(forward, &moved)
-                });
-                (more - less) / (2.0 * STEP)
-            }
-        })
-        .collect();
-    let mut matrix = DMatrix::from_columns(&columns);
-    for mut column in matrix.column_iter_mut() {
-        column.component_mul_assign(precision);
+    let term = |i: usize| {
+        [
+            libm::exp(series.times[i].0),
+            modulus * libm::exp(series.weights[i]),
+        ]
+    };
+    match which {
+        Varied::Modulus => readings(forward, series),
+        Varied::Weight(i) => {
+            let [time, weight] = term(i);
+            (forward.term(time, series.shift.0) * weight).component_mul(&forward.factors)
+        }
+        Varied::Time(i) => {
+            let [time, weight] = term(i);
+            let [later, sooner] =
+                [STEP, -STEP].map(|step| forward.term(time * libm::exp(step), series.shift.0));
+            ((later - sooner) * (weight / (2.0 * STEP))).component_mul(&forward.factors)
+        }
+        Varied::Shift => {
+            let [more, less] = [STEP, -STEP].map(|step| {
+                let mut moved = series.clone();
+                moved.shift.0 += step;
+                readings(forward, &moved)
+            });
+            (more - less) / (2.0 * STEP)
+        }
     }
-    matrix
 }
 
+/// Slopes of the readings by what is varied, over their noise.
+pub(super) fn slopes(forward: &Forward, series: &Series, precision: &DVector<f64>) -> DMatrix<f64> {
+    let of = |which: Varied| slope(forward, series, which).component_mul(precision);
+    DMatrix::from_columns(&series.varied().into_iter().map(of).collect::<Vec<_>>())
+}
+
+/// Times, with the weights that are best for them.
 struct Problem<'a> {
     forward: &'a Forward,
     series: Series,
+    /// Times and shift.
     varied: Vec<Varied>,
     precision: &'a DVector<f64>,
-    readings: DVector<f64>,
+    /// An orthonormal basis of the readings that the weights can give.
+    basis: DMatrix<f64>,
+}
+
+impl<'a> Problem<'a> {
+    fn new(forward: &'a Forward, series: Series, precision: &'a DVector<f64>) -> Self {
+        let mut varied = series.varied();
+        varied.retain(|which| matches!(which, Varied::Time(_) | Varied::Shift));
+        let mut problem = Self {
+            forward,
+            series,
+            varied,
+            precision,
+            basis: DMatrix::zeros(0, 0),
+        };
+        problem.solve();
+        problem
+    }
+
+    /// The weights, and the modulus where it is free.
+    fn solve(&mut self) {
+        let series = &self.series;
+        let mut columns: Vec<DVector<f64>> = series
+            .times
+            .iter()
+            .map(|(time, _)| self.forward.term(libm::exp(*time), series.shift.0))
+            .collect();
+        let mut target = -left(self.forward, &DVector::zeros(self.precision.len()));
+        if series.modulus.1 {
+            columns.push(self.forward.settled.clone());
+        } else {
+            let still = self.forward.settled.component_mul(&self.forward.factors);
+            target -= still * libm::exp(series.modulus.0);
+        }
+        for column in &mut columns {
+            column.component_mul_assign(&self.forward.factors);
+            column.component_mul_assign(self.precision);
+        }
+        target.component_mul_assign(self.precision);
+        let decomposed = DMatrix::from_columns(&columns).qr();
+        self.basis = decomposed.q();
+        let solved = decomposed
+            .r()
+            .solve_upper_triangular(&(self.basis.transpose() * target));
+        let logarithm = |value: f64| {
+            if value > 0.0 {
+                libm::log(value).max(NONE)
+            } else {
+                NONE
+            }
+        };
+        let Some(solved) = solved else {
+            self.series.weights.fill(NONE);
+            return;
+        };
+        let count = self.series.times.len();
+        if self.series.modulus.1 {
+            self.series.modulus.0 = logarithm(solved[count]);
+        }
+        let modulus = libm::exp(self.series.modulus.0);
+        self.series.weights = solved
+            .iter()
+            .take(count)
+            .map(|weight| logarithm(weight / modulus))
+            .collect();
+    }
 }
 
 impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
@@ -182,7 +253,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
             // Logarithms: no exponential overflows.
             self.series.set(which, value.clamp(-60.0, 60.0));
         }
-        self.readings = readings(self.forward, &self.series);
+        self.solve();
     }
 
     fn params(&self) -> DVector<f64> {
@@ -193,11 +264,15 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        Some(left(self.forward, &self.readings).component_mul(self.precision))
+        let readings = readings(self.forward, &self.series);
+        Some(left(self.forward, &readings).component_mul(self.precision))
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        Some(slopes(self.forward, &self.series, self.precision))
+        let of = |&which: &Varied| slope(self.forward, &self.series, which).component_mul(self.precision);
+        let slopes = DMatrix::from_columns(&self.varied.iter().map(of).collect::<Vec<_>>());
+        let within = &self.basis * (self.basis.transpose() * &slopes);
+        Some(slopes - within)
     }
 }
 
@@ -212,19 +287,15 @@ fn minimise(forward: &Forward, start: &Series, noise: &Noise, bounds: [f64; 2]) 
     let precision = precision(forward, noise);
     let mut series = start.clone();
     loop {
-        let problem = Problem {
-            readings: readings(forward, &series),
-            varied: series.varied(),
-            series,
-            forward,
-            precision: &precision,
-        };
-        let (problem, _) = LevenbergMarquardt::new()
-            .with_ftol(TOLERANCE)
-            .with_xtol(TOLERANCE)
-            .with_gtol(0.0)
-            .with_patience(PATIENCE)
-            .minimize(problem);
+        let mut problem = Problem::new(forward, series, &precision);
+        if !problem.varied.is_empty() {
+            (problem, _) = LevenbergMarquardt::new()
+                .with_ftol(TOLERANCE)
+                .with_xtol(TOLERANCE)
+                .with_gtol(0.0)
+                .with_patience(PATIENCE)
+                .minimize(problem);
+        }
         series = problem.series;
         let mut moved = false;
         for (time, held) in &mut series.times {

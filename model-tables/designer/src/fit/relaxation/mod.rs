@@ -1,8 +1,10 @@
 //! Press-and-hold records and a design -> the series of its wall, how sure that is, and what the records cannot tell.
 //!
-//! [`record`] (trials from the untouched tip to the end of a hold) -> `forward` (quasi-linear: the settled wall's pressure and force at each
+//! [`record`] (trials from the untouched tip to the end of a hold) -> `forward` (quasi-linear: the settled wall's pressure and force at
+//! each
 //! indentation, convolved) -> `least_squares` (times and weights of so many terms) -> `search` (how many: by the Bayesian information
-//! criterion) -> `told` (standard errors, depths compared, the relaxed modulus). The reduced model errs by up to 5 % while the plate moves and by
+//! criterion) -> `told` (standard errors, depths compared, the relaxed modulus). The reduced model errs by up to 5 % while the plate
+//! moves and by
 //! 1 % early in a hold; `solid` solves the wall in time with the series found, and what that reads over the reduced model enters the next
 //! round, until the series stays.
 
@@ -42,6 +44,8 @@ const BELOW_SETTLED: f64 = 0.97;
 /// Temperatures of the trials, kelvin apart, from which on the shift is fitted; and its start per kelvin.
 const APART: f64 = 1.0;
 const FIRST_SHIFT: f64 = 0.1;
+/// Sum of the weights below which a wall is elastic: twice the solid's own error in time.
+const RELAXES: f64 = 0.005;
 /// Readings that a fit takes at least.
 const LEAST: usize = 20;
 
@@ -201,7 +205,19 @@ pub fn fit_relaxation(
             *most = most.max((factor - 1.0).abs());
         }
     }
-    Ok(finish(record, &forward, &settled, hold, temperature, difference))
+    if settled.series.terms().map(|[_, weight]| weight).sum::<f64>() < RELAXES {
+        return Err(HoldError::Elastic);
+    }
+    let more = search::next(&forward, &settled, bounds);
+    Ok(finish(
+        record,
+        &forward,
+        &settled,
+        more.as_ref(),
+        hold,
+        temperature,
+        difference,
+    ))
 }
 
 /// Errors of what was found, and what is left.
@@ -209,6 +225,7 @@ fn finish(
     record: &HoldRecord,
     forward: &Forward,
     settled: &Settled,
+    more: Option<&Settled>,
     hold: f64,
     temperature: f64,
     solid: Result<SolidDifference, String>,
@@ -255,7 +272,7 @@ fn finish(
     }
     RelaxationFit {
         series: Relaxation::new(&terms, temperature, series.shift.0.max(0.0)),
-        terms: errors.terms(settled, hold),
+        terms: errors.terms(settled, more, hold),
         modulus: libm::exp(series.modulus.0),
         modulus_error: series.modulus.1.then(|| errors.of_one(Varied::Modulus)),
         open_moduli: told::open_moduli(forward, settled, hold),

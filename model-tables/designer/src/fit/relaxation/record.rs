@@ -4,7 +4,6 @@ use super::error::HoldError;
 use crate::fit::columns::{self, Columns};
 use crate::fit::data::DataChoice;
 use crate::fit::heading::Measured;
-use crate::fit::robust;
 use crate::table_text::{Decimal, Sheet, SheetRow};
 
 const TIME: &str = "time_s";
@@ -15,8 +14,10 @@ const MISSING: [&str; 6] = ["", "nan", "na", "n/a", "-", "--"];
 const LARGEST: f64 = 1e12;
 /// Temperatures that a fingertip stands, degrees Celsius.
 const TEMPERATURES: [f64; 2] = [-60.0, 150.0];
-/// A row is part of the hold from this part of the depth on; it ends when the plate is back by the rest of it.
+/// Rows from this part of the depth on tell the level of the hold.
 const HELD: f64 = 0.98;
+/// The plate is on its way back this part of the depth above the hold: contact may be lost within a hundredth of it.
+const RELEASED: f64 = 5e-4;
 /// Noise of a stage that is more than rounding, over the depth.
 const STILL: f64 = 1e-6;
 /// A hold is so many times as long as its press, at least.
@@ -293,25 +294,32 @@ fn trial(raw: Raw, notes: &mut Vec<String>) -> Result<HoldTrial, HoldError> {
         indentation: 0.0,
         ..rows[0]
     };
-    // The level of the hold, and how still the stage stands there: of the later half of what is as deep.
-    let deep: Vec<&HoldRow> = rows
-        .iter()
-        .filter(|row| row.indentation >= HELD * deepest)
+    // The level of the hold, and how still the stage stands there: over time, as rows of a press or a release may lie close.
+    let deep: Vec<[f64; 2]> = rows
+        .windows(2)
+        .filter(|pair| pair.iter().all(|row| row.indentation >= HELD * deepest))
+        .map(|pair| [pair[0].indentation, pair[1].time - pair[0].time])
         .collect();
-    let middle = 0.5 * (deep[0].time + deep[deep.len() - 1].time);
-    let levels: Vec<f64> = deep
+    if deep.is_empty() {
+        return Err(HoldError::NoHold {
+            title,
+            depth: deepest,
+            pressed: rows[rows.len() - 1].time - rows[0].time,
+            held: 0.0,
+            rows: 1,
+        });
+    }
+    let depth = median_in_time(&deep);
+    let off: Vec<[f64; 2]> = deep
         .iter()
-        .filter(|row| row.time >= middle)
-        .map(|row| row.indentation)
+        .map(|[level, seconds]| [(level - depth).abs(), *seconds])
         .collect();
-    let depth = robust::median(&levels);
-    let off: Vec<f64> = levels.iter().map(|level| (level - depth).abs()).collect();
-    let noise = 1.483 * robust::median(&off);
+    let noise = 1.483 * median_in_time(&off);
     let held_from = rows
         .iter()
         .position(|row| row.indentation >= depth - 3.0 * noise - 1e-9 * depth);
     let held_from = held_from.unwrap_or(rows.len() - 1);
-    let back = (1.0 - HELD).max(5.0 * noise / depth);
+    let back = RELEASED.max(5.0 * noise / depth);
     let end = rows[held_from..]
         .iter()
         .position(|row| row.indentation < (1.0 - back) * depth)
@@ -352,6 +360,19 @@ fn trial(raw: Raw, notes: &mut Vec<String>) -> Result<HoldTrial, HoldError> {
     (trial.rows, trial.held_from) = thinned(&rows, held_from);
     trial.depth = depth;
     Ok(trial)
+}
+
+/// Median of values that each hold for some time; of none 0.
+fn median_in_time(values: &[[f64; 2]]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let half = 0.5 * sorted.iter().map(|[_, seconds]| seconds).sum::<f64>();
+    let mut passed = 0.0;
+    let middle = sorted.iter().find(|[_, seconds]| {
+        passed += seconds;
+        passed >= half
+    });
+    middle.map_or(0.0, |[value, _]| *value)
 }
 
 /// Refuses readings of the untouched tip that are none.

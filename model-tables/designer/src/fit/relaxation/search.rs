@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 /// Trial times in a decade.
 const BY_DECADE: f64 = 3.0;
 /// The best of the trial times that a next term starts from.
-const STARTS: usize = 2;
+const STARTS: usize = 3;
 /// Times closer than this factor are one term.
 const APART: f64 = 1.3;
 /// A weight below this part of the largest is none.
@@ -40,7 +40,7 @@ pub(super) fn search(forward: &Forward, start: Series, bounds: [f64; 2]) -> Sett
 }
 
 /// A series of one term more.
-fn next(forward: &Forward, latest: &Settled, bounds: [f64; 2]) -> Option<Settled> {
+pub(super) fn next(forward: &Forward, latest: &Settled, bounds: [f64; 2]) -> Option<Settled> {
     let count = libm::ceil(BY_DECADE * (bounds[1] - bounds[0]) / core::f64::consts::LN_10).max(1.0);
     let mut starts: Vec<(f64, Series)> = (0..=count as u32)
         .filter_map(|i| {
@@ -60,13 +60,13 @@ fn next(forward: &Forward, latest: &Settled, bounds: [f64; 2]) -> Option<Settled
         .min_by(|a, b| a.criterion.total_cmp(&b.criterion))
 }
 
-/// The latest series with a term at a time, its weights by least squares without a negative one; and the squares that are left.
+/// The latest series with a term at a time, and the squares that are left; `None` where least squares give a term a weight of none.
 fn with(forward: &Forward, latest: &Settled, time: f64) -> Option<(f64, Series)> {
     let precision = least_squares::precision(forward, &latest.noise);
     let mut series = latest.series.clone();
     let modulus = libm::exp(series.modulus.0);
     series.times.push((time, false));
-    let columns: Vec<_> = series
+    let mut columns: Vec<_> = series
         .times
         .iter()
         .map(|(time, _)| {
@@ -74,7 +74,11 @@ fn with(forward: &Forward, latest: &Settled, time: f64) -> Option<(f64, Series)>
             term.component_mul(&forward.factors).component_mul(&precision)
         })
         .collect();
-    let still = forward.settled.component_mul(&forward.factors) * modulus;
+    let mut still = forward.settled.component_mul(&forward.factors) * modulus;
+    if series.modulus.1 {
+        columns.push(still.component_mul(&precision));
+        still.fill(0.0);
+    }
     let target = -least_squares::left(forward, &still).component_mul(&precision);
     let scales: Vec<f64> = columns
         .iter()
@@ -89,16 +93,12 @@ fn with(forward: &Forward, latest: &Settled, time: f64) -> Option<(f64, Series)>
     );
     let weights = non_negative(&matrix, &target)?;
     let left = (&matrix * &weights - target).norm_squared();
-    let largest = weights.amax();
-    if largest <= 0.0 {
+    // Least squares find the weights themselves, from where none is negative.
+    series.weights.push(0.0);
+    let terms = series.times.len();
+    if weights.iter().take(terms).any(|weight| *weight <= 0.0) {
         return None;
     }
-    // A weight of none starts small.
-    let started = weights
-        .iter()
-        .zip(&scales)
-        .map(|(weight, scale)| libm::log(weight.max(1e-4 * largest) / scale));
-    series.weights = started.collect();
     Some((left, series))
 }
 

@@ -1,7 +1,7 @@
 //! What a record tells: errors of the terms, whether depths agree, and how far the relaxed modulus is open.
 
 use super::forward::Forward;
-use super::least_squares::{self, Settled, Varied};
+use super::least_squares::{self, Series, Settled, Varied};
 use super::record::HoldRecord;
 use crate::fit::non_negative::non_negative;
 use nalgebra::{DMatrix, DVector};
@@ -124,12 +124,15 @@ impl Errors {
         libm::sqrt(self.variance(&[which]))
     }
 
-    /// The terms. `hold` is the length of the longest hold, seconds.
-    pub(super) fn terms(&self, settled: &Settled, hold: f64) -> Vec<FittedTerm> {
+    /// The terms. `hold` is the length of the longest hold, seconds. Where a term moves by more than noise as one more is fitted,
+    /// `more`, its
+    /// errors have that move in them.
+    pub(super) fn terms(&self, settled: &Settled, more: Option<&Settled>, hold: f64) -> Vec<FittedTerm> {
         let series = &settled.series;
         let terms = series.terms().enumerate().map(|(i, [time, weight])| {
-            let time_error = (!series.times[i].1).then(|| self.of_one(Varied::Time(i)));
-            let weight_error = self.of_one(Varied::Weight(i));
+            let [moved_time, moved_weight] = more.map_or([0.0; 2], |more| moves(&more.series, time, weight));
+            let time_error = (!series.times[i].1).then(|| widened(self.of_one(Varied::Time(i)), moved_time));
+            let weight_error = widened(self.of_one(Varied::Weight(i)), moved_weight);
             let product = if series.times[i].1 {
                 weight_error
             } else {
@@ -158,6 +161,26 @@ impl Errors {
             }
         });
         terms.collect()
+    }
+}
+
+/// Moves of the logarithms of a term's time and weight to the nearest term of another series.
+fn moves(other: &Series, time: f64, weight: f64) -> [f64; 2] {
+    let off = |a: f64, b: f64| libm::fabs(libm::log(a / b));
+    let nearest = other
+        .terms()
+        .min_by(|a, b| off(a[0], time).total_cmp(&off(b[0], time)));
+    nearest.map_or([0.0; 2], |[other_time, other_weight]| {
+        [off(other_time, time), off(other_weight, weight)]
+    })
+}
+
+/// A standard error and a move that is more than noise.
+fn widened(error: f64, moved: f64) -> f64 {
+    if moved > TWO_SIDED * error {
+        libm::hypot(error, moved)
+    } else {
+        error
     }
 }
 

@@ -17,7 +17,8 @@ fn digits(number: f64) -> String {
 /// What there is to say.
 pub(super) fn findings(file: &DesignFile, record: &HoldRecord, fit: &RelaxationFit) -> Vec<String> {
     let mut lines = vec![format!(
-        "{} terms, by the Bayesian information criterion; intervals are of 95 %, for a wall that is quasi-linear and noise alone",
+        "{} terms, by the Bayesian information criterion; intervals are of 95 %, of noise and of one term more or less, for a \
+         wall that is quasi-linear; the solid's own error in time, 0.3 %, is beside them",
         fit.terms.len()
     )];
     for (misfit, name, unit, factor, noise) in [
@@ -32,7 +33,8 @@ pub(super) fn findings(file: &DesignFile, record: &HoldRecord, fit: &RelaxationF
     ] {
         if let Some(misfit) = misfit {
             lines.push(format!(
-                "{name}: {} {unit} RMS is left, {:.3} % of the largest, {:.3} % at most; noise of a reading {} {unit} pressing, {} {unit} held",
+                "{name}: {} {unit} RMS is left, {:.3} % of the largest, {:.3} % at most; noise of a reading {} {unit} pressing, \
+                 {} {unit} held",
                 digits(factor * misfit.rms),
                 misfit.rms_percent(),
                 misfit.largest_percent(),
