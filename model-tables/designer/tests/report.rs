@@ -245,3 +245,33 @@ fn a_design_without_tables_gives_a_reason_and_no_page() {
     );
     assert!(!folder.join("out").exists());
 }
+
+/// The printed fingertip pressed to 5 N in 1 s at an even speed: an independent finite-element code, with static tables over its own
+/// press, reads
+/// 8.26 N and 2.18 mm at a true 0.566 mm. With a force that grows evenly the wall creeps deeper.
+#[test]
+fn a_page_of_a_wall_that_relaxes_says_what_static_tables_make_of_it() {
+    let folder = scratch("relaxing");
+    let design = folder.join("relaxing.toml");
+    let text = "name = \"relaxing\"\n\
+        [membrane]\nradial_semi_axis_mm = 9\naxial_semi_axis_mm = 7\nthickness_mm = 1\n\
+        [material]\npreset = \"agilus30\"\n[material.relaxation]\npreset = \"agilus30\"\n\
+        [model]\nkind = \"solid\"\nthrough = 1\nalong = 24\n\
+        [press]\nmax_indentation_mm = 2.5\n\
+        [transducer]\nkind = \"ratiometric\"\nrange_kpa = [-10, 900]\nresolution_pa = 100\n\
+        [accuracy]\nforce_percent_of_reading = 1\nindentation_percent_of_reading = 1\nfrom_percent_of_full_scale = 1\n";
+    fs::write(&design, text).expect("the test folder");
+    let text = page(&design, "relaxing-out");
+    let document = parsed(&text);
+    is_complete(&document);
+    let row = row(&document, "1\u{a0}s");
+    // A third of the 14.69 N at 2.5 mm.
+    assert!((value(&row[1], "N") - 4.9).abs() < 0.1, "{row:?}");
+    assert!(
+        (value(&row[3], "%") / (100.0 * (8.26 / 5.0 - 1.0)) - 1.0).abs() < 0.05,
+        "{row:?}"
+    );
+    assert!((value(&row[5], "mm") / 2.18 - 1.0).abs() < 0.02, "{row:?}");
+    assert!((0.566..1.0).contains(&value(&row[4], "mm")), "{row:?}");
+    assert!(!page(&shipped("skin-analogue"), "elastic").contains("Static tables in time"));
+}

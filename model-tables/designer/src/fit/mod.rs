@@ -24,6 +24,7 @@ mod non_negative;
 pub mod parameter;
 mod ready;
 mod record;
+pub mod relaxation;
 mod robust;
 mod search;
 mod solve;

@@ -2,6 +2,7 @@
 
 mod chart;
 mod from_data;
+mod relaxation;
 mod report;
 mod write;
 
@@ -33,11 +34,17 @@ begin with # are comments. Indentation is taken as exact.
 Parameters: material and thickness (factors), pole-stretch, compliance, pressure-gain, pressure-offset,
 indentation-offset. What the data cannot tell apart is held at the design's value, and said.
 
+With --relaxation DATA.csv is a record in time of one or more trials, each from the untouched tip to the end of a hold: time_s,
+indentation_mm, pressure_rise_kpa or force_n or both, and trial and temperature_c where there are several. Press in a second or
+less and hold for a minute or more, to two depths. The answer is [material.relaxation] with the interval of each term, and what
+the record does not tell.
+
 Examples:
   cargo designer fit index-fingertip.toml bench.csv --out calibrated/
   cargo designer fit index-fingertip.toml bench.csv --fit material,compliance,pressure-gain
   cargo designer fit tip.toml bench.csv --from-data --rest-pressure-kpa 0 --out calibrated/
-  cargo designer fit tip.toml bench.csv --columns force_n=Fz,pressure_rise_kpa=3 --only position_mm=50";
+  cargo designer fit tip.toml bench.csv --columns force_n=Fz,pressure_rise_kpa=3 --only position_mm=50
+  cargo designer fit index-fingertip.toml hold.csv --relaxation --out relaxing/";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -55,6 +62,12 @@ pub(super) struct Arguments {
     /// Leave the model out: tables from a monotone curve through the data alone
     #[arg(long, conflicts_with = "parameters")]
     from_data: bool,
+    /// The wall in time from press-and-hold records: time_s, indentation_mm, pressure_rise_kpa or force_n
+    #[arg(long, conflicts_with_all = ["parameters", "from_data", "direction"])]
+    relaxation: bool,
+    /// Fit the relaxed modulus beside the series of --relaxation
+    #[arg(long, requires = "relaxation")]
+    free_modulus: bool,
     /// Let the curve of --from-data run to the origin even if the data begin late
     #[arg(long, requires = "from_data")]
     to_zero: bool,
@@ -115,6 +128,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     files::keep(&arguments.data);
     let bytes = std::fs::read(&arguments.data)
         .map_err(|error| Refusal::about(&arguments.data, &format!("the data cannot be read: {error}")))?;
+    if arguments.relaxation {
+        return relaxation::run(arguments, &file, &bytes, &choice);
+    }
     let name = arguments
         .data
         .file_name()

@@ -4,6 +4,7 @@ use super::super::estimate::refusal;
 use super::super::model::{self, Model};
 use super::super::{bench, read};
 use super::cost::{self, Cost};
+use super::in_time::{self, TimedPress};
 use model_tables::actuator::{Actuator, Blocked};
 use model_tables::design::{Design, RestBy};
 use model_tables::design_file::{Axes, Calibration, DesignFile};
@@ -50,6 +51,8 @@ pub(super) struct Findings {
     pub(super) tables: Result<Generated, &'static str>,
     /// What the tables say of the states.
     pub(super) said: Vec<Said>,
+    /// Presses at several speeds, where the wall relaxes.
+    pub(super) in_time: Vec<TimedPress>,
     pub(super) costs: Vec<Cost>,
     /// The same wall as a solid, where the model is a membrane.
     pub(super) bending: Vec<Bending>,
@@ -119,6 +122,9 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     let said = tables
         .as_ref()
         .map_or_else(|_| Vec::new(), |generated| said(generated, &file, &states));
+    let in_time = tables
+        .as_ref()
+        .map_or_else(|_| Vec::new(), |generated| in_time::presses(&file, generated));
     let costs = cost::costs(&file, kind, &design, deepest);
     progress.set(0.9);
     let bending = if kind == Kind::Membrane {
@@ -139,6 +145,7 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
         meridians,
         tables,
         said,
+        in_time,
         costs,
         bending,
         warnings,
@@ -314,10 +321,13 @@ fn warnings(file: &DesignFile, tip: &mut Fingertip, limit: Limit, deepest: f64) 
                 .to_owned(),
         );
     }
-    lines.push(
+    let left_out = if file.relaxation.is_some() {
+        "Settled and without friction, but for what is named in time: temperature, hysteresis and creep beyond the series of the material \
+         are not in these numbers. Research software, not a medical device."
+    } else {
         "Static and without friction: rate, temperature, hysteresis and creep of the material are not in these numbers. Research \
          software, not a medical device."
-            .to_owned(),
-    );
+    };
+    lines.push(left_out.to_owned());
     lines
 }

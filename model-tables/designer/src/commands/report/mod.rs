@@ -3,6 +3,7 @@
 mod charts;
 mod cost;
 mod findings;
+mod in_time;
 mod inputs;
 mod page;
 mod shapes;

@@ -2,6 +2,7 @@
 
 use super::charts;
 use super::findings::Findings;
+use super::in_time;
 use super::inputs::{Row, inputs, rows};
 use super::shapes;
 use super::words::{KPA, MILLISECONDS, MM, MM3, NEWTON, PERCENT, count};
@@ -29,6 +30,7 @@ pub(super) fn html(found: &Findings, path: &Path) -> String {
             (shapes_section(found))
             (meridians(found))
             (tables(found))
+            @if !found.in_time.is_empty() { (in_time::section(&found.in_time)) }
             (speed(found))
             @if !found.actuator.is_empty() { (actuator(found)) }
         }

@@ -27,6 +27,7 @@ pub(super) const TENSION: Unit = unit(1.0, "N/m");
 pub(super) const STRETCH: Unit = unit(1.0, "mm/mm");
 pub(super) const PERCENT: Unit = unit(1.0, "%");
 pub(super) const DEGREES: Unit = unit(180.0 / core::f64::consts::PI, "\u{b0}");
+pub(super) const SECONDS: Unit = unit(1.0, "s");
 pub(super) const MILLISECONDS: Unit = unit(1e3, "ms");
 
 impl Unit {
