@@ -14,7 +14,7 @@ use fingertip::signal::relaxation::Relaxing;
 use model_tables::design_file::DesignFile;
 use model_tables::generate;
 use model_tables::material::relaxation::{AGILUS30_RELAXATION, MAX_TERMS, Relaxation, Term};
-use model_tables::material::series::SeriesStep;
+use model_tables::material::series::{SeriesStep, WallSeries};
 use model_tables::solid::history::{Drive, History};
 use model_tables::solid::mesh::Elements;
 use model_tables::units::PressureRise;
@@ -204,7 +204,10 @@ fn read_by_the_chip(series: &Relaxation, truth: &[[f64; 4]]) -> [f64; 2] {
     let block = generated.binary();
     let (chip, _) = LoadedDesign::read(&block).expect("it was just written");
     let bits = chip.parameters().pressure_fraction_bits;
-    let step = SeriesStep::over(series, 1e-3);
+    let memory = WallSeries {
+        step: SeriesStep::over(series, 1e-3),
+        ..*chip.series().expect("it relaxes")
+    };
     let mut wall = Relaxing::<MAX_TERMS>::NEW;
     let most = truth.iter().fold([0.0_f64; 2], |most, row| {
         [most[0].max(row[3]), most[1].max(row[1])]
@@ -215,7 +218,7 @@ fn read_by_the_chip(series: &Relaxation, truth: &[[f64; 4]]) -> [f64; 2] {
         let mut reading = None;
         for i in 1..=steps {
             let pascals = pair[0][2] + f64::from(i) / f64::from(steps) * (pair[1][2] - pair[0][2]);
-            reading = Some(wall.step(&chip, &step, PressureRise::from_pascals(pascals, bits)));
+            reading = Some(wall.step(&chip, &memory, PressureRise::from_pascals(pascals, bits)));
         }
         let contact = reading.expect("a step").contact;
         errors[0] = errors[0].max(100.0 * (contact.force.newtons() - pair[1][3]).abs() / most[0]);
