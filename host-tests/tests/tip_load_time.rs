@@ -81,7 +81,7 @@ fn four_kibibytes_are_loaded_in_two_seconds_at_full_telemetry() {
     );
     // A report of 46 bytes each millisecond is the least that went by beside it.
     assert!(said as u64 >= 46 * milliseconds);
-    let memory = ERASURE + WORD * (4096 / 4) as f64;
+    let memory = ERASURE + WORD * 1024.0;
     let total = milliseconds as f64 + memory;
     println!(
         "line: {milliseconds} ms for {} chunks; memory, at most: {memory:.0} ms; together {total:.0} ms",

@@ -30,7 +30,7 @@ impl Listener for Readings {
                         .push(report.outcome.expect("the sweep has no faults"));
                     ControlFlow::Continue(())
                 }
-                Message::Hello(_) | Message::Answer(_) => ControlFlow::Break(()),
+                _ => ControlFlow::Break(()),
             },
             Some(Err(error)) => panic!("a broken frame: {error}"),
             None => ControlFlow::Continue(()),

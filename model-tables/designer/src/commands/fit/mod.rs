@@ -47,6 +47,7 @@ Examples:
   cargo designer fit index-fingertip.toml hold.csv --relaxation --out relaxing/";
 
 #[derive(Debug, clap::Args)]
+#[allow(clippy::struct_excessive_bools)] // each is a switch of the command line
 pub(super) struct Arguments {
     /// The design file
     design: PathBuf,
@@ -62,7 +63,7 @@ pub(super) struct Arguments {
     /// Leave the model out: tables from a monotone curve through the data alone
     #[arg(long, conflicts_with = "parameters")]
     from_data: bool,
-    /// The wall in time from press-and-hold records: time_s, indentation_mm, pressure_rise_kpa or force_n
+    /// The wall in time from press-and-hold records: `time_s`, `indentation_mm`, `pressure_rise_kpa` or `force_n`
     #[arg(long, conflicts_with_all = ["parameters", "from_data", "direction"])]
     relaxation: bool,
     /// Fit the relaxed modulus beside the series of --relaxation

@@ -108,6 +108,20 @@ pub struct RelaxationFit {
     pub hold: f64,
 }
 
+impl SolidDifference {
+    /// The largest of the factors by which the solid differs from the reduced model.
+    fn take(&mut self, forward: &Forward) {
+        for (target, factor) in forward.targets.iter().zip(&forward.factors) {
+            let most = if target.group % 2 == 0 {
+                &mut self.pressing
+            } else {
+                &mut self.held
+            };
+            *most = most.max((factor - 1.0).abs());
+        }
+    }
+}
+
 /// Fits the series; with `free_modulus` the relaxed modulus too.
 ///
 /// # Errors
@@ -196,14 +210,7 @@ pub fn fit_relaxation(
         }
     }
     if let Ok(difference) = &mut difference {
-        for (target, factor) in forward.targets.iter().zip(&forward.factors) {
-            let most = if target.group % 2 == 0 {
-                &mut difference.pressing
-            } else {
-                &mut difference.held
-            };
-            *most = most.max((factor - 1.0).abs());
-        }
+        difference.take(&forward);
     }
     if settled.series.terms().map(|[_, weight]| weight).sum::<f64>() < RELAXES {
         return Err(HoldError::Elastic);

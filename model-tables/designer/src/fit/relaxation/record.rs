@@ -105,128 +105,18 @@ impl HoldRecord {
     /// [`HoldError`] for the first thing that is wrong.
     pub fn read(bytes: &[u8], name: &str, choice: &DataChoice) -> Result<Self, HoldError> {
         let sheet = Sheet::read(bytes).map_err(HoldError::Unreadable)?;
-        let (named, rest): (Vec<_>, Vec<_>) = choice
-            .columns
-            .iter()
-            .cloned()
-            .partition(|(name, _)| name == TIME || name == TEMPERATURE);
-        let of_name = |name: &str| {
-            let given = named.iter().find(|(known, _)| known == name);
-            given.map_or(name, |(_, found)| found.as_str()).to_owned()
-        };
-        let time = columns::place(&sheet, &of_name(TIME))?;
-        let asked = of_name(TEMPERATURE);
-        let given = asked != TEMPERATURE || sheet.header.iter().any(|h| h.eq_ignore_ascii_case(TEMPERATURE));
-        let temperature = given.then(|| columns::place(&sheet, &asked)).transpose()?;
-        let only: Vec<(usize, &str)> = choice
-            .only
-            .iter()
-            .map(|(column, value)| Ok((columns::place(&sheet, column)?, value.as_str())))
-            .collect::<Result<_, HoldError>>()?;
-        let mut used: Vec<usize> = only.iter().map(|(at, _)| *at).collect();
-        used.push(time);
-        used.extend(temperature);
-        let found = Columns::find(&sheet, &rest, &used)?;
-        if found.quantities[Measured::Indentation as usize].is_none() {
-            return Err(HoldError::NoIndentation {
-                found: sheet.header.join(", "),
-            });
-        }
-        let mut places: Vec<usize> = found
-            .quantities
-            .iter()
-            .flatten()
-            .map(|column| column.at)
-            .collect();
-        places.push(time);
-        places.extend(temperature);
-        let numbers = sheet
-            .rows
-            .iter()
-            .flat_map(|row| places.iter().map(|&at| (row.line, row.number_text(at))));
-        let decimal = Decimal::of(numbers).map_err(HoldError::Unreadable)?;
-        let cell = |row: &SheetRow, at: usize, unit: f64| -> Result<Option<f64>, HoldError> {
-            let text = row.number_text(at);
-            if MISSING.contains(&text.to_lowercase().as_str()) {
-                return Ok(None);
-            }
-            match decimal.number(text).map(|number| number * unit) {
-                Some(number) if number.abs() < LARGEST => Ok(Some(number)),
-                _ => Err(HoldError::Cell {
-                    line: row.line,
-                    column: sheet.header[at].clone(),
-                    found: text.to_owned(),
-                    allowed: "a finite number of a bench, or empty".to_owned(),
-                }),
-            }
-        };
+        let places = Places::find(&sheet, choice)?;
+        let decimal = places.decimal(&sheet)?;
         let mut raw: Vec<Raw> = Vec::new();
         let mut incomplete = 0;
         for row in &sheet.rows {
-            if !only.iter().all(|&(at, value)| row.cell(at) == value) {
-                continue;
-            }
-            let of = |quantity: Measured| match found.quantities[quantity as usize] {
-                Some(column) => cell(row, column.at, column.unit),
-                None => Ok(None),
-            };
-            let [indentation, force, rise] = [
-                of(Measured::Indentation)?,
-                of(Measured::Force)?,
-                of(Measured::PressureRise)?,
-            ];
-            let (Some(seconds), Some(indentation)) = (cell(row, time, 1.0)?, indentation) else {
-                incomplete += 1;
-                continue;
-            };
-            if force.is_none() && rise.is_none() {
-                incomplete += 1;
-                continue;
-            }
-            let name = found.trial.map_or("", |at| row.cell(at));
-            let at = raw
-                .iter()
-                .position(|trial| trial.name == name)
-                .unwrap_or_else(|| {
-                    raw.push(Raw {
-                        name: name.to_owned(),
-                        rows: Vec::new(),
-                        temperatures: Vec::new(),
-                    });
-                    raw.len() - 1
-                });
-            if let Some(before) = raw[at].rows.last()
-                && seconds <= before.time
+            if places.only.iter().all(|(at, value)| row.cell(*at) == value)
+                && !places.take(&sheet, row, decimal, &mut raw)?
             {
-                return Err(HoldError::Cell {
-                    line: row.line,
-                    column: TIME.to_owned(),
-                    found: format!("{seconds}"),
-                    allowed: format!("after the {} s of the row before it in its trial", before.time),
-                });
+                incomplete += 1;
             }
-            if let Some(celsius) = temperature.map(|at| cell(row, at, 1.0)).transpose()?.flatten() {
-                let [lowest, highest] = TEMPERATURES;
-                if !(lowest..=highest).contains(&celsius) {
-                    return Err(HoldError::Cell {
-                        line: row.line,
-                        column: TEMPERATURE.to_owned(),
-                        found: format!("{celsius}"),
-                        allowed: format!("from {lowest} to {highest} degrees Celsius"),
-                    });
-                }
-                raw[at].temperatures.push(celsius);
-            }
-            raw[at].rows.push(HoldRow {
-                line: row.line,
-                time: seconds,
-                indentation,
-                rise,
-                force,
-                count: 1.0,
-            });
         }
-        let mut notes: Vec<String> = sheet.notes.iter().chain(&found.notes).cloned().collect();
+        let mut notes: Vec<String> = sheet.notes.iter().chain(&places.found.notes).cloned().collect();
         if decimal == Decimal::Comma {
             notes.push("numbers have decimal commas".to_owned());
         }
@@ -250,6 +140,166 @@ impl HoldRecord {
             notes,
         })
     }
+}
+
+/// Where a sheet has what a record needs.
+struct Places {
+    found: Columns,
+    time: usize,
+    temperature: Option<usize>,
+    /// Columns and the value that a row must have there.
+    only: Vec<(usize, String)>,
+}
+
+impl Places {
+    fn find(sheet: &Sheet, choice: &DataChoice) -> Result<Self, HoldError> {
+        let (named, rest): (Vec<_>, Vec<_>) = choice
+            .columns
+            .iter()
+            .cloned()
+            .partition(|(name, _)| name == TIME || name == TEMPERATURE);
+        let of_name = |name: &str| {
+            let given = named.iter().find(|(known, _)| known == name);
+            given.map_or(name, |(_, found)| found.as_str()).to_owned()
+        };
+        let time = columns::place(sheet, &of_name(TIME))?;
+        let asked = of_name(TEMPERATURE);
+        let given = asked != TEMPERATURE || sheet.header.iter().any(|h| h.eq_ignore_ascii_case(TEMPERATURE));
+        let temperature = given.then(|| columns::place(sheet, &asked)).transpose()?;
+        let only: Vec<(usize, String)> = choice
+            .only
+            .iter()
+            .map(|(column, value)| Ok((columns::place(sheet, column)?, value.clone())))
+            .collect::<Result<_, HoldError>>()?;
+        let mut used: Vec<usize> = only.iter().map(|(at, _)| *at).collect();
+        used.push(time);
+        used.extend(temperature);
+        let found = Columns::find(sheet, &rest, &used)?;
+        if found.quantities[Measured::Indentation as usize].is_none() {
+            return Err(HoldError::NoIndentation {
+                found: sheet.header.join(", "),
+            });
+        }
+        Ok(Self {
+            found,
+            time,
+            temperature,
+            only,
+        })
+    }
+
+    /// How the sheet writes numbers.
+    fn decimal(&self, sheet: &Sheet) -> Result<Decimal, HoldError> {
+        let quantities = self.found.quantities.iter().flatten().map(|column| column.at);
+        let places: Vec<usize> = quantities.chain([self.time]).chain(self.temperature).collect();
+        let numbers = sheet
+            .rows
+            .iter()
+            .flat_map(|row| places.iter().map(|&at| (row.line, row.number_text(at))));
+        Decimal::of(numbers).map_err(HoldError::Unreadable)
+    }
+
+    /// Takes a row to its trial; false where it is incomplete.
+    fn take(
+        &self,
+        sheet: &Sheet,
+        row: &SheetRow,
+        decimal: Decimal,
+        raw: &mut Vec<Raw>,
+    ) -> Result<bool, HoldError> {
+        let cell = |at: usize, unit: f64| -> Result<Option<f64>, HoldError> {
+            let text = row.number_text(at);
+            if MISSING.contains(&text.to_lowercase().as_str()) {
+                return Ok(None);
+            }
+            match decimal.number(text).map(|number| number * unit) {
+                Some(number) if number.abs() < LARGEST => Ok(Some(number)),
+                _ => Err(HoldError::Cell {
+                    line: row.line,
+                    column: sheet.header[at].clone(),
+                    found: text.to_owned(),
+                    allowed: "a finite number of a bench, or empty".to_owned(),
+                }),
+            }
+        };
+        let of = |quantity: Measured| match self.found.quantities[quantity as usize] {
+            Some(column) => cell(column.at, column.unit),
+            None => Ok(None),
+        };
+        let [indentation, force, rise] = [
+            of(Measured::Indentation)?,
+            of(Measured::Force)?,
+            of(Measured::PressureRise)?,
+        ];
+        let (Some(seconds), Some(indentation)) = (cell(self.time, 1.0)?, indentation) else {
+            return Ok(false);
+        };
+        if force.is_none() && rise.is_none() {
+            return Ok(false);
+        }
+        let name = self.found.trial.map_or("", |at| row.cell(at));
+        let at = raw
+            .iter()
+            .position(|trial| trial.name == name)
+            .unwrap_or_else(|| {
+                raw.push(Raw {
+                    name: name.to_owned(),
+                    rows: Vec::new(),
+                    temperatures: Vec::new(),
+                });
+                raw.len() - 1
+            });
+        if let Some(before) = raw[at].rows.last()
+            && seconds <= before.time
+        {
+            return Err(HoldError::Cell {
+                line: row.line,
+                column: TIME.to_owned(),
+                found: format!("{seconds}"),
+                allowed: format!("after the {} s of the row before it in its trial", before.time),
+            });
+        }
+        if let Some(celsius) = self.temperature.map(|at| cell(at, 1.0)).transpose()?.flatten() {
+            let [lowest, highest] = TEMPERATURES;
+            if !(lowest..=highest).contains(&celsius) {
+                return Err(HoldError::Cell {
+                    line: row.line,
+                    column: TEMPERATURE.to_owned(),
+                    found: format!("{celsius}"),
+                    allowed: format!("from {lowest} to {highest} degrees Celsius"),
+                });
+            }
+            raw[at].temperatures.push(celsius);
+        }
+        raw[at].rows.push(HoldRow {
+            line: row.line,
+            time: seconds,
+            indentation,
+            rise,
+            force,
+            count: 1.0,
+        });
+        Ok(true)
+    }
+}
+
+/// The level of the hold, and how still the stage stands there (standard deviation): over time, as rows of a press or a release may
+/// lie close. Nothing where no two rows are deep.
+fn level(rows: &[HoldRow], deepest: f64) -> Option<[f64; 2]> {
+    let deep: Vec<[f64; 2]> = rows
+        .windows(2)
+        .filter(|pair| pair.iter().all(|row| row.indentation >= HELD * deepest))
+        .map(|pair| [pair[0].indentation, pair[1].time - pair[0].time])
+        .collect();
+    if deep.is_empty() {
+        return None;
+    }
+    let depth = median_in_time(&deep);
+    let off: Vec<[f64; 2]> = deep
+        .iter()
+        .map(|[level, seconds]| [(level - depth).abs(), *seconds])
+        .collect();
+    Some([depth, 1.483 * median_in_time(&off)])
 }
 
 /// A trial from its last untouched row to the end of its hold.
@@ -294,13 +344,7 @@ fn trial(raw: Raw, notes: &mut Vec<String>) -> Result<HoldTrial, HoldError> {
         indentation: 0.0,
         ..rows[0]
     };
-    // The level of the hold, and how still the stage stands there: over time, as rows of a press or a release may lie close.
-    let deep: Vec<[f64; 2]> = rows
-        .windows(2)
-        .filter(|pair| pair.iter().all(|row| row.indentation >= HELD * deepest))
-        .map(|pair| [pair[0].indentation, pair[1].time - pair[0].time])
-        .collect();
-    if deep.is_empty() {
+    let Some([depth, noise]) = level(&rows, deepest) else {
         return Err(HoldError::NoHold {
             title,
             depth: deepest,
@@ -308,13 +352,7 @@ fn trial(raw: Raw, notes: &mut Vec<String>) -> Result<HoldTrial, HoldError> {
             held: 0.0,
             rows: 1,
         });
-    }
-    let depth = median_in_time(&deep);
-    let off: Vec<[f64; 2]> = deep
-        .iter()
-        .map(|[level, seconds]| [(level - depth).abs(), *seconds])
-        .collect();
-    let noise = 1.483 * median_in_time(&off);
+    };
     let held_from = rows
         .iter()
         .position(|row| row.indentation >= depth - 3.0 * noise - 1e-9 * depth);
