@@ -180,7 +180,7 @@ fn the_force_holds_on_other_domes_and_walls_also_on_the_release_and_the_next_gra
         ([7.0, 9.0, 1.2], MILD, [0.5, 6.0, 1.0]),
     ] {
         let file = other_dome(dome[0], dome[1], dome[2], MOONEY, series);
-        let relaxation = file.relaxation.clone().expect("it relaxes");
+        let relaxation = file.relaxation.expect("it relaxes");
         let elements = Elements {
             through: 2,
             along: 24,
