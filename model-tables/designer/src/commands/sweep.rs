@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 const COLUMNS: &[&str] = &["designs", "ready_before", "computed", "refused", "parts"];
 
-pub(super) const HELP: &str = "Example:\n  cargo designer sweep model-tables/designs/spaces/domes.toml --out target/domes\n\n\
+pub(super) const HELP: &str = "Example:\n  cargo designer sweep model-tables/spaces/domes.toml --out target/domes\n\n\
                                Killed or stopped, the same command goes on where it was. model-tables/SWEEP.md has the format.";
 
 #[derive(Debug, clap::Args)]

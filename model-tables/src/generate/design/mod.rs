@@ -3,12 +3,13 @@
 mod error;
 mod limit;
 mod share;
+mod unknown;
 
 pub use error::{DesignState, GenerateError};
 pub use limit::AccuracyLimit;
 
-use super::object::{Band, NoObjects, SolvedObjects, TableError, Unknown, plate_of};
-use super::{Certificate, Certified, NoTables, tables_with};
+use super::object::{Band, NoObjects, SolvedObjects, Unknown, plate_of};
+use super::{Certified, NoTables, tables_with};
 use crate::constants::{AirReference, BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design_file::{
@@ -17,7 +18,6 @@ use crate::design_file::{
 };
 use crate::model::own_error::{Comparison, OwnError};
 use crate::model::{Fingertip, Kind};
-use crate::table::law::Touched;
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
@@ -164,7 +164,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
             .ok_or(GenerateError::Objects(NoObjects::Unknown))?;
         object.start = unknown.narrowest(&certified.tables, object);
     }
-    let band = unknown.and_then(|unknown| band(&unknown, &certified));
+    let band = unknown.and_then(|unknown| unknown::band(&unknown, &certified));
     Ok(Generated {
         design,
         transducer,
@@ -177,22 +177,6 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         membrane_error,
         band,
     })
-}
-
-/// The band of what the chip reads to begin with.
-fn band(unknown: &Unknown, certified: &Certified) -> Option<Band> {
-    let Certificate {
-        force, indentation, ..
-    } = &certified.certificate;
-    let error = [(force, 1e-6), (indentation, 1e-9)].map(|(errors, unit)| TableError {
-        percent: errors.of_reading.max.max(errors.below_percent_of_from),
-        from: unit * errors.from,
-    });
-    let tables = &certified.tables;
-    match &certified.object {
-        None => unknown.band(tables, Touched::Plate, error),
-        Some(object) => unknown.band(&object.blended(tables, object.start)?, object.start, error),
-    }
 }
 
 /// Solves a design down to `max_indentation_mm`, as its transducer reads it.

@@ -300,7 +300,7 @@ fn certified(found: &Findings, generated: &Generated) -> Markup {
 
 /// What an object that the chip is not told leaves open.
 fn unknown_object(band: &Band) -> Markup {
-    let range = |[least, most]: [f64; 2]| format!("{least:+.1} to {most:+.1}\u{a0}%");
+    let range = |[least, most]: [f64; 2]| PERCENT.given(&format!("{least:+.1} to {most:+.1}"));
     html! {
         div.wide {
             table {

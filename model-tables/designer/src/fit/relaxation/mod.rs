@@ -10,6 +10,7 @@
 
 mod error;
 mod forward;
+pub mod hold;
 mod least_squares;
 pub mod record;
 mod search;
@@ -159,7 +160,7 @@ pub fn fit_relaxation(
     let hold = record
         .trials
         .iter()
-        .map(record::HoldTrial::hold)
+        .map(hold::HoldTrial::hold)
         .fold(0.0, f64::max);
     let start = Series {
         times: Vec::new(),
@@ -309,7 +310,7 @@ fn curve(file: &DesignFile, record: &HoldRecord) -> Result<Curve, HoldError> {
     tip.curve(deepest).map_err(|error| {
         let deep = record.trials.iter().max_by(|a, b| a.depth.total_cmp(&b.depth));
         HoldError::TooDeep {
-            title: deep.map_or_else(String::new, record::HoldTrial::title),
+            title: deep.map_or_else(String::new, hold::HoldTrial::title),
             depth: deepest,
             reason: error.to_string(),
         }

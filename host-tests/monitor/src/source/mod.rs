@@ -1,8 +1,10 @@
 //! Where reports come from: a board's link, or a log.
 
+pub mod replay;
+
 use crate::link::{Link, LinkEvent};
 use crate::readings::{LiveReading, Monitor};
-use crate::replay::Replay;
+use replay::Replay;
 use std::thread;
 use std::time::Duration;
 
