@@ -51,7 +51,7 @@ struct ObjectArguments {
     /// What the draw depends on
     #[arg(long, default_value_t = 2026)]
     seed: u64,
-    /// A design without [object]
+    /// A design without `[object]`
     #[arg(
         long,
         value_name = "FILE",

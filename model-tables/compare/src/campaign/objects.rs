@@ -1,7 +1,7 @@
 //! Random objects that the chip is not told: does the truth lie in the band that a design states?
 //!
 //! Balls of 5 to 200 mm radius are the product's own solid, at other radii than those that the band is made from: solved at
-//! [`RADII`] radii, between them linear in the curvature. Tilts of 0 to 20 degrees are drawn from the quoted figures. Friction is the
+//! 20 radii, between them linear in the curvature. Tilts of 0 to 20 degrees are drawn from the quoted figures. Friction is the
 //! product's own solid again.
 
 use model_tables::curve::{Contact, Curve};
