@@ -65,7 +65,7 @@ pub(super) fn presses(file: &DesignFile, generated: &Generated) -> Vec<TimedPres
 
 /// Their table.
 pub(super) fn section(presses: &[TimedPress]) -> Markup {
-    let error = |said: f64, truth: f64| PERCENT.given(&plain(100.0 * (said / truth - 1.0), 3));
+    let error = |read: f64, truth: f64| PERCENT.given(&plain(100.0 * (read / truth - 1.0), 3));
     html! {
         section {
             h2 { "In time" }
