@@ -61,7 +61,7 @@ mod tests {
             let pause = if i < 150 { 0 } else { 800 };
             let now = Duration::from_millis(30 * i + pause);
             let one = clock.lateness(10_000 * i, now);
-            if i < 150 || i > 170 {
+            if !(150..=170).contains(&i) {
                 late = late.max(one);
             }
         }
