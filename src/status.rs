@@ -261,6 +261,15 @@ pub enum Touch {
 impl Touch {
     /// Every state with its code in telemetry.
     pub const CODES: [(Self, u8); 3] = [(Self::Unknown, 0), (Self::Untouched, 1), (Self::Touched, 2)];
+
+    /// The state in a word.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Unknown => "unknown",
+            Self::Untouched => "untouched",
+            Self::Touched => "touched",
+        }
+    }
 }
 
 /// Why the chip was reset last.

@@ -306,7 +306,7 @@ impl Watch {
         let mut monitor = Monitor::default();
         let mut output: Option<Writer<RowOutput>> = None;
         let mut connected = false;
-        let mut told_version = None;
+        let mut is_told = false;
         let mut read = true;
         loop {
             // What had arrived when the time was over still counts.
@@ -350,15 +350,15 @@ impl Watch {
             if ended || !read || self.ending.asked() {
                 break;
             }
-            if let Some(version) = monitor.other_version().filter(|_| told_version.is_none()) {
-                told_version = Some(version);
+            if let Some(version) = monitor.other_version().filter(|_| !is_told) {
+                is_told = true;
                 eprintln!(
                     "warning: the board speaks version {version} of the protocol, this monitor version {PROTOCOL_VERSION}"
                 );
             }
         }
         if output.is_none() && read {
-            return Err(match told_version {
+            return Err(match monitor.other_version() {
                 Some(version) => format!(
                     "{} speaks version {version} of the protocol, this monitor version {PROTOCOL_VERSION}; take the monitor of the \
                      board's firmware",

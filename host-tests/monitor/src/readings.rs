@@ -286,7 +286,7 @@ impl Monitor {
             if time < last.time {
                 // Another run of the board.
                 self.history.clear();
-            } else if time - last.time > self.longest_period() {
+            } else if time - last.time > self.stale().as_secs_f64() {
                 // Nothing is known of a silence.
                 self.gap();
             } else if time - last.time < STEP && last.values.is_some() == values.is_some() {
@@ -317,11 +317,6 @@ impl Monitor {
         {
             self.history.pop_front();
         }
-    }
-
-    /// Seconds after which a report is missing.
-    fn longest_period(&self) -> f64 {
-        self.stale().as_secs_f64()
     }
 
     fn note(&mut self, line: String) {
@@ -376,6 +371,7 @@ impl Monitor {
         self.peak_force_n = None;
     }
 
+    /// How long after a report the next one is missing.
     fn stale(&self) -> Duration {
         let period = self.hello.map_or(0, |hello| hello.report_period);
         STALE.max(MISSED * Duration::from_micros(period.into()))

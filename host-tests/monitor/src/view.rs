@@ -227,11 +227,7 @@ fn readings(monitor: &Monitor, width: u16, now: Duration) -> Vec<Line<'static>> 
         };
         Line::from(vec![Span::raw(format!(" {name:<13} ")), Span::styled(text, bold)])
     };
-    let touch = match latest.map(|reading| reading.touch) {
-        None | Some(Touch::Unknown) => "unknown",
-        Some(Touch::Untouched) => "untouched",
-        Some(Touch::Touched) => "touched",
-    };
+    let touch = latest.map_or(Touch::Unknown, |reading| reading.touch).word();
     let peak = match monitor.peak_force_n() {
         Some(peak) if wide => format!("{peak:>10.4} N    largest that was ok; k forgets it"),
         Some(peak) => format!("{peak:>10.4} N"),

@@ -3,12 +3,16 @@
 //! Coverage over more repeats than a test has time for: `FIT_REPEATS=200 cargo test --release -p designer --test fit
 //! standard_errors -- --nocapture`.
 
+mod noise;
+
 use designer::fit::data::{Data, DataChoice};
 use designer::fit::parameter::Parameter;
 use designer::fit::{self, Fit, FitError, Held};
 use model_tables::design_file::DesignFile;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::press::Press;
+use model_tables::random::Random;
+use noise::deviate;
 use std::fmt::Write as _;
 
 const DESIGN: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/commands/stand-in.toml"));
@@ -16,24 +20,6 @@ const DESIGN: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/comm
 /// What the device really is.
 const TRUTH: &str =
     "\n[calibration]\nmaterial_factor = 1.3\npole_stretch = 1.05\ncompliance_mm3_per_kpa = 0.8\n";
-
-/// `SplitMix64`, and normal deviates from it (Box and Muller).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.unit()).cos()
-    }
-}
 
 fn design(extra: &str) -> DesignFile {
     DesignFile::parse(&format!("{DESIGN}{extra}"), "design.toml").expect("a design")
@@ -59,8 +45,8 @@ fn depths(count: usize) -> Vec<f64> {
 fn bench(rows: &[[f64; 3]], noise: f64, random: &mut Random) -> String {
     let mut text = String::from("indentation_mm,force_n,pressure_rise_kpa\n");
     for [depth, force, rise] in rows {
-        let force = force * (1.0 + noise * random.normal());
-        let rise = rise * (1.0 + noise * random.normal());
+        let force = force * (1.0 + noise * deviate(random));
+        let rise = rise * (1.0 + noise * deviate(random));
         let _ = writeln!(text, "{depth},{force},{rise}");
     }
     text

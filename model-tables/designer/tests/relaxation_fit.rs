@@ -3,6 +3,7 @@
 //! Coverage over more records than a test has time for: `FIT_REPEATS=200 cargo test --release -p designer --test relaxation_fit
 //! intervals -- --nocapture`.
 
+mod noise;
 mod program;
 
 use designer::fit::data::DataChoice;
@@ -15,9 +16,11 @@ use model_tables::design_file::DesignFile;
 use model_tables::generate;
 use model_tables::material::relaxation::{AGILUS30_RELAXATION, MAX_TERMS, Relaxation, Term};
 use model_tables::material::series::{SeriesStep, WallSeries};
+use model_tables::random::Random;
 use model_tables::solid::history::{Drive, History};
 use model_tables::solid::mesh::Elements;
 use model_tables::units::PressureRise;
+use noise::deviate;
 use program::refusal;
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -47,24 +50,6 @@ fn silicone() -> Relaxation {
 
 fn design() -> DesignFile {
     DesignFile::parse(PRINTED, "printed.toml").expect("a design")
-}
-
-/// `SplitMix64`, and normal deviates from it (Box and Muller).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.unit()).cos()
-    }
 }
 
 /// Instants of a press in half a second and a hold: seconds and millimetres. Rows lie 10 ms apart, and in the hold ever farther.
@@ -106,7 +91,7 @@ const HEADER: &str = "trial,time_s,indentation_mm,pressure_rise_pa\n";
 fn read(trial: &str, truth: &[[f64; 4]], random: &mut Random) -> String {
     let mut text = String::new();
     for [seconds, millimetres, pascals, _] in truth {
-        let pascals = pascals + NOISE * random.normal();
+        let pascals = pascals + NOISE * deviate(random);
         writeln!(text, "{trial},{seconds},{millimetres},{pascals}").expect("a string");
     }
     text

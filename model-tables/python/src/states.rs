@@ -3,6 +3,7 @@
 use crate::{ModelError, TableError, about, bytes, design};
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{Generated, from_design, from_design_or_worse};
+use model_tables::membrane::state::Wrinkling;
 use model_tables::model::{self, Fingertip};
 use model_tables::units::PressureRise;
 use pyo3::prelude::*;
@@ -73,38 +74,16 @@ fn solve_states(
         } else {
             calibration.indentation_of(read).max(0.0)
         };
-        let (rise, force, radius, stretch, tension) = match &mut tip {
-            Fingertip::Membrane(press) => {
-                let state = press.at_indentation(depth)?;
-                words[place] = state.shape.wrinkling.word();
-                let (stretch, tension) = (state.shape.pole_stretch, state.shape.least_tension());
-                (
-                    state.pressure_rise,
-                    state.force,
-                    state.contact_radius,
-                    stretch,
-                    tension,
-                )
-            }
-            Fingertip::Solid(press) => {
-                let state = press.at_indentation(depth)?;
-                (
-                    state.pressure_rise,
-                    state.force,
-                    state.contact_radius,
-                    state.pole_stretch,
-                    f64::NAN,
-                )
-            }
-        };
+        let state = tip.at_indentation(depth)?;
+        words[place] = state.wrinkling.map_or("", Wrinkling::word);
         let row = [
             asked[place],
-            calibration.pressure_read(tip.rest_pressure() + rise) * 1e-3,
-            calibration.pressure_read(rise) * 1e-3,
-            force,
-            radius * 1e3,
-            stretch,
-            tension,
+            calibration.pressure_read(tip.rest_pressure() + state.pressure_rise) * 1e-3,
+            calibration.pressure_read(state.pressure_rise) * 1e-3,
+            state.force,
+            state.contact_radius * 1e3,
+            state.pole_stretch,
+            state.least_tension.unwrap_or(f64::NAN),
         ];
         for (column, value) in row.into_iter().enumerate() {
             columns[column * count + place] = value;

@@ -1,9 +1,9 @@
 //! A press in time.
 
 use crate::{DesignError, ModelError, about, bytes, design};
-use model_tables::design_file::{DesignFile, ModelSection};
+use model_tables::design_file::DesignFile;
 use model_tables::material::relaxation::Relaxation;
-use model_tables::model::choice::FINE;
+use model_tables::model::choice::elements_in_time;
 use model_tables::solid::history::{Drive, History};
 use model_tables::solid::mesh::Elements;
 use pyo3::prelude::*;
@@ -23,20 +23,13 @@ pub(crate) fn history<'py>(
     by_force: bool,
 ) -> PyResult<(Bound<'py, PyBytes>, Vec<bool>)> {
     let design = design(text, name)?;
-    let elements = match design.model {
-        ModelSection::Membrane => {
-            return Err(DesignError::new_err(about(
-                name,
-                "a press in time needs a wall that bends, model.kind is \"membrane\": set it to \"solid\" or \"auto\", with \
-                 the semi-axes of the outer surface and no [rest]",
-            )));
-        }
-        ModelSection::Auto => FINE,
-        ModelSection::Solid { through, along } => Elements {
-            through: through as usize,
-            along: along as usize,
-        },
-    };
+    let elements = elements_in_time(design.model).ok_or_else(|| {
+        DesignError::new_err(about(
+            name,
+            "a press in time needs a wall that bends, model.kind is \"membrane\": set it to \"solid\" or \"auto\", with \
+             the semi-axes of the outer surface and no [rest]",
+        ))
+    })?;
     let (columns, contact) = python
         .detach(|| advance(&design, elements, &time_s, &driven, by_force))
         .map_err(|reason| ModelError::new_err(about(name, reason)))?;

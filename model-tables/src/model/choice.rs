@@ -12,7 +12,7 @@
 use super::{Fingertip, Kind, ModelError};
 use crate::curve::Contact;
 use crate::design::Design;
-use crate::design_file::{DEFAULT_ELEMENTS, DesignFile};
+use crate::design_file::{DEFAULT_ELEMENTS, DesignFile, ModelSection};
 use crate::solid;
 use crate::solid::SolidError;
 use crate::solid::mesh::Elements;
@@ -30,6 +30,19 @@ pub const FINE: Elements = Elements {
     through: DEFAULT_ELEMENTS[0] as usize,
     along: DEFAULT_ELEMENTS[1] as usize,
 };
+
+/// The elements of a wall in time: a design's own, or with `auto` [`FINE`]; `None` of a membrane, which has no press in time.
+pub const fn elements_in_time(model: ModelSection) -> Option<Elements> {
+    match model {
+        ModelSection::Membrane => None,
+        ModelSection::Auto => Some(FINE),
+        ModelSection::Solid { through, along } => Some(Elements {
+            through: through as usize,
+            along: along as usize,
+        }),
+    }
+}
+
 /// What the other rungs are measured against.
 pub const REFINED: Elements = Elements {
     through: 3,

@@ -2,6 +2,7 @@
 
 use super::{Fingertip, ModelError};
 use crate::membrane::Zone;
+use crate::membrane::state::Wrinkling;
 
 /// A state of rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,12 @@ pub struct Pressed {
     pub force: f64,
     /// Deformed radius of the contact, metres.
     pub contact_radius: f64,
+    /// Stretch of the pole, of the middle of the wall.
+    pub pole_stretch: f64,
+    /// Smallest tension, newtons per metre; nothing of a solid, whose wall may push.
+    pub least_tension: Option<f64>,
+    /// The worst zone; nothing of a solid.
+    pub wrinkling: Option<Wrinkling>,
 }
 
 /// A point of the meridian, in the middle of the wall.
@@ -84,21 +91,31 @@ impl Fingertip {
     /// # Errors
     /// [`ModelError`], as the model's own.
     pub fn at_indentation(&mut self, indentation: f64) -> Result<Pressed, ModelError> {
-        let (pressure_rise, force, contact_radius) = match self {
+        Ok(match self {
             Self::Membrane(press) => {
                 let state = press.at_indentation(indentation)?;
-                (state.pressure_rise, state.force, state.contact_radius)
+                Pressed {
+                    indentation,
+                    pressure_rise: state.pressure_rise,
+                    force: state.force,
+                    contact_radius: state.contact_radius,
+                    pole_stretch: state.shape.pole_stretch,
+                    least_tension: Some(state.shape.least_tension()),
+                    wrinkling: Some(state.shape.wrinkling),
+                }
             }
             Self::Solid(press) => {
                 let state = press.at_indentation(indentation)?;
-                (state.pressure_rise, state.force, state.contact_radius)
+                Pressed {
+                    indentation,
+                    pressure_rise: state.pressure_rise,
+                    force: state.force,
+                    contact_radius: state.contact_radius,
+                    pole_stretch: state.pole_stretch,
+                    least_tension: None,
+                    wrinkling: None,
+                }
             }
-        };
-        Ok(Pressed {
-            indentation,
-            pressure_rise,
-            force,
-            contact_radius,
         })
     }
 

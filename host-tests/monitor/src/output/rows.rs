@@ -2,7 +2,6 @@
 
 use crate::output::whole::WholeRows;
 use crate::readings::LiveReading;
-use fingertip::status::Touch;
 use serde_json::{Map, Value};
 use std::io;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -50,14 +49,6 @@ fn values(reading: &LiveReading) -> [Option<f64>; 6] {
     })
 }
 
-fn touch(reading: &LiveReading) -> &'static str {
-    match reading.touch {
-        Touch::Unknown => "unknown",
-        Touch::Untouched => "untouched",
-        Touch::Touched => "touched",
-    }
-}
-
 /// When a report was measured, since 1970, of a watch that began then.
 pub(crate) fn host_time(reading: &LiveReading, began: SystemTime) -> Duration {
     (began + reading.measured)
@@ -70,7 +61,7 @@ pub(crate) fn object(reading: &LiveReading, began: SystemTime) -> Value {
     let mut cells: Vec<Value> = vec![
         (reading.time.0 as f64 * 1e-3).into(),
         reading.status.to_string().into(),
-        touch(reading).into(),
+        reading.touch.word().into(),
     ];
     cells.extend(values(reading).map(Value::from));
     cells.push(host_time(reading, began).as_secs_f64().into());
@@ -103,7 +94,7 @@ impl<W: WholeRows> Writer<W> {
                 let mut cells = vec![
                     format!("{time:.3}"),
                     reading.status.to_string(),
-                    touch(reading).to_owned(),
+                    reading.touch.word().to_owned(),
                 ];
                 cells.extend(
                     values(reading)
@@ -137,7 +128,7 @@ fn line(cells: &[String]) -> io::Result<Vec<u8>> {
 mod tests {
     use super::*;
     use crate::readings::LiveValues;
-    use fingertip::status::{Fault, Status, Warnings};
+    use fingertip::status::{Fault, Status, Touch, Warnings};
     use fingertip::units::Microseconds;
 
     fn reading(status: Status) -> LiveReading {

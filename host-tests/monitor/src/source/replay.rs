@@ -92,12 +92,11 @@ fn read<'a>(cell: &impl Fn(usize) -> &'a str) -> Result<LiveReading, String> {
             .ok_or_else(|| format!("{time} is no time_ms"))
     })?;
     let status = status(cell(1)).ok_or_else(|| format!("`{}` is no status", cell(1)))?;
-    let touch = match cell(2) {
-        "unknown" => Touch::Unknown,
-        "untouched" => Touch::Untouched,
-        "touched" => Touch::Touched,
-        other => return Err(format!("`{other}` is no touch")),
-    };
+    let touch = Touch::CODES
+        .iter()
+        .map(|(touch, _)| *touch)
+        .find(|touch| touch.word() == cell(2))
+        .ok_or_else(|| format!("`{}` is no touch", cell(2)))?;
     let values = if matches!(status, Status::Fault(_)) {
         None
     } else {

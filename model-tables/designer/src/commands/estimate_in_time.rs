@@ -35,11 +35,10 @@ pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<Comm
     let block = generated.binary();
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;
-    let chip = design.series().map(|wall| wall.step);
     let period = f64::from(design.parameters().period) * 1e-6;
     let mut wall = relaxation
-        .zip(chip)
-        .map(|(series, whole)| History::new(series, whole, period));
+        .zip(design.series())
+        .map(|(series, whole)| History::new(series, *whole, period));
     let mut rows = Rows::new(COLUMNS);
     let mut before: Option<TimeRow> = None;
     for row in &read.rows {
@@ -74,13 +73,13 @@ struct History {
     period: f64,
     state: Relaxing<MAX_TERMS>,
     /// A whole period at the temperature of the latest step.
-    whole: SeriesStep,
+    whole: WallSeries,
     temperature: f64,
 }
 
 impl History {
     /// `whole` is a period at the series' own temperature: the chip's.
-    fn new(series: Relaxation, whole: SeriesStep, period: f64) -> Self {
+    fn new(series: Relaxation, whole: WallSeries, period: f64) -> Self {
         Self {
             whole,
             temperature: series.temperature,
@@ -91,14 +90,17 @@ impl History {
     }
 
     /// A step of so many seconds at a temperature.
-    fn step(&mut self, seconds: f64, temperature: f64) -> SeriesStep {
+    fn step(&mut self, seconds: f64, temperature: f64) -> WallSeries {
         let moved = (temperature - self.temperature).abs() > 0.0;
         if moved {
-            self.whole = SeriesStep::over(&self.series.at(temperature), self.period);
+            self.whole.step = SeriesStep::over(&self.series.at(temperature), self.period);
             self.temperature = temperature;
         }
         if seconds < self.period {
-            SeriesStep::over(&self.series.at(temperature), seconds)
+            WallSeries {
+                step: SeriesStep::over(&self.series.at(temperature), seconds),
+                ..self.whole
+            }
         } else {
             self.whole
         }
@@ -134,10 +136,7 @@ impl History {
             };
             let temperature = temperatures[0] + part * (temperatures[1] - temperatures[0]);
             let pascals = unit * (from.value + part * (row.value - from.value));
-            let wall = WallSeries {
-                step: self.step(seconds, temperature),
-                ..design.series().copied().unwrap_or_default()
-            };
+            let wall = self.step(seconds, temperature);
             reading = self
                 .state
                 .step(design, &wall, PressureRise::from_pascals(pascals, bits));

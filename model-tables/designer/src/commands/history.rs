@@ -4,7 +4,7 @@ use super::time_rows::{self, TimeRow, TimeRows};
 use super::{read, warn};
 use model_tables::design_file::{DesignFile, ModelSection};
 use model_tables::material::relaxation::Relaxation;
-use model_tables::model::choice::FINE;
+use model_tables::model::choice::elements_in_time;
 use model_tables::solid::history::{Drive, History};
 use model_tables::solid::mesh::Elements;
 use output::progress::Progress;
@@ -35,18 +35,13 @@ pub(super) struct Arguments {
 
 /// The elements of a wall in time: a design's own, or those that are enough for a few tenths of a percent.
 fn elements(file: &Path, design: &DesignFile) -> Result<Elements, Refusal> {
-    match design.model {
-        ModelSection::Membrane => Err(Refusal::about(
+    elements_in_time(design.model).ok_or_else(|| {
+        Refusal::about(
             file,
             &"a press in time needs a wall that bends, model.kind is \"membrane\": set it to \"solid\" or \"auto\", with the \
               semi-axes of the outer surface and no [rest]",
-        )),
-        ModelSection::Auto => Ok(FINE),
-        ModelSection::Solid { through, along } => Ok(Elements {
-            through: through as usize,
-            along: along as usize,
-        }),
-    }
+        )
+    })
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {

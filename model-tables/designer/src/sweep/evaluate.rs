@@ -3,7 +3,6 @@
 use super::columns::{CURVE, Datum, REST, TABLES};
 use super::space::Space;
 use super::vary::{number, plain};
-use model_tables::curve::Contact;
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{Generated, from_design, from_design_or_worse};
 use model_tables::membrane::state::Wrinkling;
@@ -130,43 +129,13 @@ fn curve(space: &Space, design: &DesignFile, tip: &mut Fingertip) -> Result<Vec<
             deepest * state as f64 / states as f64
         };
         let depth = calibration.indentation_of(asked / 1e3).max(0.0);
-        let (contact, radius, tension) = match tip {
-            Fingertip::Membrane(press) => {
-                let state = press
-                    .at_indentation(depth)
-                    .map_err(|error| refuse(error.into()))?;
-                let shape = &state.shape;
-                worst = worst.max(Some(shape.wrinkling));
-                (
-                    Contact {
-                        indentation: depth,
-                        pressure_rise: state.pressure_rise,
-                        force: state.force,
-                    },
-                    state.contact_radius,
-                    Some(shape.least_tension()),
-                )
-            }
-            Fingertip::Solid(press) => {
-                let state = press
-                    .at_indentation(depth)
-                    .map_err(|error| refuse(error.into()))?;
-                (
-                    Contact {
-                        indentation: depth,
-                        pressure_rise: state.pressure_rise,
-                        force: state.force,
-                    },
-                    state.contact_radius,
-                    None,
-                )
-            }
-        };
+        let state = tip.at_indentation(depth).map_err(refuse)?;
+        worst = worst.max(state.wrinkling);
         lists[0].push(asked);
-        lists[1].push(calibration.pressure_read(contact.pressure_rise) * 1e-3);
-        lists[2].push(contact.force);
-        lists[3].push(radius * 1e3);
-        lists[4].extend(tension);
+        lists[1].push(calibration.pressure_read(state.pressure_rise) * 1e-3);
+        lists[2].push(state.force);
+        lists[3].push(state.contact_radius * 1e3);
+        lists[4].extend(state.least_tension);
     }
     let is_membrane = worst.is_some();
     let mut columns: Vec<Datum> = lists.into_iter().map(Datum::Numbers).collect();

@@ -63,22 +63,24 @@ impl SamplePoints {
                 ((stratum as f64 + within) / self.count as f64).min(1.0 - f64::EPSILON)
             }
             Sampling::Sobol => {
-                let shift = self.seed.map_or(0, |seed| self.random(seed, 0, dimension) >> 32);
+                let shift = self
+                    .seed
+                    .map_or(0, |seed| self.random(seed, 0, dimension).bits() >> 32);
                 f64::from(sobol::coordinate(number as u32, dimension) ^ shift as u32) / 4_294_967_296.0
             }
         }
     }
 
     fn chance(&self, seed: u64, number: u64, dimension: usize) -> f64 {
-        (self.random(seed, number, dimension) >> 11) as f64 / (1_u64 << 53) as f64
+        self.random(seed, number, dimension).unit()
     }
 
-    /// The number of the seed's stream at a place of its own for each point and coordinate.
-    fn random(&self, seed: u64, number: u64, dimension: usize) -> u64 {
+    /// The seed's stream at a place of its own for each point and coordinate.
+    fn random(&self, seed: u64, number: u64, dimension: usize) -> Random {
         let place = number
             .wrapping_mul(self.dimensions as u64)
             .wrapping_add(dimension as u64);
-        Random(seed.wrapping_add(place.wrapping_mul(INCREMENT))).bits()
+        Random(seed.wrapping_add(place.wrapping_mul(INCREMENT)))
     }
 }
 

@@ -17,7 +17,7 @@ pub(super) fn half_borne_by_the_fluid(
     solved: Option<&Fingertip>,
     end: Contact,
 ) -> Result<f64, GenerateError> {
-    let mut rung = match solved {
+    let mut tip = match solved {
         Some(solved) => solved.clone(),
         None => Fingertip::for_curve(design).map_err(GenerateError::Model)?,
     };
@@ -26,7 +26,7 @@ pub(super) fn half_borne_by_the_fluid(
     let mut nearest = (f64::INFINITY, end.pressure_rise);
     for k in 1..=SHARED_STATES {
         let indentation = end.indentation * f64::from(k) / f64::from(SHARED_STATES);
-        let state = rung.at_indentation(indentation).map_err(GenerateError::Model)?;
+        let state = tip.at_indentation(indentation).map_err(GenerateError::Model)?;
         let area = std::f64::consts::PI * state.contact_radius * state.contact_radius;
         let share = state.pressure_rise * area / state.force;
         if !(share > 0.0 && share < 1.0) {

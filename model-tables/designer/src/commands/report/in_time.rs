@@ -2,11 +2,10 @@
 
 use super::words::{KPA, MM, NEWTON, PERCENT, SECONDS};
 use maud::{Markup, html};
-use model_tables::design_file::{Axes, DesignFile, ModelSection};
+use model_tables::design_file::{Axes, DesignFile};
 use model_tables::generate::Generated;
-use model_tables::model::choice::FINE;
+use model_tables::model::choice::{FINE, elements_in_time};
 use model_tables::solid::history::{Drive, History};
-use model_tables::solid::mesh::Elements;
 use model_tables::units::PressureRise;
 use output::rows::plain;
 
@@ -32,13 +31,7 @@ pub(super) fn presses(file: &DesignFile, generated: &Generated) -> Vec<TimedPres
     let Some(series) = file.relaxation else {
         return Vec::new();
     };
-    let elements = match file.model {
-        ModelSection::Solid { through, along } => Elements {
-            through: through as usize,
-            along: along as usize,
-        },
-        ModelSection::Auto | ModelSection::Membrane => FINE,
-    };
+    let elements = elements_in_time(file.model).unwrap_or(FINE);
     let force = FORCE * generated.end.force;
     let tables = &generated.certified.tables;
     let bits = tables.layout.pressure_fraction_bits;

@@ -28,6 +28,7 @@ use least_squares::{Series, Settled, Varied};
 use model_tables::curve::Curve;
 use model_tables::design_file::{Axes, DesignFile};
 use model_tables::material::relaxation::{Relaxation, Term};
+use model_tables::model::choice::elements_in_time;
 use model_tables::model::{Fingertip, Kind};
 use record::HoldRecord;
 
@@ -148,7 +149,7 @@ pub fn fit_relaxation(
         .fold(0.0_f64, |most, celsius| most.max((celsius - mean).abs()));
     let known = file.relaxation.map_or(0.0, |series| series.shift);
     let tells_shift = temperatures.len() == record.trials.len() && 2.0 * spread > APART;
-    let elements = solid::elements(file);
+    let elements = elements_in_time(file.model);
     let curve = curve(file, record)?;
     let mut forward = Forward::new(record, &file.calibration, &curve, temperature)?;
     if forward.targets.len() < LEAST {
@@ -302,7 +303,7 @@ fn curve(file: &DesignFile, record: &HoldRecord) -> Result<Curve, HoldError> {
         .iter()
         .fold(0.0_f64, |most, trial| most.max(trial.depth));
     let deepest = file.calibration.indentation_of(deepest);
-    let tip = match solid::elements(file) {
+    let tip = match elements_in_time(file.model) {
         Some(elements) => Fingertip::of(Kind::Solid(elements), &file.design_to(Axes::Outer)),
         None => Fingertip::for_curve(file),
     };

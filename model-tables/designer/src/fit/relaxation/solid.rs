@@ -3,27 +3,14 @@
 use super::forward::Forward;
 use super::least_squares::{Series, readings};
 use super::record::HoldRecord;
-use model_tables::design_file::{Axes, DesignFile, ModelSection};
+use model_tables::design_file::{Axes, DesignFile};
 use model_tables::material::relaxation::{Relaxation, Term};
-use model_tables::model::choice::FINE;
 use model_tables::solid::history::{Drive, History, HistoryError};
 use model_tables::solid::mesh::Elements;
 use nalgebra::DVector;
 
 /// Readings below this part of the largest have no factor.
 const LEAST: f64 = 1e-3;
-
-/// The elements of a design's wall in time; `None` for a membrane.
-pub(super) fn elements(file: &DesignFile) -> Option<Elements> {
-    match file.model {
-        ModelSection::Membrane => None,
-        ModelSection::Auto => Some(FINE),
-        ModelSection::Solid { through, along } => Some(Elements {
-            through: through as usize,
-            along: along as usize,
-        }),
-    }
-}
 
 /// What the solid reads over what the reduced model reads with a series, for each target.
 ///
