@@ -123,7 +123,7 @@ impl Warnings {
     pub const LEAK_SUSPECTED: Self = Self(8);
     /// The fingertip was softer than its model at a known indentation: air in the fluid. Latched.
     pub const BUBBLE_SUSPECTED: Self = Self(16);
-    /// A stored calibration is there and cannot be used (another design's, or damaged): the design's values serve.
+    /// A stored calibration is there and cannot be used (another design's, or damaged): the design's values are in use.
     pub const CALIBRATION_REFUSED: Self = Self(32);
     /// The zero may be off by so much that it may pass for a touch, or hide one: drift since it was last seen untouched, or a
     /// rest pressure that rose slowly or fell. Ends with a tare.
@@ -332,13 +332,13 @@ pub enum Stored {
     /// None was ever stored.
     #[default]
     None,
-    /// It serves.
-    Serves,
+    /// In use.
+    InUse,
     /// It is another design's.
     OtherDesign,
     /// There is something, and none of it is whole.
     Damaged,
-    /// A place that cannot be read may hold a later one than the record that serves, if any does.
+    /// A place that cannot be read may hold a later one than the record in use, if any is in use.
     Unreadable,
 }
 
@@ -346,7 +346,7 @@ impl Stored {
     /// Every state with its code in telemetry.
     pub const CODES: [(Self, u8); 5] = [
         (Self::None, 0),
-        (Self::Serves, 1),
+        (Self::InUse, 1),
         (Self::OtherDesign, 2),
         (Self::Damaged, 3),
         (Self::Unreadable, 4),
@@ -366,7 +366,7 @@ pub enum LastFault {
     /// The core met what it cannot execute: the address.
     HardFault,
     /// The watchdog was not fed, and no task was seen to be late: what feeds it hung, or the start did, as the code of a
-    /// [`Stage`](crate::device::supervisor::Stage) tells.
+    /// [`Stage`](crate::device::task_monitor::Stage) tells.
     Hang,
     /// The chip raised its non-maskable interrupt: the address in flash that its error correction gave up, or 0.
     NonMaskable,

@@ -32,7 +32,7 @@ OUTCOMES = ["done", "touched", "restless", "out of bounds", "no reading", "busy"
             "memory failed", "no such object", "no such tip", "out of order", "block refused", "other design",
             "not in this image", "not armed"]
 CAUSES = ["unknown", "power-on", "pin", "software", "watchdog", "brown-out", "low power"]
-STORED = ["none", "serves", "another design's", "damaged", "unreadable"]
+STORED = ["none", "in use", "another design's", "damaged", "unreadable"]
 LAST = ["nothing known", "late task", "panic in line", "hard fault at", "hang", "non-maskable interrupt"]
 LENGTHS = {1: 42, 2: 15, 3: 61, 4: 20}
 # Bytes of the longest frame without its zero: more of them in a row are none.
@@ -89,12 +89,12 @@ def describe(body):
     if kind == 3:
         firmware = ".".join(str(part) for part in body[14:17])
         cause, design, tables, period, stored, last, resets = struct.unpack_from("<BQIIBBB", body, 17)
-        where, saved, lost, wild, frames, refused = struct.unpack_from("<6I", body, 37)
+        where, saved, lost, outliers, frames, refused = struct.unpack_from("<6I", body, 37)
         if cause >= len(CAUSES) or stored >= len(STORED) or last >= len(LAST):
             raise ValueError("field")
         return head + (f"hello, firmware {firmware}, reset by {CAUSES[cause]}, design {design:016x}, tables {tables}, a report "
                        f"each {period} us, stored {STORED[stored]} ({saved}), before: {LAST[last]} {where:#x}, {resets} "
-                       f"resets in a row; {lost} samples lost, {wild} wild, {frames} frames dropped, {refused} refused")
+                       f"resets in a row; {lost} samples lost, {outliers} outliers, {frames} frames dropped, {refused} refused")
     if kind == 7:
         command_sequence, offset = struct.unpack_from("<HI", body, 14)
         return head + f"read-back {command_sequence}: from {offset} on, {body[20:].hex()}"

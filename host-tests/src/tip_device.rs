@@ -4,8 +4,8 @@
 use crate::world::Xorshift;
 use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::NorFlash;
-use fingertip::device::station::{Beginning, Station};
-use fingertip::device::supervisor::Breadcrumb;
+use fingertip::device::logic::{Beginning, Device};
+use fingertip::device::task_monitor::CrashRecord;
 use fingertip::device::tip_loader::{FoundTip, LARGEST_BLOCK, TipLoader};
 use fingertip::image::generated::{NAME, TABLES};
 use fingertip::image::{FirmwareDesign, ImageDesign};
@@ -66,7 +66,7 @@ pub struct TipDevice<F> {
     flash: F,
     slot: u32,
     loader: TipLoader,
-    station: Station<TipDesign<'static, FirmwareDesign>>,
+    device: Device<TipDesign<'static, FirmwareDesign>>,
     deframer: Deframer,
     outbox: Outbox<'static, WAITING>,
     frame: &'static mut Encoded,
@@ -95,7 +95,7 @@ impl<F: NorFlash> TipDevice<F> {
         let constants = design.parameters().constants;
         let beginning = Beginning {
             reset_cause: ResetCause::PowerOn,
-            start: Breadcrumb::start(None, ResetCause::PowerOn, constants.hash),
+            start: CrashRecord::start(None, ResetCause::PowerOn, constants.hash),
             stored,
             stored_sequence: 0,
             calibration,
@@ -109,7 +109,7 @@ impl<F: NorFlash> TipDevice<F> {
             flash,
             slot,
             loader,
-            station: Station::new(design, &beginning),
+            device: Device::new(design, &beginning),
             deframer: Deframer::default(),
             outbox: Outbox::new(waiting.each_mut()),
             frame: first,
@@ -131,7 +131,7 @@ impl<F: NorFlash> TipDevice<F> {
             age: 500,
             ..Sample::default()
         };
-        self.station.step(self.now, Ok(sample), &mut say);
+        self.device.step(self.now, Ok(sample), &mut say);
         for &byte in heard {
             let Some(Ok(body)) = self.deframer.push(byte) else {
                 continue;
@@ -145,14 +145,14 @@ impl<F: NorFlash> TipDevice<F> {
                 say(&Message::Load(reply));
             } else if let Ok(request) = command::read_body(&body) {
                 // Nothing is saved: the flash is the tip's alone.
-                let _ = self.station.request(self.now, request, &mut say);
+                let _ = self.device.request(self.now, request, &mut say);
             }
         }
-        let mut said = Vec::new();
+        let mut emitted = Vec::new();
         while self.outbox.take(&mut self.frame) {
-            said.extend_from_slice(self.frame.as_slice());
+            emitted.extend_from_slice(self.frame.as_slice());
         }
-        said
+        emitted
     }
 
     /// The same board, reset if it asked for that.
@@ -275,9 +275,9 @@ impl ServedDevice {
                         Err(error) => lost = error.kind() != ErrorKind::WouldBlock,
                     }
                 }
-                let said = from.carry(&device.millisecond(&std::mem::take(&mut heard)));
+                let emitted = from.carry(&device.millisecond(&std::mem::take(&mut heard)));
                 if let Some(stream) = &mut client {
-                    lost |= stream.write_all(&said).is_err();
+                    lost |= stream.write_all(&emitted).is_err();
                 }
                 if lost {
                     client = None;

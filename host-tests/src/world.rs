@@ -1,7 +1,7 @@
 //! A fingertip of the image's design in virtual time: true pressures in, what the firmware says out.
 
-use fingertip::device::station::{Beginning, Station, ToStore};
-use fingertip::device::supervisor::Breadcrumb;
+use fingertip::device::logic::{Beginning, Device, ToStore};
+use fingertip::device::task_monitor::CrashRecord;
 use fingertip::image::ImageDesign;
 use fingertip::link::command::{Command, Request};
 use fingertip::link::telemetry::Message;
@@ -82,11 +82,11 @@ impl Xorshift {
 #[derive(Debug)]
 pub struct World<D: Design> {
     design: D,
-    station: Station<D>,
+    device: Device<D>,
     /// Microseconds since reset.
     pub now: u64,
     /// What went on the line besides reports.
-    pub said: Vec<Message>,
+    pub emitted: Vec<Message>,
 }
 
 /// A beginning after a reset by `cause`, with a stored calibration or none, and what the run before left.
@@ -94,13 +94,13 @@ pub fn beginning(
     design: &impl Design,
     cause: ResetCause,
     calibration: Option<Calibration>,
-    left: Option<Breadcrumb>,
+    left: Option<CrashRecord>,
 ) -> Beginning {
     Beginning {
         reset_cause: cause,
-        start: Breadcrumb::start(left, cause, design.parameters().constants.hash),
+        start: CrashRecord::start(left, cause, design.parameters().constants.hash),
         stored: if calibration.is_some() {
-            Stored::Serves
+            Stored::InUse
         } else {
             Stored::None
         },
@@ -149,10 +149,10 @@ impl<D: Design + Clone> World<D> {
     /// A world that begins.
     pub fn new(design: D, beginning: &Beginning) -> Self {
         Self {
-            station: Station::new(design.clone(), beginning),
+            device: Device::new(design.clone(), beginning),
             design,
             now: 0,
-            said: vec![],
+            emitted: vec![],
         }
     }
 
@@ -170,25 +170,25 @@ impl<D: Design + Clone> World<D> {
     /// The report of what came `later` microseconds later.
     pub fn step(&mut self, later: u64, sample: Result<Sample, Fault>) -> Report {
         self.now += later;
-        let said = &mut self.said;
-        self.station.step(Microseconds(self.now), sample, |message| {
+        let emitted = &mut self.emitted;
+        self.device.step(Microseconds(self.now), sample, |message| {
             if !matches!(message, Message::Report { .. }) {
-                said.push(*message);
+                emitted.push(*message);
             }
         })
     }
 
     /// Asks for something.
     pub fn ask(&mut self, command: Command) -> Option<ToStore> {
-        let said = &mut self.said;
+        let emitted = &mut self.emitted;
         let request = Request { sequence: 0, command };
-        self.station
-            .request(Microseconds(self.now), request, |message| said.push(*message))
+        self.device
+            .request(Microseconds(self.now), request, |message| emitted.push(*message))
     }
 
-    /// The zero that serves, pascals.
+    /// The zero in use, pascals.
     pub fn zero(&self) -> Option<f64> {
-        let counts = self.station.zero()?.pressure.0;
+        let counts = self.device.zero()?.pressure.0;
         Some(f64::from(counts) / f64::from(1_u32 << self.design.parameters().pressure_fraction_bits))
     }
 }

@@ -49,7 +49,7 @@ fn save<const N: usize, const U: usize>(
 }
 
 /// What a start finds.
-fn served<const N: usize, const U: usize>(flash: &SimulatedFlash<N, U>) -> (Stored, Option<Calibration>) {
+fn read_back<const N: usize, const U: usize>(flash: &SimulatedFlash<N, U>) -> (Stored, Option<Calibration>) {
     let (store, state) = open(flash.clone());
     (state, store.calibration())
 }
@@ -63,8 +63,8 @@ fn histories<const N: usize, const U: usize>(saves: i32) -> Vec<SimulatedFlash<N
         flashes.push(store.clone().into_flash());
     }
     assert_eq!(
-        served(&flashes[saves as usize]),
-        (Stored::Serves, Some(calibration(saves - 1)))
+        read_back(&flashes[saves as usize]),
+        (Stored::InUse, Some(calibration(saves - 1)))
     );
     flashes
 }
@@ -87,23 +87,23 @@ fn cuts<const N: usize, const U: usize>(
     })
 }
 
-/// After a cut of save `number` the calibration before it or its own serves, and the next save works.
+/// After a cut of save `number` the calibration before it or its own is in use, and the next save works.
 fn assert_consistent<const N: usize, const U: usize>(flash: &SimulatedFlash<N, U>, number: i32) {
-    let (state, found) = served(flash);
+    let (state, found) = read_back(flash);
     let before = (number > 0).then(|| calibration(number - 1));
     if found == Some(calibration(number)) {
-        assert_eq!(state, Stored::Serves, "save {number}");
+        assert_eq!(state, Stored::InUse, "save {number}");
     } else {
         assert_eq!(found, before, "save {number}");
-        // A place that may hold a later record is said; it never hides the one before.
+        // A place that may hold a later record is reported; it never hides the one before.
         assert!(
-            number == 0 || matches!(state, Stored::Serves | Stored::Unreadable),
+            number == 0 || matches!(state, Stored::InUse | Stored::Unreadable),
             "save {number}: {state:?}"
         );
     }
     let (flash, saved) = save(flash.clone(), number + 1);
     assert_eq!(saved, Ok(()), "after save {number}");
-    assert_eq!(served(&flash), (Stored::Serves, Some(calibration(number + 1))));
+    assert_eq!(read_back(&flash), (Stored::InUse, Some(calibration(number + 1))));
 }
 
 /// Cuts these saves at every step, with every look; how many cuts that are.
@@ -126,21 +126,21 @@ fn sweep_twice<const N: usize, const U: usize>(saves: std::ops::Range<i32>) -> u
     let mut points = 0;
     for number in saves {
         for first in cuts(&flashes[number as usize], number) {
-            let (_, found) = served(&first);
+            let (_, found) = read_back(&first);
             let before = if found == Some(calibration(number)) {
                 number
             } else {
                 number - 1
             };
             for second in cuts(&first, number + 1) {
-                let (_, found) = served(&second);
+                let (_, found) = read_back(&second);
                 assert!(
                     found == Some(calibration(before)) || found == Some(calibration(number + 1)),
                     "{found:?}"
                 );
                 let (again, saved) = save(second, number + 2);
                 assert_eq!(saved, Ok(()));
-                assert_eq!(served(&again), (Stored::Serves, Some(calibration(number + 2))));
+                assert_eq!(read_back(&again), (Stored::InUse, Some(calibration(number + 2))));
                 points += 1;
             }
         }
@@ -200,11 +200,11 @@ fn a_record_that_cannot_be_read_leaves_the_one_before_and_is_said() {
         for unit in 0..LENGTH / DOUBLE_WORD {
             let flash = spoilt(saves, saves as usize - 1, unit);
             let before = (saves > 1).then(|| calibration(saves - 2));
-            assert_eq!(served(&flash), (Stored::Unreadable, before), "{saves}, {unit}");
+            assert_eq!(read_back(&flash), (Stored::Unreadable, before), "{saves}, {unit}");
             let (flash, saved) = save(flash, saves - 2);
             // Also what the record before holds already, as the lost one may have been another.
             assert_eq!(saved, Ok(()));
-            assert_eq!(served(&flash), (Stored::Serves, Some(calibration(saves - 2))));
+            assert_eq!(read_back(&flash), (Stored::InUse, Some(calibration(saves - 2))));
         }
     }
 }
@@ -215,12 +215,12 @@ fn an_older_record_that_cannot_be_read_matters_to_nobody() {
         for number in spoilt_ones {
             let flash = spoilt(saves, number, 2);
             let latest = Some(calibration(saves - 1));
-            assert_eq!(served(&flash), (Stored::Serves, latest), "{number}");
+            assert_eq!(read_back(&flash), (Stored::InUse, latest), "{number}");
             let mut flash = flash;
             for next in saves..saves + 20 {
                 let (after, saved) = save(flash, next);
                 assert_eq!(saved, Ok(()), "{number}, {next}");
-                assert_eq!(served(&after), (Stored::Serves, Some(calibration(next))));
+                assert_eq!(read_back(&after), (Stored::InUse, Some(calibration(next))));
                 flash = after;
             }
         }
@@ -244,7 +244,7 @@ fn one_rotten_bit_of_the_last_record_is_said_too() {
         let mut flash = flashes[5].clone();
         flash.bytes_mut()[4 * LENGTH + bit / 8] ^= 1 << (bit % 8);
         assert_eq!(
-            served(&flash),
+            read_back(&flash),
             (Stored::Unreadable, Some(calibration(3))),
             "{bit}"
         );
@@ -276,7 +276,7 @@ fn a_rotten_bit_of_the_last_record_never_brings_back_an_older_one_unsaid() {
             for bit in (0..8 * LENGTH).step_by(5) {
                 let mut flash = after.clone();
                 flash.bytes_mut()[written[0] * LENGTH + bit / 8] ^= 1 << (bit % 8);
-                let (state, _) = served(&flash);
+                let (state, _) = read_back(&flash);
                 assert_eq!(state, Stored::Unreadable, "{saves} saves, bit {bit}");
             }
         }
@@ -289,10 +289,10 @@ fn nothing_but_places_that_cannot_be_read_is_said_and_written_over() {
     for place in 0..16 {
         flash = flash.spoilt_at(place * LENGTH);
     }
-    assert_eq!(served(&flash), (Stored::Unreadable, None));
+    assert_eq!(read_back(&flash), (Stored::Unreadable, None));
     let (flash, saved) = save(flash, 20);
     assert_eq!(saved, Ok(()));
-    assert_eq!(served(&flash), (Stored::Serves, Some(calibration(20))));
+    assert_eq!(read_back(&flash), (Stored::InUse, Some(calibration(20))));
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn the_slots_of_the_board_turn_over_too() {
         assert_eq!(block_on(store.save(Some(calibration(number)))), Ok(()));
     }
     flash = store.into_flash();
-    assert_eq!(served(&flash), (Stored::Serves, Some(calibration(places))));
+    assert_eq!(read_back(&flash), (Stored::InUse, Some(calibration(places))));
     assert_eq!(flash.steps(), (places as u64 + 1) * LENGTH as u64 / 4 + 16);
 }
 
@@ -320,7 +320,7 @@ fn every_operation_may_fail_once_or_for_ever() {
                 for defect in [Defect::Fails { from, times }, Defect::Pretends { from, times }] {
                     let (flash, saved) = save(before.clone().with(defect), number);
                     let flash = flash.powered_up();
-                    let (_, found) = served(&flash);
+                    let (_, found) = read_back(&flash);
                     if saved.is_ok() {
                         assert_eq!(found, Some(calibration(number)), "{defect:?}");
                     } else {
@@ -352,7 +352,7 @@ fn another_designs_record_is_refused_and_may_be_replaced() {
     let (store, state) = block_on(Store::open(store.into_flash(), SLOT as u32, other));
     assert_eq!(
         (state, store.calibration()),
-        (Stored::Serves, Some(calibration(6)))
+        (Stored::InUse, Some(calibration(6)))
     );
 }
 
@@ -364,7 +364,7 @@ fn values_that_cannot_be_are_refused_though_their_check_fits() {
         ..Calibration::default()
     };
     assert_eq!(block_on(store.save(Some(absurd))), Ok(()));
-    assert_eq!(served(&store.into_flash()), (Stored::Damaged, None));
+    assert_eq!(read_back(&store.into_flash()), (Stored::Damaged, None));
 }
 
 #[test]
@@ -372,7 +372,7 @@ fn what_was_stored_can_be_made_void() {
     let (flash, _) = save(Flash::erased(1), 5);
     let (mut store, _) = open(flash);
     assert_eq!(block_on(store.save(None)), Ok(()));
-    assert_eq!(served(&store.into_flash()), (Stored::None, None));
+    assert_eq!(read_back(&store.into_flash()), (Stored::None, None));
 }
 
 #[test]
@@ -382,10 +382,10 @@ fn both_slots_damaged_are_said_so_and_written_again() {
     for (i, byte) in flash.bytes_mut().iter_mut().enumerate() {
         *byte ^= (i % 7) as u8 & !1;
     }
-    assert_eq!(served(&flash), (Stored::Damaged, None));
+    assert_eq!(read_back(&flash), (Stored::Damaged, None));
     let (flash, saved) = save(flash, 11);
     assert_eq!(saved, Ok(()));
-    assert_eq!(served(&flash), (Stored::Serves, Some(calibration(11))));
+    assert_eq!(read_back(&flash), (Stored::InUse, Some(calibration(11))));
 }
 
 #[test]
@@ -401,7 +401,7 @@ fn what_is_stored_already_is_not_stored_again_and_wear_has_an_end() {
     assert_eq!(worn, Some(8 + 20_000 * 8));
     let last = worn.map_or(0, |worn| worn - 1);
     assert_eq!(
-        served(&store.into_flash()),
-        (Stored::Serves, Some(calibration(last)))
+        read_back(&store.into_flash()),
+        (Stored::InUse, Some(calibration(last)))
     );
 }

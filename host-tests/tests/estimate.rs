@@ -87,7 +87,7 @@ fn a_loaded_design_is_that_of_the_image() {
     }
 }
 
-/// The reports, and what else goes on the line, of presses, pauses, faults, wild samples, commands and drift, drawn from a seed.
+/// The reports, and what else goes on the line, of presses, pauses, faults, outliers, commands and drift, drawn from a seed.
 fn life<D: Design + Copy>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
     let mut random = Xorshift::new(seed);
     let (rest, full) = (rest(&design), full_scale(&design));
@@ -120,7 +120,7 @@ fn life<D: Design + Copy>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
         }
         reports.push(world.step(later, next));
     }
-    (reports, world.said)
+    (reports, world.emitted)
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Random grasps, random faults, random commands: no panic, no wrong number with status ok, no zero taken while pressed.
 
-use fingertip::device::supervisor::Breadcrumb;
+use fingertip::device::task_monitor::CrashRecord;
 use fingertip::image::ImageDesign;
 use fingertip::link::command::Command;
 use fingertip::signal::zero::{StartUp, Zero};
@@ -10,11 +10,11 @@ use fingertip::units::Millipascals;
 use host_tests::assert_faults_says;
 use host_tests::world::{World, Xorshift, beginning, full_scale, rest, rise, sample};
 
-/// A reading that is off by more than this is wrong, pascals: 7 grains of the transducer. 6 a commanded tare may take
-/// away when a host says that nothing presses; a wild sample smaller than 4 passes for noise, and the filter takes a
+/// A reading that is off by more than this is wrong, pascals: 7 noise floors of the transducer. 6 a commanded tare may take
+/// away when a host says that nothing presses; an outlier smaller than 4 passes for noise, and the filter takes a
 /// quarter to a half of it.
 fn tolerance() -> f64 {
-    7.0 * ImageDesign::CONSTANTS.transducer.grain() as f64 / 1000.0
+    7.0 * ImageDesign::CONSTANTS.transducer.noise_floor() as f64 / 1000.0
 }
 
 /// What is done to the samples.
@@ -234,10 +234,10 @@ fn no_reset_that_nobody_asked_for_takes_a_zero() {
         bound: 0,
         verified: true,
     };
-    let left = Breadcrumb {
+    let left = CrashRecord {
         design_hash: ImageDesign::CONSTANTS.hash,
         zero: Some(kept),
-        ..Breadcrumb::default()
+        ..CrashRecord::default()
     };
     let mut resets = 0;
     for cause in [

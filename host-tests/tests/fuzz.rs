@@ -1,6 +1,6 @@
 //! Everything that reads bytes from outside, on bytes from outside: random ones, and whole ones changed a little.
 
-use fingertip::device::supervisor::{Breadcrumb, WORDS};
+use fingertip::device::task_monitor::{CrashRecord, WORDS};
 use fingertip::link::command::{self, Command, Request};
 use fingertip::link::telemetry::{self, Frame, Message};
 use fingertip::link::wire::Deframer;
@@ -90,7 +90,7 @@ fn readers_of_the_line_take_anything() {
 #[test]
 fn readers_of_the_memory_take_anything() {
     let mut random = Xorshift::new(2);
-    let (mut records, mut crumbs) = (0_u64, 0_u64);
+    let (mut records, mut crash_records) = (0_u64, 0_u64);
     for _ in 0..EXECUTIONS {
         let mut bytes = record::encode(&Record {
             sequence: random.bits() as u32,
@@ -100,9 +100,9 @@ fn readers_of_the_memory_take_anything() {
             calibration: None,
             erasures: 0,
         });
-        let mut words = Breadcrumb {
+        let mut words = CrashRecord {
             detail: random.bits() as u32,
-            ..Breadcrumb::default()
+            ..CrashRecord::default()
         }
         .to_words();
         let changes = random.below(5);
@@ -115,13 +115,16 @@ fn readers_of_the_memory_take_anything() {
             words[bit as usize / 32] ^= 1 << (bit % 32);
         }
         let record = matches!(record::decode(&bytes), record::Found::Record(_));
-        let crumb = Breadcrumb::from_words(&words).is_some();
+        let crash_record = CrashRecord::from_words(&words).is_some();
         records += u64::from(record);
-        crumbs += u64::from(crumb);
+        crash_records += u64::from(crash_record);
         // One change is always seen; several may cancel out.
-        assert!(changes != 1 || !record && !crumb);
-        assert!(changes != 0 || record && crumb);
+        assert!(changes != 1 || !record && !crash_record);
+        assert!(changes != 0 || record && crash_record);
     }
-    assert!(records > EXECUTIONS / 6 && records < EXECUTIONS / 4 && crumbs < EXECUTIONS / 4);
-    assert_faults_says(&format!("{} readings of records and breadcrumbs", 2 * EXECUTIONS));
+    assert!(records > EXECUTIONS / 6 && records < EXECUTIONS / 4 && crash_records < EXECUTIONS / 4);
+    assert_faults_says(&format!(
+        "{} readings of records and crash records",
+        2 * EXECUTIONS
+    ));
 }

@@ -81,10 +81,10 @@ fn the_chip_says_what_is_budgeted(budget: &Budget) {
         .filter(|term| !term.bound && !term.name.starts_with("tare"));
     let squares: f64 = terms.map(|term| term.pascals.unwrap_or_default().powi(2)).sum();
     let bits = ImageDesign::PARAMETERS.pressure_fraction_bits;
-    let said = Uncertainty::of(&ImageDesign::CONSTANTS, bits).rise(0, 0);
+    let reported = Uncertainty::of(&ImageDesign::CONSTANTS, bits).rise(0, 0);
     assert!(
-        (said.pascals(bits) / squares.sqrt() - 1.0).abs() < 0.01,
-        "{said:?} for {}",
+        (reported.pascals(bits) / squares.sqrt() - 1.0).abs() < 0.01,
+        "{reported:?} for {}",
         squares.sqrt()
     );
 }

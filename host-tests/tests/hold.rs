@@ -15,7 +15,7 @@ const HOUR: u64 = 3_600_000_000;
 struct Held {
     first: Report,
     last: Report,
-    /// When the zero was said to be aged, hours.
+    /// When the zero was reported to be aged, hours.
     aged: Option<f64>,
 }
 

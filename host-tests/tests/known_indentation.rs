@@ -62,7 +62,7 @@ fn pressed<D: Design + Clone>(design: &D, rise: f64) -> World<D> {
 fn ask<D: Design + Clone>(world: &mut World<D>, millimetres: f64) -> Answer {
     let known = (1e6 * millimetres) as i32;
     assert!(world.ask(Command::Indentation { known }).is_none());
-    match world.said.last() {
+    match world.emitted.last() {
         Some(Message::Answer(answer)) => *answer,
         other => panic!("no answer: {other:?}"),
     }

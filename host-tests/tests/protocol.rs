@@ -173,12 +173,12 @@ fn the_reader_in_python_reads_what_the_firmware_sends() {
     for what in FRAMES.into_iter().chain(LOAD_REPLIES) {
         stream.extend(example(what));
     }
-    let Some(said) = reader(&[], &stream) else {
+    let Some(output) = reader(&[], &stream) else {
         eprintln!("no python3: not tested");
         return;
     };
-    let said = String::from_utf8(said).expect("it is text");
-    let lines: Vec<&str> = said.lines().collect();
+    let text = String::from_utf8(output).expect("it is text");
+    let lines: Vec<&str> = text.lines().collect();
     assert_eq!(
         lines,
         [
@@ -190,7 +190,7 @@ fn the_reader_in_python_reads_what_the_firmware_sends() {
             "258 3000500 us, 3 dropped: warning: saturated, touched, 642.000 Pa, 1500000 uN, 2500000 nm, 1-sigma 2.898 \
              Pa, 6000 uN, 9000 nm",
             "7 1000000 us, 259 dropped: hello, firmware 0.1.0, reset by watchdog, design 0123456789abcdef, tables 1, a \
-             report each 1000 us, stored serves (17), before: late task 0x3, 2 resets in a row; 2 samples lost, 6 wild, \
+             report each 1000 us, stored: in use (17), before: late task 0x3, 2 resets in a row; 2 samples lost, 6 outliers, \
              259 frames dropped, 4 refused",
             "8 2000000 us, 0 dropped: verify 5: block refused, findings 0x8",
             "8 2000000 us, 0 dropped: read-back 5: from 0 on, 46544950",
@@ -290,38 +290,38 @@ fn report(outcome: Result<Measurement, Fault>) -> Vec<u8> {
 
 #[test]
 fn the_reader_in_python_has_a_word_for_every_code() {
-    let mut said: Vec<(Vec<u8>, String)> = vec![];
+    let mut lines_wanted: Vec<(Vec<u8>, String)> = vec![];
     for (fault, _) in Fault::CODES {
-        said.push((report(Err(fault)), format!("fault: {fault}")));
+        lines_wanted.push((report(Err(fault)), format!("fault: {fault}")));
     }
     let reading = Measurement::default();
     for bit in 0..16 {
         if let Some(warnings) = Warnings::from_bits(1 << bit) {
             let warned = Measurement { warnings, ..reading };
-            said.push((report(Ok(warned)), format!("warning: {warnings}, unknown")));
+            lines_wanted.push((report(Ok(warned)), format!("warning: {warnings}, unknown")));
         }
     }
     for (touch, _) in Touch::CODES {
         let word = format!("ok, {touch:?},").to_lowercase();
-        said.push((report(Ok(Measurement { touch, ..reading })), word));
+        lines_wanted.push((report(Ok(Measurement { touch, ..reading })), word));
     }
     for (reset_cause, _) in ResetCause::CODES {
         let hello = Hello {
             reset_cause,
             ..Hello::default()
         };
-        said.push((framed(Message::Hello(hello)), format!("reset by {reset_cause},")));
+        lines_wanted.push((framed(Message::Hello(hello)), format!("reset by {reset_cause},")));
     }
     for ((stored, _), word) in
         Stored::CODES
             .into_iter()
-            .zip(["none", "serves", "other", "damaged", "unreadable"])
+            .zip(["none", "in use", "other", "damaged", "unreadable"])
     {
         let hello = Hello {
             stored,
             ..Hello::default()
         };
-        said.push((
+        lines_wanted.push((
             framed(Message::Hello(hello)),
             format!("stored {word}").replace("other", "another"),
         ));
@@ -335,16 +335,16 @@ fn the_reader_in_python_has_a_word_for_every_code() {
             last_fault,
             ..Hello::default()
         };
-        said.push((framed(Message::Hello(hello)), format!("before: {word}")));
+        lines_wanted.push((framed(Message::Hello(hello)), format!("before: {word}")));
     }
-    let stream: Vec<u8> = said.iter().flat_map(|(bytes, _)| bytes.clone()).collect();
+    let stream: Vec<u8> = lines_wanted.iter().flat_map(|(bytes, _)| bytes.clone()).collect();
     let Some(lines) = reader(&[], &stream) else {
         eprintln!("no python3: not tested");
         return;
     };
     let lines = String::from_utf8(lines).expect("it is text");
-    assert_eq!(lines.lines().count(), said.len(), "{lines}");
-    for (line, (_, words)) in lines.lines().zip(&said) {
+    assert_eq!(lines.lines().count(), lines_wanted.len(), "{lines}");
+    for (line, (_, words)) in lines.lines().zip(&lines_wanted) {
         assert!(line.contains(words), "\"{line}\" does not say \"{words}\"");
     }
 }
@@ -377,7 +377,7 @@ fn the_program_of_the_guide_prints_forces_and_reasons() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let said = String::from_utf8(output.stdout).expect("it is text");
-    let lines: Vec<&str> = said.lines().collect();
+    let text = String::from_utf8(output.stdout).expect("it is text");
+    let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines, ["0 us fault: sensor open", "3000500 us warning 0x1"]);
 }

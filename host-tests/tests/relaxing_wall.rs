@@ -248,7 +248,7 @@ fn no_tare_is_taken_of_a_wall_that_recovers() {
             world.ask(Command::Tare);
         }
     }
-    let answers: Vec<Outcome> = world.said.iter().filter_map(outcome).collect();
+    let answers: Vec<Outcome> = world.emitted.iter().filter_map(outcome).collect();
     assert_eq!(answers, [Outcome::Touched]);
     assert!(world.zero().is_some_and(|zero| zero.abs() < 1.0));
 }

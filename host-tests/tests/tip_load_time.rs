@@ -59,14 +59,14 @@ fn four_kibibytes_are_loaded_in_two_seconds_at_full_telemetry() {
         device.millisecond(&[]);
     }
     let (mut to, mut from) = (Way::default(), Way::default());
-    let (mut milliseconds, mut said) = (0, 0);
+    let (mut milliseconds, mut emitted) = (0, 0);
     while loading.outcome().is_none() {
         milliseconds += 1;
         let now = Duration::from_millis(milliseconds);
         let sent = loading.next(now).unwrap_or_default();
         let heard = to.carry(&sent);
         let report = device.millisecond(&heard);
-        said += report.len();
+        emitted += report.len();
         loading.hear(now, &from.carry(&report));
         assert!(milliseconds < 10_000, "it ends");
     }
@@ -80,7 +80,7 @@ fn four_kibibytes_are_loaded_in_two_seconds_at_full_telemetry() {
         )))
     );
     // A report of 46 bytes each millisecond is the least that went by beside it.
-    assert!(said as u64 >= 46 * milliseconds);
+    assert!(emitted as u64 >= 46 * milliseconds);
     let memory = ERASURE + WORD * 1024.0;
     let total = milliseconds as f64 + memory;
     println!(

@@ -103,7 +103,7 @@ pub struct Transducer {
 
 impl Transducer {
     /// What the transducer cannot tell apart, millipascals: its noise or its resolution, whichever is coarser.
-    pub const fn grain(&self) -> i64 {
+    pub const fn noise_floor(&self) -> i64 {
         if self.noise > self.resolution {
             self.noise as i64
         } else {
@@ -115,7 +115,7 @@ impl Transducer {
     /// firmware warns.
     pub const fn lowest_rest(&self, fraction_bits: u32) -> PressureRise {
         // Below 2^31 * 8 * 2^16 = 2^50.
-        let counts = (self.grain() * BELOW_ZERO_DEVIATIONS * (1 << fraction_bits) + 500) / 1000;
+        let counts = (self.noise_floor() * BELOW_ZERO_DEVIATIONS * (1 << fraction_bits) + 500) / 1000;
         PressureRise(
             -(if counts > i32::MAX as i64 {
                 i32::MAX

@@ -1,4 +1,4 @@
-//! Where a press ends, and what is said of an indentation that has no state.
+//! Where a press ends, and the error of an indentation that has no state.
 
 use core::fmt;
 

@@ -11,10 +11,10 @@ impl PressureRise {
     /// The nearest rise to a number of counts.
     #[inline]
     pub const fn held(counts: i64) -> Self {
-        const MOST: i64 = i32::MAX as i64;
-        Self(if counts > MOST {
+        const MAX_COUNTS: i64 = i32::MAX as i64;
+        Self(if counts > MAX_COUNTS {
             i32::MAX
-        } else if counts < -MOST {
+        } else if counts < -MAX_COUNTS {
             -i32::MAX
         } else {
             counts as i32

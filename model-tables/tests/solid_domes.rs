@@ -1,4 +1,4 @@
-//! The solid's two coarse rungs over domes of many shapes, walls and laws, against the same model refined.
+//! The solid's two coarse fidelities over domes of many shapes, walls and laws, against the same model refined.
 
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;

@@ -5,7 +5,7 @@ use super::chosen::{BAUD, CALIBRATION, Interrupts, Pins, Region, WATCHDOG, clock
 use super::converter::DmaConverter;
 #[cfg(not(transducer = "ratiometric"))]
 use super::i2c::I2cBus;
-use super::memory::Patient;
+use super::memory::RetryingFlash;
 use crate::status::ResetCause;
 use crate::units::Microseconds;
 #[cfg(transducer = "ratiometric")]
@@ -22,13 +22,13 @@ use static_cell::ConstStaticCell;
 pub type Line = UartTx<'static, Async>;
 
 /// The serial port's receiver.
-pub type Ears = RingBufferedUartRx<'static>;
+pub type SerialRx = RingBufferedUartRx<'static>;
 
 /// Bytes heard and not yet taken: 2.8 ms of a line that never pauses.
 static HEARD: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 
 /// Where the calibration lies.
-pub type FlashMemory = Patient<Region>;
+pub type FlashMemory = RetryingFlash<Region>;
 
 /// Resets the chip unless it is fed.
 pub type Watchdog = IndependentWatchdog<'static, IWDG>;
@@ -59,7 +59,7 @@ pub struct Board {
     /// The way out for frames.
     pub line: Line,
     /// The way in for commands.
-    pub ears: Ears,
+    pub serial_rx: SerialRx,
     /// Where the calibration lies.
     pub memory: FlashMemory,
     /// Running from here on.
@@ -100,7 +100,7 @@ impl Board {
 
         let mut serial = usart::Config::default();
         serial.baudrate = BAUD;
-        let (line, ears) = Uart::new(
+        let (line, serial_rx) = Uart::new(
             pins.serial,
             pins.receive,
             pins.transmit,
@@ -116,8 +116,8 @@ impl Board {
             clock,
             port,
             line,
-            ears: ears.into_ring_buffered(HEARD.take()),
-            memory: Patient::new(region(pins.flash), CALIBRATION),
+            serial_rx: serial_rx.into_ring_buffered(HEARD.take()),
+            memory: RetryingFlash::new(region(pins.flash), CALIBRATION),
             watchdog,
             crystal,
         }

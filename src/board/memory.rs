@@ -33,12 +33,12 @@ fn flush_caches() {
 }
 
 /// A flash from an offset on.
-pub struct Patient<F> {
+pub struct RetryingFlash<F> {
     flash: F,
     base: u32,
 }
 
-impl<F> Patient<F> {
+impl<F> RetryingFlash<F> {
     /// The flash from `base` on.
     pub const fn new(flash: F, base: u32) -> Self {
         Self { flash, base }
@@ -46,8 +46,8 @@ impl<F> Patient<F> {
 
     /// The same flash from another base on.
     #[cfg(feature = "load-tip")]
-    pub const fn at(&mut self, base: u32) -> Patient<&mut F> {
-        Patient {
+    pub const fn at(&mut self, base: u32) -> RetryingFlash<&mut F> {
+        RetryingFlash {
             flash: &mut self.flash,
             base,
         }
@@ -64,11 +64,11 @@ impl NorFlashError for MemoryFailure {
     }
 }
 
-impl<F: NorFlash> ErrorType for Patient<F> {
+impl<F: NorFlash> ErrorType for RetryingFlash<F> {
     type Error = MemoryFailure;
 }
 
-impl<F: NorFlash> ReadNorFlash for Patient<F> {
+impl<F: NorFlash> ReadNorFlash for RetryingFlash<F> {
     const READ_SIZE: usize = F::READ_SIZE;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), MemoryFailure> {
@@ -86,7 +86,7 @@ impl<F: NorFlash> ReadNorFlash for Patient<F> {
     }
 }
 
-impl<F: NorFlash> NorFlash for Patient<F> {
+impl<F: NorFlash> NorFlash for RetryingFlash<F> {
     const WRITE_SIZE: usize = F::WRITE_SIZE;
     const ERASE_SIZE: usize = F::ERASE_SIZE;
 

@@ -33,7 +33,7 @@ pub mod ecc;
 pub use chosen::SLOT;
 #[cfg(feature = "load-tip")]
 pub use chosen::{TIP_SLOT, TIPS};
-pub use common::{Board, Clock, Ears, FlashMemory, Line, Port, Watchdog, begin};
+pub use common::{Board, Clock, FlashMemory, Line, Port, SerialRx, Watchdog, begin};
 
 #[cfg(not(any(feature = "board-nucleo-f429zi", feature = "board-nucleo-l432kc")))]
 compile_error!("choose a board: --no-default-features --features board-nucleo-l432kc");

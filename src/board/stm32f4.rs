@@ -31,7 +31,7 @@ pub(super) fn reset_cause() -> ResetCause {
     }
 }
 
-/// Sets up ADC1 to run free at 4 MHz, served by stream 0 of DMA2, channel 0. 28 cycles of sampling (7 us, enough for 10
+/// Sets up ADC1 to run free at 4 MHz, read by stream 0 of DMA2, channel 0. 28 cycles of sampling (7 us, enough for 10
 /// kilo-ohm) and 12 of conversion are 10 us; 100 of them 1 ms to the cycle.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn set_up_converter(supply_measured: bool) {

@@ -27,7 +27,7 @@ pub(super) fn reset_cause() -> ResetCause {
     }
 }
 
-/// Sets up ADC1 to run free at 6 MHz, served by channel 1 of DMA1, request 0. 47.5 cycles of sampling (7.9 us, enough for 10
+/// Sets up ADC1 to run free at 6 MHz, read by channel 1 of DMA1, request 0. 47.5 cycles of sampling (7.9 us, enough for 10
 /// kilo-ohm) and 12.5 of conversion are 10 us; 100 of them 1 ms to the cycle.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn set_up_converter(supply_measured: bool) {

@@ -1,7 +1,7 @@
-//! One board: the [`station`] between samples and line, and the [`supervisor`] of tasks and resets; with the feature `load-tip` the
+//! One board: the [`logic`] between samples and line, and the [`supervisor`] of tasks and resets; with the feature `load-tip` the
 //! loader of a tip's data.
 
-pub mod station;
-pub mod supervisor;
+pub mod logic;
+pub mod task_monitor;
 #[cfg(feature = "load-tip")]
 pub mod tip_loader;

@@ -84,7 +84,7 @@ impl TipLoader {
         }
     }
 
-    /// Whether an answer said that the board restarts.
+    /// Whether an answer reported that the board restarts.
     pub const fn is_restarting(&self) -> bool {
         self.restarting
     }

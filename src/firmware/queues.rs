@@ -8,8 +8,8 @@ use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
 use embassy_time::Duration;
 use fingertip::board::Clock;
-use fingertip::device::station::ToStore;
-use fingertip::device::supervisor::Roster;
+use fingertip::device::logic::ToStore;
+use fingertip::device::task_monitor::TaskMonitor;
 use fingertip::image;
 use fingertip::link::command::Request;
 use fingertip::link::outbox::Outbox;
@@ -60,9 +60,9 @@ pub(super) static TO_STORE: Channel<ThreadModeRawMutex, ToStore, 1> = Channel::n
 pub(super) static STORED: Channel<ThreadModeRawMutex, (Result<(), StoreError>, u32), 1> = Channel::new();
 
 /// Who reported when.
-pub(super) static ROSTER: ThreadModeMutex<RefCell<Roster<3>>> =
-    ThreadModeMutex::new(RefCell::new(Roster::new(ALLOWED, Microseconds(0))));
+pub(super) static TASK_MONITOR: ThreadModeMutex<RefCell<TaskMonitor<3>>> =
+    ThreadModeMutex::new(RefCell::new(TaskMonitor::new(ALLOWED, Microseconds(0))));
 
 pub(super) fn alive(task: usize, clock: Clock) {
-    ROSTER.lock(|roster| roster.borrow_mut().report(task, clock.now()));
+    TASK_MONITOR.lock(|task_monitor| task_monitor.borrow_mut().report(task, clock.now()));
 }

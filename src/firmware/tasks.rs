@@ -4,7 +4,8 @@
 #[cfg(not(feature = "load-tip"))]
 use crate::firmware::queues::REMEMBER;
 use crate::firmware::queues::{
-    FRAMES, IDLE, LISTEN, OUTBOX, REFUSED, REQUESTS, ROSTER, SEND, SENT, STORED, TO_STORE, Waiting, alive,
+    FRAMES, IDLE, LISTEN, OUTBOX, REFUSED, REQUESTS, SEND, SENT, STORED, TASK_MONITOR, TO_STORE, Waiting,
+    alive,
 };
 use crate::firmware::retained;
 #[cfg(feature = "load-tip")]
@@ -16,9 +17,9 @@ use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_sync::signal::Signal;
 use embassy_time::{Delay, with_timeout};
-use fingertip::board::{self, Board, Clock, Ears, Line, SLOT, Watchdog};
-use fingertip::device::station::{Beginning, Station};
-use fingertip::device::supervisor::{Breadcrumb, GOOD_RUN, Stage};
+use fingertip::board::{self, Board, Clock, Line, SLOT, SerialRx, Watchdog};
+use fingertip::device::logic::{Beginning, Device};
+use fingertip::device::task_monitor::{CrashRecord, GOOD_RUN, Stage};
 use fingertip::image::generated::NAME;
 use fingertip::image::{self, ImageDesign};
 use fingertip::link::command;
@@ -31,10 +32,10 @@ use fingertip::signal::report::Report;
 use fingertip::status::{Fault, LastFault, Status, Stored};
 use fingertip::storage::store::{Identity, Store};
 use fingertip::transducer::driver::Driver;
-use fingertip::transducer::keeper::Keeper;
+use fingertip::transducer::supervisor::TransducerSupervisor;
 #[cfg(not(feature = "load-tip"))]
 use fingertip::{
-    board::FlashMemory, device::station::ToStore, image::FirmwareDesign, storage::store::StoreError,
+    board::FlashMemory, device::logic::ToStore, image::FirmwareDesign, storage::store::StoreError,
 };
 
 /// Every how many reports one goes to the log.
@@ -44,7 +45,7 @@ const LOGGED: u32 = 250;
 const PERIOD: u32 = ImageDesign::PARAMETERS.period;
 
 /// From one look at the tasks, and one meal of the watchdog, to the next, microseconds.
-const MEALS: u64 = 16_000;
+const WATCHDOG_PERIOD: u64 = 16_000;
 
 /// From one note of the zero for the next run to the next, microseconds.
 const NOTES: u64 = 1_000_000;
@@ -53,8 +54,8 @@ const NOTES: u64 = 1_000_000;
 async fn main(spawner: Spawner) {
     // Before anything that can hang, so that every reset is counted.
     let reset_cause = board::begin();
-    let start = Breadcrumb::start(retained::read(), reset_cause, ImageDesign::CONSTANTS.hash);
-    retained::write(&start.crumb);
+    let start = CrashRecord::start(retained::read(), reset_cause, ImageDesign::CONSTANTS.hash);
+    retained::write(&start.crash_record);
     #[cfg(not(feature = "load-tip"))]
     let board = Board::take(start.give_up);
     #[cfg(not(feature = "load-tip"))]
@@ -117,7 +118,7 @@ async fn main(spawner: Spawner) {
         more: Signal::new(),
     });
     spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
-    spawner.spawn(listen(board.ears, clock).expect("spawned once"));
+    spawner.spawn(listen(board.serial_rx, clock).expect("spawned once"));
     #[cfg(not(feature = "load-tip"))]
     spawner.spawn(remember(store, clock).expect("spawned once"));
     #[cfg(feature = "load-tip")]
@@ -138,57 +139,57 @@ async fn signal(
     mut watchdog: Watchdog,
     beginning: &Beginning,
 ) -> ! {
-    let mut station = Station::new(design, beginning);
-    let mut crumb = Breadcrumb {
+    let mut device = Device::new(design, beginning);
+    let mut crash_record = CrashRecord {
         detail: Stage::Running as u32,
-        ..beginning.start.crumb
+        ..beginning.start.crash_record
     };
     let mut log = Log::default();
     let mut pace = SampleTimer::new(transducer.is_some());
-    let mut keeper = transducer.map(|transducer| Keeper::new(transducer, Delay));
-    let (mut last_sample, mut next_meal, mut next_note) = (None, 0, 0);
+    let mut supervisor = transducer.map(|transducer| TransducerSupervisor::new(transducer, Delay));
+    let (mut last_sample, mut next_feed, mut next_note) = (None, 0, 0);
     loop {
         pace.wait().await;
-        let sample = match &mut keeper {
-            Some(keeper) => keeper.next().await,
+        let sample = match &mut supervisor {
+            Some(supervisor) => supervisor.next().await,
             None => Err(Fault::ResetLoop),
         };
         let now = clock.now();
-        if now.0 >= next_meal && waiting.frames.borrow().is_empty() {
+        if now.0 >= next_feed && waiting.frames.borrow().is_empty() {
             // All that was put there before was taken.
             alive(SEND, clock);
         }
         if let Ok(sample) = sample {
             let measured = now.0.saturating_sub(u64::from(sample.age));
             let lost = missing(last_sample.replace(measured), measured);
-            station.counters.samples_lost = station.counters.samples_lost.saturating_add(lost);
+            device.counters.samples_lost = device.counters.samples_lost.saturating_add(lost);
         }
-        let report = station.step(now, sample, |message| waiting.put(message));
-        log.report(&report, station.parameters().pressure_fraction_bits);
+        let report = device.step(now, sample, |message| waiting.put(message));
+        log.report(&report, device.parameters().pressure_fraction_bits);
         if let Ok(request) = REQUESTS.try_receive()
-            && let Some(to_store) = station.request(now, request, |message| waiting.put(message))
+            && let Some(to_store) = device.request(now, request, |message| waiting.put(message))
         {
-            // The station asks for one at a time.
+            // The device asks for one at a time.
             let _ = TO_STORE.try_send(to_store);
         }
-        if now.0 < next_meal {
+        if now.0 < next_feed {
             continue;
         }
-        next_meal = now.0.saturating_add(MEALS);
+        next_feed = now.0.saturating_add(WATCHDOG_PERIOD);
         if let Ok((result, sequence)) = STORED.try_receive() {
-            station.stored(now, result, sequence, |message| waiting.put(message));
+            device.stored(now, result, sequence, |message| waiting.put(message));
         }
-        station.counters.frames_dropped = waiting.frames.borrow().dropped();
-        station.counters.commands_refused = REFUSED.load(Ordering::Relaxed);
-        match ROSTER.lock(|roster| roster.borrow().late(now)) {
+        device.counters.frames_dropped = waiting.frames.borrow().dropped();
+        device.counters.commands_refused = REFUSED.load(Ordering::Relaxed);
+        match TASK_MONITOR.lock(|task_monitor| task_monitor.borrow().late(now)) {
             None => watchdog.pet(),
-            Some(task) => retained::blame(LastFault::Late, task as u32),
+            Some(task) => retained::record_fault(LastFault::Late, task as u32),
         }
         if now.0 >= next_note {
             next_note = now.0.saturating_add(NOTES);
-            crumb.good = now.0 >= GOOD_RUN;
-            crumb.zero = station.zero();
-            retained::write(&crumb);
+            crash_record.good = now.0 >= GOOD_RUN;
+            crash_record.zero = device.zero();
+            retained::write(&crash_record);
         }
     }
 }
@@ -221,12 +222,12 @@ const OBJECT: bool = image::HAS_OBJECT || cfg!(feature = "load-tip");
 /// Takes commands. Period: as they come. Deadline: the ring of bytes is full, 2.8 ms of a line that never pauses; when
 /// late, bytes are lost, which is counted. Work is bounded by the rate of the line, and other tasks run in between.
 #[embassy_executor::task]
-async fn listen(mut ears: Ears, clock: Clock) {
+async fn listen(mut serial_rx: SerialRx, clock: Clock) {
     let mut deframer = Deframer::default();
     let mut bytes = [0; 32];
     loop {
         alive(LISTEN, clock);
-        let heard = match with_timeout(IDLE, ears.read(&mut bytes)).await {
+        let heard = match with_timeout(IDLE, serial_rx.read(&mut bytes)).await {
             Ok(Ok(length)) => bytes.get(..length).unwrap_or(&[]),
             Ok(Err(_lost)) => {
                 refuse();

@@ -7,8 +7,8 @@ use embassy_sync::blocking_mutex::raw::ThreadModeRawMutex;
 use embassy_sync::channel::Channel;
 use embassy_time::{Duration, Timer, with_timeout};
 use fingertip::board::{Clock, FlashMemory, TIP_SLOT, TIPS};
-use fingertip::device::station::{Beginning, ToStore};
-use fingertip::device::supervisor::Breadcrumb;
+use fingertip::device::logic::{Beginning, ToStore};
+use fingertip::device::task_monitor::CrashRecord;
 use fingertip::device::tip_loader::{FoundTip, LARGEST_BLOCK, TipLoader};
 use fingertip::image::{FirmwareDesign, ImageDesign};
 use fingertip::link::load::{LoadOutcome, LoadReply, LoadRequest};
@@ -127,7 +127,7 @@ pub(super) async fn remember(
 /// Restarts with the other tip: on purpose, and without the zero of the one before.
 fn restart() -> ! {
     let kept = retained::read().unwrap_or_default();
-    retained::write(&Breadcrumb {
+    retained::write(&CrashRecord {
         fault: LastFault::None,
         good: true,
         zero: None,

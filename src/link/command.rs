@@ -141,7 +141,7 @@ pub enum Outcome {
     NothingToUndo,
     /// There is no verified zero to be stored: tare first.
     ZeroUnverified,
-    /// The memory did not take it; what served before still serves.
+    /// The memory did not take it; the one in use before stays in use.
     MemoryFailed,
     /// The design in the image has no use for it.
     NotInImage,

@@ -48,7 +48,7 @@ pub struct Hello {
     pub stored_sequence: u32,
     /// Samples lost since reset.
     pub samples_lost: u32,
-    /// Wild samples replaced since reset.
+    /// Outliers replaced since reset.
     pub samples_rejected: u32,
     /// Frames dropped since reset because the line was not free.
     pub frames_dropped: u32,

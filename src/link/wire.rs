@@ -214,7 +214,7 @@ impl Deframer {
             self.overflowed |= self.bytes.push(byte).is_err();
             return None;
         }
-        let said = if core::mem::take(&mut self.overflowed) {
+        let emitted = if core::mem::take(&mut self.overflowed) {
             Some(Err(DecodeError::Stuffing))
         } else if self.bytes.is_empty() {
             None
@@ -222,7 +222,7 @@ impl Deframer {
             Some(unstuff(&self.bytes))
         };
         self.bytes.clear();
-        said
+        emitted
     }
 }
 

@@ -1,6 +1,6 @@
 //! The fingertip that a signal path is for: folded into the code of an image, or [loaded](crate::signal::loaded_design) at run time.
 
-use crate::signal::filter::Leaps;
+use crate::signal::filter::StepLimits;
 use crate::signal::fluid::Fall;
 use crate::signal::report::{Contact, Sigma};
 use crate::signal::scale::Scale;
@@ -122,7 +122,7 @@ pub struct Parameters {
     /// Of what is measured around the fingertip and moves a zero.
     pub rates: Rates,
     /// Of the filter.
-    pub leaps: Leaps,
+    pub step_limits: StepLimits,
     /// Of a touch.
     pub thresholds: Thresholds,
     /// Of the zero, when it is a leak.
@@ -148,7 +148,7 @@ impl Parameters {
             scale: Scale::of(fraction_bits),
             limits,
             rates: Rates::of(&constants, fraction_bits),
-            leaps: Leaps::of(&constants, fraction_bits, period),
+            step_limits: StepLimits::of(&constants, fraction_bits, period),
             thresholds: Thresholds::of(&constants, fraction_bits),
             fall: Fall::of(&constants, fraction_bits, &limits),
             uncertainty: Uncertainty::of(&constants, fraction_bits),

@@ -1,12 +1,12 @@
-//! Pressure rise -> the same with less noise and without wild samples, exactly one block later.
+//! Pressure rise -> the same with less noise and without outliers, exactly one block later.
 //!
 //! The block average is the main filter. This one adds the shortest symmetric kernel, 1-2-1 over 4: white noise
 //! falls to sqrt(6)/4 = 0.61 of itself, a ramp passes unchanged, and the delay is one block at every
 //! frequency, so a time stamp can take it back exactly.
 //!
-//! The block that is reported has one neighbour on each side, which tells a wild sample (flipped bits) from a press
-//! without any further delay: a fingertip does not leap off its line and back onto it within two blocks. Such a sample
-//! is replaced by what its neighbours say, and counted. Where a leap may be a press or not, or is faster than any
+//! The block that is reported has one neighbour on each side, which tells an outlier (flipped bits) from a press
+//! without any further delay: a fingertip does not step off its line and back onto it within two blocks. Such a sample
+//! is replaced by what its neighbours say, and counted. Where a step may be a press or not, or is faster than any
 //! press, there is [`Fault::Jump`] and no number.
 
 use crate::status::{Fault, Warnings};
@@ -17,31 +17,34 @@ use model_tables::units::PressureRise;
 /// By how many blocks the output lags the newest input; one, because it is about the one before.
 pub const GROUP_DELAY: u32 = 1;
 
-/// A bend of three blocks that noise does not explain, in grains of the transducer: a second difference has 2.4 times the
-/// noise of a block, so white noise of a whole grain gets there once in a thousand blocks, which then are not averaged;
+/// A bend of three blocks that noise does not explain, in noise floors of the transducer: a second difference has 2.4 times the
+/// noise of a block, so white noise of a whole noise floor gets there once in a thousand blocks, which then are not averaged;
 /// a converter's, a tenth of that, never.
-const LEAP_GRAINS: i64 = 8;
+const STEP_NOISE_FLOORS: i64 = 8;
 
 /// The fastest press there is takes this long over the whole table, microseconds: 2.5 mm at 0.6 m/s.
 const FASTEST_PRESS: u64 = 4_000;
 
-/// Blocks without a number after a leap that no press makes. One that comes back within them leaves no trace.
+/// Blocks without a number after a step that no press makes. One that comes back within them leaves no trace.
 const JUMP_HOLD: u8 = 8;
 
-/// How far a rise may leap or bend from one block to the next, counts.
+/// How far a rise may step or bend from one block to the next, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct Leaps {
+pub struct StepLimits {
     /// Above: not noise.
     pub noise: i64,
     /// Above: no press.
     pub press: i64,
 }
 
-impl Leaps {
-    /// The leaps of a design whose blocks come every `period` microseconds.
+impl StepLimits {
+    /// The step limits of a design whose blocks come every `period` microseconds.
     pub const fn of(constants: &DesignConstants, fraction_bits: u32, period: u32) -> Self {
-        let noise =
-            Pressure::from_millipascals(constants.transducer.grain() * LEAP_GRAINS, fraction_bits).0 as i64;
+        let noise = Pressure::from_millipascals(
+            constants.transducer.noise_floor() * STEP_NOISE_FLOORS,
+            fraction_bits,
+        )
+        .0 as i64;
         let span = constants.maximum_pressure.saturating_sub(constants.rest_pressure);
         // Below 2^31 * 2^32 / 4000 before the unit, which is at most 2^16 and clamped.
         let press = span as i64 * period as i64 * 1000 / FASTEST_PRESS as i64;
@@ -63,7 +66,7 @@ struct Block {
 /// The filter stage: the last three blocks.
 #[derive(Clone, Debug)]
 pub struct Filter {
-    leaps: Leaps,
+    step_limits: StepLimits,
     /// Oldest first.
     history: [Block; 3],
     /// How many of them there are, the newest ones.
@@ -77,13 +80,13 @@ pub struct Filter {
 
 impl Filter {
     /// A filter that has seen nothing yet.
-    pub const fn new(leaps: Leaps) -> Self {
+    pub const fn new(step_limits: StepLimits) -> Self {
         let none = Block {
             rise: PressureRise(0),
             warnings: Warnings::NONE,
         };
         Self {
-            leaps,
+            step_limits,
             history: [none; 3],
             filled: 0,
             hold: 0,
@@ -92,7 +95,7 @@ impl Filter {
         }
     }
 
-    /// Wild samples replaced so far.
+    /// Outliers replaced so far.
     pub const fn rejected(&self) -> u32 {
         self.rejected
     }
@@ -102,7 +105,7 @@ impl Filter {
     /// be of another time.
     ///
     /// # Errors
-    /// [`Fault::Settling`] for the first two blocks after the start or a gap, [`Fault::Jump`] where the rise leaps as
+    /// [`Fault::Settling`] for the first two blocks after the start or a gap, [`Fault::Jump`] where the rise steps as
     /// no press does.
     #[inline]
     pub fn step(
@@ -122,27 +125,37 @@ impl Filter {
         // At the start and after a gap the line before is taken to be level.
         let before = if self.filled == 2 { oldest } else { before };
         self.filled = 3;
-        let bend = leap(middle, newest) - leap(oldest, middle);
-        let leapt = bend.abs() > self.leaps.noise || leap(oldest, middle).abs() > self.leaps.press;
-        if leapt || self.hold > 0 {
-            return self.leapt(before, even, in_line);
+        let bend = step_between(middle, newest) - step_between(oldest, middle);
+        let stepped = bend.abs() > self.step_limits.noise
+            || step_between(oldest, middle).abs() > self.step_limits.press;
+        if stepped || self.hold > 0 {
+            return self.stepped(before, even, in_line);
         }
         Ok(smooth(oldest, middle, newest, even))
     }
 
-    /// The same where the line of samples bends by more than noise, or leaps.
+    /// The same where the line of samples bends by more than noise, or steps.
     #[cold]
-    fn leapt(&mut self, before: Block, even: bool, in_line: bool) -> Result<(PressureRise, Warnings), Fault> {
+    fn stepped(
+        &mut self,
+        before: Block,
+        even: bool,
+        in_line: bool,
+    ) -> Result<(PressureRise, Warnings), Fault> {
         let [oldest, middle, newest] = self.history;
-        let Leaps { noise, press } = self.leaps;
-        let (run_up, rising, leaving) = (leap(before, oldest), leap(oldest, middle), leap(middle, newest));
+        let StepLimits { noise, press } = self.step_limits;
+        let (run_up, rising, leaving) = (
+            step_between(before, oldest),
+            step_between(oldest, middle),
+            step_between(middle, newest),
+        );
         let (bent, bends) = (rising - run_up, leaving - rising);
-        // The newest lies on the line of the two before the middle, and the middle does not: that one is wild. (Of
+        // The newest lies on the line of the two before the middle, and the middle does not: that one is the outlier. (Of
         // samples that come unevenly the line cannot be told.)
         let on_line = (rising + leaving - 2 * run_up).abs() <= noise;
-        let wild =
+        let outlier =
             in_line && bends.abs() > noise && 2 * bent.abs() > noise && (bent > 0) != (bends > 0) && on_line;
-        if wild {
+        if outlier {
             let mean = (i64::from(oldest.rise.0) + i64::from(newest.rise.0)) >> 1;
             self.history[1] = Block {
                 rise: PressureRise(mean as i32),
@@ -156,7 +169,7 @@ impl Filter {
             self.hold -= 1;
             return Err(Fault::Jump);
         }
-        if wild || bends.abs() <= noise {
+        if outlier || bends.abs() <= noise {
             return Ok(smooth(oldest, self.history[1], newest, even));
         }
         // A press that began between the samples slows down or goes on, or gets faster once where a block averages over its
@@ -167,7 +180,7 @@ impl Filter {
         if 2 * bent.abs() > noise && !goes_on {
             return Err(Fault::Jump);
         }
-        // A corner, or a wild newest, which only the next block will tell: the middle stands for itself.
+        // A corner, or an outlier as the newest, which only the next block will tell: the middle stands for itself.
         Ok((middle.rise, oldest.warnings.and(middle.warnings)))
     }
 
@@ -187,7 +200,7 @@ impl Filter {
 }
 
 /// Below 2^33.
-fn leap(from: Block, to: Block) -> i64 {
+fn step_between(from: Block, to: Block) -> i64 {
     i64::from(to.rise.0) - i64::from(from.rise.0)
 }
 

@@ -19,7 +19,7 @@ use model_tables::units::Nanometres;
 const SHARE: i32 = 8;
 
 /// But by no less than this, in noise floors of the transducer.
-const LEAST_FLOORS: i64 = 10;
+const MIN_FLOORS: i64 = 10;
 
 /// Below zero for this long it is no wall that creeps back, microseconds.
 const STANDS: u64 = 60_000_000;
@@ -40,7 +40,7 @@ impl Fall {
     /// has, but for what it wanders from day to day.
     pub const fn of(constants: &DesignConstants, fraction_bits: u32, limits: &Limits) -> Self {
         let share = constants.rest_pressure / SHARE;
-        let floors = constants.transducer.grain() * LEAST_FLOORS;
+        let floors = constants.transducer.noise_floor() * MIN_FLOORS;
         let share = share as i64 * 1000;
         let least = if share > floors { share } else { floors };
         let leak = Pressure::from_millipascals(least, fraction_bits).0;

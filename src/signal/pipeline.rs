@@ -66,7 +66,7 @@ impl<D: Design> Pipeline<D> {
             zero: Estimator::new(limits, start_up),
             around: D::Around::NEW,
             gain: Gain::new(calibration.gain),
-            filter: Filter::new(parameters.leaps),
+            filter: Filter::new(parameters.step_limits),
             detector: TouchDetector::new(parameters.thresholds),
             touch: Touch::Unknown,
             fluid: FluidHealth::new(parameters.fall),
@@ -364,7 +364,7 @@ impl<D: Design> Pipeline<D> {
         self.design.parameters()
     }
 
-    /// The calibration that serves.
+    /// The calibration in use.
     pub fn calibration(&self) -> Calibration {
         self.calibration
     }
@@ -392,7 +392,7 @@ impl<D: Design> Pipeline<D> {
         self.design.tell(known)
     }
 
-    /// Wild samples replaced so far.
+    /// Outliers replaced so far.
     pub fn rejected(&self) -> u32 {
         self.filter.rejected()
     }

@@ -184,7 +184,7 @@ fn by_area(design: &impl Design, elastic: i64, at: &Lookup, rise: PressureRise) 
     // 16 or 17 bits. From a pressure with 32 bits below a pascal to a force with 16 below a micronewton: an area is below 32 768 mm2.
     let area = Factor {
         mantissa: ratio << 15,
-        shift: up.saturating_sub(down + 1).min(Factor::MOST_SHIFT),
+        shift: up.saturating_sub(down + 1).min(Factor::MAX_SHIFT),
     };
     area.of(pressure(design, rise))
 }

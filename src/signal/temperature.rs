@@ -2,7 +2,7 @@
 //!
 //! The coefficient comes from the calibration record, where two saved zeros at different temperatures give it.
 //! In contact the correction is held: then nothing but pressure moves the force. What that misses is part of the
-//! 1-sigma, and said when it could pass for a touch.
+//! 1-sigma, and reported when it could pass for a touch.
 
 use crate::status::Touch;
 use crate::units::{Centidegrees, Millipascals, saturate};

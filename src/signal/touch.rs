@@ -25,7 +25,7 @@ pub struct Thresholds {
 impl Thresholds {
     /// The thresholds of a design.
     pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
-        let floor = constants.transducer.grain();
+        let floor = constants.transducer.noise_floor();
         Self {
             touch: PressureRise(Pressure::from_millipascals(floor * TOUCH_FLOORS, fraction_bits).0),
             release: PressureRise(Pressure::from_millipascals(floor * RELEASE_FLOORS, fraction_bits).0),

@@ -3,7 +3,7 @@
 //! | offset | bytes | field |
 //! |---|---|---|
 //! | 0 | 4 | `FTC` and the version of this layout, 1 |
-//! | 4 | 4 | sequence number, from 1; the highest is the one that serves |
+//! | 4 | 4 | sequence number, from 1; the highest is the one in use |
 //! | 8 | 8 | hash of the design it is for |
 //! | 16 | 4 | version of that design's tables |
 //! | 20 | 3 | version of the firmware that wrote it |
@@ -37,7 +37,7 @@ const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 /// A calibration with what it is for.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Record {
-    /// The highest serves.
+    /// The highest is in use.
     pub sequence: u32,
     /// The design it is for.
     pub design_hash: u64,

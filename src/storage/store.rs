@@ -1,13 +1,13 @@
-//! The calibration in flash: two slots of erasable memory, each a log of records; the highest sequence number serves.
+//! The calibration in flash: two slots of erasable memory, each a log of records; the highest sequence number is in use.
 //!
 //! A new record goes behind the last one in its slot. When that is full the *other* slot is erased and written, never
-//! the one that holds the record that serves: power may fail at any write or erasure, and what is read afterwards is
-//! the old calibration or the new one. Every record is read back before it counts. One erasure serves a slot full of
+//! the one that holds the record in use: power may fail at any write or erasure, and what is read afterwards is
+//! the old calibration or the new one. Every record is read back before it counts. One erasure frees a slot for a slot full of
 //! saves, what is stored already is not stored again, and [`ENDURANCE`] ends it before the memory does.
 //!
 //! Memory with error correction refuses to read a unit whose programming or erasure was cut. A place with such a unit
 //! holds no record and is passed over: saves go on behind it, and the next erasure of its slot heals it. A place that
-//! may have held a whole record, newer than the one that serves, makes the state [`Stored::Unreadable`] until the next
+//! may have held a whole record, newer than the one in use, makes the state [`Stored::Unreadable`] until the next
 //! save. A record is written in order, so a place that ends blank never held one.
 //!
 //! Own code and no key-value crate: one value and no keys, so that there is nothing to collect; what is proven is the
@@ -61,7 +61,7 @@ pub struct Store<F> {
     /// The next place in it.
     next: u32,
     erasures: u32,
-    /// Spoilt places that may have held newer records than the one that serves.
+    /// Spoilt places that may have held newer records than the one in use.
     hidden: u32,
     /// The memory refused to read some place.
     refused: bool,
@@ -126,26 +126,26 @@ impl<F: NorFlash> Store<F> {
     pub async fn load(&mut self) -> Stored {
         let logs = [self.scan(0).await, self.scan(1).await];
         let [first, second] = &logs;
-        let (serves, other) = if self.home == 0 {
+        let (in_use, other) = if self.home == 0 {
             (first, second)
         } else {
             (second, first)
         };
         // Saves leave a slot when it is full, so behind a slot that is not full there is no newer one; and the records
         // of a slot are older than the first of the next.
-        let turned_over = !serves.holds || serves.used == self.places();
-        self.hidden = serves.hidden;
+        let turned_over = !in_use.holds || in_use.used == self.places();
+        self.hidden = in_use.hidden;
         if turned_over && !other.holds {
             self.hidden += other.hidden;
         }
         self.current = self.home;
-        self.next = serves.used;
-        self.erasures = serves.erasures.max(other.erasures);
+        self.next = in_use.used;
+        self.erasures = in_use.erasures.max(other.erasures);
         match &self.latest {
             Some(_) if self.hidden > 0 => Stored::Unreadable,
             Some(latest) => self.state_of(latest),
             None if self.refused => Stored::Unreadable,
-            None if serves.used + other.used > 0 => Stored::Damaged,
+            None if in_use.used + other.used > 0 => Stored::Damaged,
             None => Stored::None,
         }
     }
@@ -186,15 +186,15 @@ impl<F: NorFlash> Store<F> {
                 Stored::OtherDesign
             }
             Some(calibration) if !calibration.is_plausible(identity.range) => Stored::Damaged,
-            Some(_) => Stored::Serves,
+            Some(_) => Stored::InUse,
         }
     }
 
-    /// The calibration that serves, if the record is this design's and its values can be.
+    /// The calibration in use, if the record is this design's and its values can be.
     pub fn calibration(&self) -> Option<Calibration> {
         let record = self
             .latest
-            .filter(|record| self.state_of(record) == Stored::Serves)?;
+            .filter(|record| self.state_of(record) == Stored::InUse)?;
         record.calibration
     }
 
@@ -217,7 +217,7 @@ impl<F: NorFlash> Store<F> {
     /// Stores a calibration, or that there is none.
     ///
     /// # Errors
-    /// [`StoreError`]; the record from before serves still.
+    /// [`StoreError`]; the record from before stays in use.
     pub async fn save(&mut self, calibration: Option<Calibration>) -> Result<(), StoreError> {
         let Identity {
             design_hash,
@@ -286,7 +286,7 @@ impl<F: NorFlash> Store<F> {
         false
     }
 
-    /// Erases the slot that does not hold the record that serves, and goes on there.
+    /// Erases the slot that does not hold the record in use, and goes on there.
     async fn turn_over(&mut self) -> Result<(), StoreError> {
         if self.erasures >= 2 * ENDURANCE {
             return Err(StoreError::WornOut);

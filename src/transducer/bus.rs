@@ -14,7 +14,7 @@ pub trait Bus: I2c {
     async fn clear(&mut self);
 }
 
-/// Why there is no sample, from what the bus said.
+/// Why there is no sample, from the failure of the bus.
 #[allow(clippy::needless_pass_by_value)] // as `map_err` hands it over
 pub(super) fn fault(error: impl Error) -> Fault {
     match error.kind() {

@@ -5,8 +5,8 @@ pub mod bus;
 pub mod counts;
 pub mod dps310;
 pub mod driver;
-pub mod keeper;
 pub mod ms5837;
 pub mod ratiometric;
 #[cfg(test)]
 mod script;
+pub mod supervisor;

@@ -39,7 +39,7 @@ const VERSIONS: [u16; 2] = [0x00, 0x15];
 
 /// The sensitivity C1 is above this. The datasheets' typical values are 46372 for the 02BA and 34982 for the 30BA; the
 /// parts that the authors of `ArduPilot` collected (pull request 29122) lie apart at 37000.
-const LEAST_SENSITIVITY: u16 = 37_000;
+const MIN_SENSITIVITY: u16 = 37_000;
 
 /// What the part measures, pascals: 10 to 2000 mbar.
 const LOWEST: i64 = 1_000;
@@ -144,7 +144,7 @@ impl Calibration {
         if empty || crc4(prom) != first >> 12 {
             return Err(Fault::SensorCalibration);
         }
-        if !VERSIONS.contains(&(first >> 5 & 0x7F)) || coefficients[0] <= LEAST_SENSITIVITY {
+        if !VERSIONS.contains(&(first >> 5 & 0x7F)) || coefficients[0] <= MIN_SENSITIVITY {
             return Err(Fault::WrongSensor);
         }
         let [c1, c2, c3, c4, c5, c6] = coefficients.map(i64::from);

@@ -193,8 +193,8 @@ const fn rounded(a: i128, b: i128) -> i128 {
 mod tests {
     use super::*;
     use crate::status::Warnings;
-    use crate::transducer::keeper::Keeper;
     use crate::transducer::script::Stopwatch;
+    use crate::transducer::supervisor::TransducerSupervisor;
     use core::sync::atomic::{AtomicU32, Ordering};
     use embassy_futures::block_on;
     use model_tables::constants::Quantity;
@@ -324,7 +324,7 @@ mod tests {
     }
 
     /// Both blocks at half the supply.
-    fn kept() -> (Keeper<Ratiometric<HandRing>, Stopwatch>, Hand) {
+    fn kept() -> (TransducerSupervisor<Ratiometric<HandRing>, Stopwatch>, Hand) {
         kept_with(false, [2047, 2048])
     }
 
@@ -332,7 +332,7 @@ mod tests {
     fn kept_with(
         supply_measured: bool,
         [first, second]: [u32; 2],
-    ) -> (Keeper<Ratiometric<HandRing>, Stopwatch>, Hand) {
+    ) -> (TransducerSupervisor<Ratiometric<HandRing>, Stopwatch>, Hand) {
         let hand = Hand::default();
         let block = || core::array::from_fn(|_| AtomicU32::new(second << 16 | first));
         let converter = HandRing {
@@ -345,27 +345,27 @@ mod tests {
             supply_measured,
         };
         let transducer = Ratiometric::new(&transducer, converter);
-        (Keeper::new(transducer, Stopwatch::default()), hand)
+        (TransducerSupervisor::new(transducer, Stopwatch::default()), hand)
     }
 
     #[test]
     fn a_measured_supply_is_divided_by() {
         // Half of a supply of 3/4 of the reference.
-        let (mut keeper, _) = kept_with(true, [1536, 3072]);
-        let sample = block_on(keeper.next()).expect("nothing is wrong");
+        let (mut supervisor, _) = kept_with(true, [1536, 3072]);
+        let sample = block_on(supervisor.next()).expect("nothing is wrong");
         assert!(sample.pressure.0.abs_diff(51_111_000) < 2000, "{sample:?}");
-        let (mut keeper, hand) = kept_with(true, [0, 0]);
+        let (mut supervisor, hand) = kept_with(true, [0, 0]);
         for _ in 0..5 {
-            assert_eq!(block_on(keeper.next()), Err(Fault::SensorSupply));
+            assert_eq!(block_on(supervisor.next()), Err(Fault::SensorSupply));
         }
         assert_eq!(hand.0.borrow().restarts, 1);
     }
 
     #[test]
     fn a_running_converter_gives_a_sample_a_period() {
-        let (mut keeper, hand) = kept();
+        let (mut supervisor, hand) = kept();
         for _ in 0..100 {
-            let sample = block_on(keeper.next()).expect("nothing is wrong");
+            let sample = block_on(supervisor.next()).expect("nothing is wrong");
             assert!(sample.pressure.0.abs_diff(51_111_000) < 2000, "{sample:?}");
             // The middle of its block, and two conversions since its end.
             assert_eq!(sample.age, 500 + 20);
@@ -375,56 +375,56 @@ mod tests {
 
     #[test]
     fn an_overrun_is_a_fault_and_over_with_the_next_sample() {
-        let (mut keeper, hand) = kept();
-        assert!(block_on(keeper.next()).is_ok());
+        let (mut supervisor, hand) = kept();
+        assert!(block_on(supervisor.next()).is_ok());
         hand.0.borrow_mut().overrun = true;
-        assert_eq!(block_on(keeper.next()), Err(Fault::SamplesLost));
-        assert!(block_on(keeper.next()).is_ok());
+        assert_eq!(block_on(supervisor.next()), Err(Fault::SamplesLost));
+        assert!(block_on(supervisor.next()).is_ok());
     }
 
     #[test]
     fn a_converter_that_stands_is_started_again_within_three_periods() {
-        let (mut keeper, hand) = kept();
-        assert!(block_on(keeper.next()).is_ok());
+        let (mut supervisor, hand) = kept();
+        assert!(block_on(supervisor.next()).is_ok());
         hand.0.borrow_mut().stands = true;
-        assert_eq!(block_on(keeper.next()), Err(Fault::ConverterStalled));
-        assert_eq!(block_on(keeper.next()), Err(Fault::ConverterStalled));
-        assert!(block_on(keeper.next()).is_ok());
+        assert_eq!(block_on(supervisor.next()), Err(Fault::ConverterStalled));
+        assert_eq!(block_on(supervisor.next()), Err(Fault::ConverterStalled));
+        assert!(block_on(supervisor.next()).is_ok());
     }
 
     #[test]
     fn a_block_overwritten_while_it_is_read_is_no_sample() {
-        let (mut keeper, hand) = kept();
-        assert!(block_on(keeper.next()).is_ok());
+        let (mut supervisor, hand) = kept();
+        assert!(block_on(supervisor.next()).is_ok());
         hand.0.borrow_mut().while_reading = 99;
-        assert_eq!(block_on(keeper.next()), Err(Fault::SamplesLost));
+        assert_eq!(block_on(supervisor.next()), Err(Fault::SamplesLost));
     }
 
     #[test]
     fn a_late_look_loses_samples_and_says_so() {
-        let (mut keeper, hand) = kept();
-        assert!(block_on(keeper.next()).is_ok());
+        let (mut supervisor, hand) = kept();
+        assert!(block_on(supervisor.next()).is_ok());
         for late in [180, 290] {
             hand.0.borrow_mut().further = late;
-            assert_eq!(block_on(keeper.next()), Err(Fault::SamplesLost), "{late}");
+            assert_eq!(block_on(supervisor.next()), Err(Fault::SamplesLost), "{late}");
             // Back in step with the blocks.
             let position = hand.0.borrow().position;
             hand.0.borrow_mut().further = 102 - position % 100;
-            assert!(block_on(keeper.next()).is_ok(), "{late}");
+            assert!(block_on(supervisor.next()).is_ok(), "{late}");
         }
         assert_eq!(hand.0.borrow().restarts, 1);
     }
 
     #[test]
     fn a_rail_is_a_fault_that_starts_nothing_anew() {
-        let (mut keeper, hand) = kept();
-        assert!(block_on(keeper.next()).is_ok());
+        let (mut supervisor, hand) = kept();
+        assert!(block_on(supervisor.next()).is_ok());
         for (code, fault) in [(0x0FFF, Fault::SensorOpen), (0, Fault::SensorShort)] {
-            for block in &keeper.transducer().converter.ring {
+            for block in &supervisor.transducer().converter.ring {
                 block[7].store(2048 << 16 | code, Ordering::Relaxed);
             }
             for _ in 0..5 {
-                assert_eq!(block_on(keeper.next()), Err(fault));
+                assert_eq!(block_on(supervisor.next()), Err(fault));
             }
         }
         assert_eq!(hand.0.borrow().restarts, 1);

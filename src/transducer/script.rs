@@ -86,9 +86,9 @@ struct Play {
 
 /// The error of a [`Script`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Said(ErrorKind);
+pub(crate) struct ScriptedError(ErrorKind);
 
-impl Error for Said {
+impl Error for ScriptedError {
     fn kind(&self) -> ErrorKind {
         self.0
     }
@@ -119,11 +119,15 @@ impl Script {
 }
 
 impl ErrorType for Script {
-    type Error = Said;
+    type Error = ScriptedError;
 }
 
 impl I2c for Script {
-    async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Said> {
+    async fn transaction(
+        &mut self,
+        address: u8,
+        operations: &mut [Operation<'_>],
+    ) -> Result<(), ScriptedError> {
         let failure = {
             let mut play = self.0.borrow_mut();
             let at = play.at;
@@ -132,7 +136,7 @@ impl I2c for Script {
         match failure {
             Some((_, BusFailure::Error(kind))) => {
                 self.0.borrow_mut().at = 0;
-                return Err(Said(kind));
+                return Err(ScriptedError(kind));
             }
             Some((_, BusFailure::Hangs)) => {
                 self.0.borrow_mut().at = 0;
@@ -144,13 +148,13 @@ impl I2c for Script {
         assert_eq!(address, play.address);
         let (written, answer) = play.steps.get(play.at).expect("the script goes on").clone();
         play.at += 1;
-        let (said, heard) = match operations {
-            [Operation::Write(said)] => (*said, None),
+        let (written_bytes, heard) = match operations {
+            [Operation::Write(written_bytes)] => (*written_bytes, None),
             [Operation::Read(heard)] => (&[][..], Some(heard)),
-            [Operation::Write(said), Operation::Read(heard)] => (*said, Some(heard)),
+            [Operation::Write(written_bytes), Operation::Read(heard)] => (*written_bytes, Some(heard)),
             _ => panic!("no transaction of these parts"),
         };
-        assert_eq!(said, written, "transaction {}", play.at);
+        assert_eq!(written_bytes, written, "transaction {}", play.at);
         assert_eq!(heard.as_ref().map_or(0, |heard| heard.len()), answer.len());
         if let Some(heard) = heard {
             heard.copy_from_slice(&answer);
@@ -183,7 +187,7 @@ async fn started_and_sampled(part: &mut impl Driver) -> Result<Sample, Fault> {
     part.sample().await
 }
 
-/// Lets every transaction fail in every way, once: the fault is said, nothing else, and the next start and sample are
+/// Lets every transaction fail in every way, once: the fault is reported, nothing else, and the next start and sample are
 /// as if nothing had been. Returns how many failures there were.
 pub(crate) fn fail_everywhere<T: Driver>(
     address: u8,

@@ -313,7 +313,7 @@ fn errors(
         .map(|share| (100.0 * share).abs())
         .collect();
     sizes.sort_by(f64::total_cmp);
-    // A few wild points do not set the scale.
+    // A few outliers do not set the scale.
     let usual = sizes.get(sizes.len() * 99 / 100).copied().unwrap_or(0.0);
     let limit = (1.3 * usual).max(2.0 * target);
     let label = "error / % of reading";

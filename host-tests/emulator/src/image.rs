@@ -32,7 +32,7 @@ pub enum ImageError {
     DesignPath(PathBuf),
     /// cargo could not be started.
     Cargo(std::io::Error),
-    /// cargo did not build it. It has said why.
+    /// cargo did not build it. It has printed why.
     Build {
         /// The binary asked for.
         binary: String,

@@ -76,7 +76,7 @@ impl Server {
 
 impl Client {
     /// Both ways, as far as they go; `None` when it is gone.
-    fn exchange(&mut self, heard: &[u8], said: &mut Vec<u8>) -> Option<()> {
+    fn exchange(&mut self, heard: &[u8], emitted: &mut Vec<u8>) -> Option<()> {
         self.waiting.extend_from_slice(heard);
         let mut sent = 0;
         while sent < self.waiting.len() {
@@ -93,7 +93,7 @@ impl Client {
         loop {
             match self.stream.read(&mut buffer) {
                 Ok(0) => return None,
-                Ok(count) => said.extend_from_slice(&buffer[..count]),
+                Ok(count) => emitted.extend_from_slice(&buffer[..count]),
                 Err(error) if error.kind() == ErrorKind::WouldBlock => break,
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
                 Err(_) => return None,
@@ -119,10 +119,10 @@ impl Listener for Server {
             thread::sleep(ahead);
         }
         self.accept();
-        let mut said = vec![];
+        let mut emitted = vec![];
         let heard = std::mem::take(&mut self.heard);
         self.clients
-            .retain_mut(|client| client.exchange(&heard, &mut said).is_some());
-        said
+            .retain_mut(|client| client.exchange(&heard, &mut emitted).is_some());
+        emitted
     }
 }

@@ -38,7 +38,7 @@ pub(crate) enum Question {
 }
 
 impl Question {
-    fn words(self) -> &'static str {
+    fn label(self) -> &'static str {
         match self {
             Self::Gain => "gain, ppm added to the pressure rise (-100000 to 100000): ",
             Self::Forget => "forget the saved zero and gain? y to confirm: ",
@@ -118,7 +118,7 @@ impl Keyboard {
     pub(crate) fn line(&self) -> Option<String> {
         self.question
             .as_ref()
-            .map(|(question, answer)| format!("{}{answer}_", question.words()))
+            .map(|(question, answer)| format!("{}{answer}_", question.label()))
     }
 
     /// Takes a key.

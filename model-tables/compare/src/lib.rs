@@ -16,8 +16,6 @@
 pub mod lookups;
 
 #[cfg(feature = "std")]
-pub mod atlas;
-#[cfg(feature = "std")]
 pub mod campaign;
 #[cfg(feature = "std")]
 pub mod chart;
@@ -25,3 +23,5 @@ pub mod chart;
 pub mod ladder;
 #[cfg(feature = "std")]
 pub mod methods;
+#[cfg(feature = "std")]
+pub mod robustness_map;

@@ -44,6 +44,6 @@ fn auto_lets_no_more_error_through_than_allowed() {
             let taken = wall.take(asked);
             assert!(taken.error <= asked, "{:?}: {asked} {taken:?}", wall.case);
         }
-        assert_eq!(wall.take(1e-9).rung, LADDER.len() - 1);
+        assert_eq!(wall.take(1e-9).fidelity, LADDER.len() - 1);
     }
 }

@@ -5,8 +5,8 @@ mod common;
 
 use common::{AGILUS30, design};
 use compare::methods::approximations::{Approximation, NoTruth, Yardstick};
+use compare::methods::benchmark::{self, DESIGNS, Sweep};
 use compare::methods::bisection::{Bisection, Fineness, PAPER};
-use compare::methods::contest::{self, DESIGNS, Sweep};
 use compare::methods::few_states::FewStates;
 use compare::methods::light_contact::LightContact;
 use compare::methods::shooting::Shooting;
@@ -335,21 +335,21 @@ fn approximations_are_measured_over_the_press_that_is_asked_about() {
 
 #[test]
 fn the_truth_of_the_contest_is_known_to_ten_digits_and_agrees_with_shooting() {
-    for contestant in &DESIGNS {
-        let sweep = Sweep::new(contestant).expect("every state");
+    for design in &DESIGNS {
+        let sweep = Sweep::new(design).expect("every state");
         assert!(
             sweep.uncertainty < 1e-10,
             "{}: {:e}",
-            contestant.name,
+            design.name,
             sweep.uncertainty
         );
-        let mut shooting = Shooting::new(&contestant.design, 1e-11).expect("rest state");
+        let mut shooting = Shooting::new(&design.design, 1e-11).expect("rest state");
         for (&indentation, &force) in sweep.indentations.iter().zip(&sweep.forces).step_by(9) {
             let found = shooting.at_indentation(indentation).expect("state");
             assert!(
                 off(found.force, force) < 1e-8,
                 "{} H = {indentation:e}",
-                contestant.name
+                design.name
             );
         }
     }
@@ -359,18 +359,18 @@ fn the_truth_of_the_contest_is_known_to_ten_digits_and_agrees_with_shooting() {
 fn the_contest_times_what_it_solves() {
     let sweep = Sweep::new(&DESIGNS[0]).expect("every state");
     let methods = [
-        contest::Method::Collocation {
+        benchmark::Method::Collocation {
             stages: 4,
             density: 1.5,
         },
-        contest::Method::LightContact,
+        benchmark::Method::LightContact,
     ];
-    let [ours, light] = &contest::run(&sweep, &methods, |_| {})[..] else {
+    let [ours, light] = &benchmark::run(&sweep, &methods, |_| {})[..] else {
         panic!("two results");
     };
-    assert!(ours.failure.is_none() && ours.found == contest::STATES && ours.worst < 1e-4);
+    assert!(ours.failure.is_none() && ours.found == benchmark::STATES && ours.worst < 1e-4);
     assert!(ours.seconds > 0.0 && ours.median <= ours.worst);
-    assert!(light.failure.is_some() && light.found < contest::STATES && light.seconds < ours.seconds);
+    assert!(light.failure.is_some() && light.found < benchmark::STATES && light.seconds < ours.seconds);
 }
 
 #[test]

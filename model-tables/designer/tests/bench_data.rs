@@ -90,7 +90,7 @@ fn the_same_bench_is_read_however_it_is_written() {
         .replace('\n', "\"\n\"")
         .replace(',', "\",\"");
     let quoted = format!("\"{}", quoted.trim_end_matches('"'));
-    for (bytes, extra, said) in [
+    for (bytes, extra, note) in [
         (
             csv(PLAIN, ";", &rows)
                 .replace(',', ";")
@@ -136,12 +136,12 @@ fn the_same_bench_is_read_however_it_is_written() {
         ),
     ] {
         let (ok, answer, notes) = fit(&folder, &bytes, extra);
-        assert!(ok, "{said}: {notes}");
+        assert!(ok, "{note}: {notes}");
         assert!(
             (factor(&answer) / factor(&plain) - 1.0).abs() < 1e-3,
-            "{said}: {answer} for {plain}"
+            "{note}: {answer} for {plain}"
         );
-        assert!(notes.contains(said), "{notes}");
+        assert!(notes.contains(note), "{notes}");
     }
 }
 

@@ -254,7 +254,7 @@ fn ladder_writes_every_number_the_map_and_the_page() {
     let _ = fs::remove_dir_all(&out);
     let folder = out.to_str().expect("text");
     let rows = header_and_rows(&["ladder", "--designs", "1", "--out", folder]).1;
-    // Five accuracies, five rungs, one wall.
+    // Five accuracies, five fidelities, one wall.
     assert_eq!(rows.len(), 25);
     let walls: u32 = rows
         .iter()

@@ -97,9 +97,9 @@ fn with_placeholders(words: &[String]) -> Vec<String> {
 /// Runs a program, which must succeed; gives what it printed.
 fn succeed(line: &str, program: &mut process::Command) -> String {
     let output = program.output().unwrap_or_else(|error| panic!("{line}: {error}"));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{line}: {}\n{said}", output.status);
-    format!("{}{said}", String::from_utf8_lossy(&output.stdout))
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}: {}\n{stderr}", output.status);
+    format!("{}{stderr}", String::from_utf8_lossy(&output.stdout))
 }
 
 /// Runs a command in a folder, or holds it to its arguments; gives what it printed.
@@ -369,7 +369,7 @@ fn every_image_builds_and_every_program_takes_its_arguments() {
 }
 
 /// Checks the firmware's library for the chip with this value of `FINGERTIP_DESIGN`, or without it: the tables' source,
-/// or what cargo said.
+/// or what cargo stderr.
 fn tables_of(design: Option<&OsStr>, features: &[&str]) -> Result<String, String> {
     let output = process::Command::new(env!("CARGO"))
         .args([
@@ -454,12 +454,12 @@ fn what_names_no_design_is_refused_in_a_line() {
             "FINGERTIP_DESIGN=none.toml is no file: give a design file, absolute or relative",
         ),
     ] {
-        let said = tables_of(Some(OsStr::from_bytes(asked)), &[]).expect_err("nothing to build");
-        let lines: Vec<&str> = said
+        let stderr = tables_of(Some(OsStr::from_bytes(asked)), &[]).expect_err("nothing to build");
+        let lines: Vec<&str> = stderr
             .lines()
             .filter(|line| line.contains("FINGERTIP_DESIGN"))
             .collect();
-        assert!(lines.len() == 1 && lines[0].contains(refusal), "{said}");
+        assert!(lines.len() == 1 && lines[0].contains(refusal), "{stderr}");
     }
 }
 
@@ -471,10 +471,10 @@ fn an_image_for_two_boards_or_none_is_refused_with_the_remedy() {
         (&["--features", "board-nucleo-l432kc"][..], "2"),
         (&["--no-default-features"], "0"),
     ] {
-        let said = tables_of(Some(design), features).expect_err("there is no such image");
+        let stderr = tables_of(Some(design), features).expect_err("there is no such image");
         let refusal = format!(
             "{boards} boards are chosen: choose one, with --package fingertip --no-default-features --features board-"
         );
-        assert!(said.contains(&refusal), "{said}");
+        assert!(stderr.contains(&refusal), "{stderr}");
     }
 }

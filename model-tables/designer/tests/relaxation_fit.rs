@@ -8,7 +8,7 @@ mod program;
 
 use designer::fit::data::DataChoice;
 use designer::fit::relaxation::record::HoldRecord;
-use designer::fit::relaxation::{FittedTerm, HoldError, RelaxationFit, Told, fit_relaxation};
+use designer::fit::relaxation::{FittedTerm, HoldError, Identifiability, RelaxationFit, fit_relaxation};
 use fingertip::signal::design::Design as _;
 use fingertip::signal::loaded_design::LoadedDesign;
 use fingertip::signal::relaxation::Relaxing;
@@ -396,7 +396,10 @@ fn the_relaxed_modulus_is_told_or_not() {
     println!("settled {told:.2?}, relaxing {open:.2?}");
     assert!(open[0] < 0.5 && open[1] > 1.05, "{open:?}");
     let slowest = fit.terms.last().expect("terms");
-    assert!(slowest.time > 60.0 && slowest.told != Told::Both, "{slowest:?}");
+    assert!(
+        slowest.time > 60.0 && slowest.identifiability != Identifiability::Both,
+        "{slowest:?}"
+    );
 }
 
 #[test]
@@ -480,7 +483,7 @@ fn the_design_has_the_series_that_was_found() {
     ]);
     assert_eq!(
         header,
-        "term,tau_s,tau_standard_error_s,tau_low_s,tau_high_s,g,g_standard_error,g_low,g_high,told"
+        "term,tau_s,tau_standard_error_s,tau_low_s,tau_high_s,g,g_standard_error,g_low,g_high,identifiable"
     );
     assert_eq!(rows.len(), 3);
     let written = fs::read_to_string(folder.join("printed-relaxing.toml")).expect("it was written");

@@ -108,7 +108,7 @@ impl Field for Factor {
 
     fn get(bytes: &[u8]) -> Option<Self> {
         let [mantissa, shift] = <[u32; 2]>::get(bytes)?;
-        (shift <= Self::MOST_SHIFT).then_some(Self { mantissa, shift })
+        (shift <= Self::MAX_SHIFT).then_some(Self { mantissa, shift })
     }
 
     #[cfg(feature = "std")]

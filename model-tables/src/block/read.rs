@@ -301,7 +301,7 @@ impl Visit for Cursor<'_> {
     }
 }
 
-/// Whether the signal path computes with these: thresholds come from the transducer's grain, gates from its range.
+/// Whether the signal path computes with these: thresholds come from the transducer's noise floor, gates from its range.
 fn check_constants(constants: &DesignConstants) -> Result<(), BlockError> {
     let Transducer {
         range: [from, to],

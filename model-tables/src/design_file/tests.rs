@@ -217,8 +217,8 @@ fn a_part_on_a_bus_knows_what_it_measures_against() {
         let with =
             |quantity: &str| with_transducer(&format!("kind = \"{kind}\"\nrange_kpa = [0, 12]\n{quantity}"));
         let silent = with("").expect(kind);
-        let said = with(&format!("quantity = \"{right}\"")).expect(kind);
-        assert_eq!(silent, said);
+        let stated = with(&format!("quantity = \"{right}\"")).expect(kind);
+        assert_eq!(silent, stated);
         let transducer = silent.transducer.expect("there");
         assert_eq!(transducer.quantity, own);
         // Wanted of it, whatever the air; and what it has.

@@ -75,7 +75,7 @@ impl<'a> Sum<'a> {
             })
         };
         let constant = words[output];
-        let mut coefficients = [0; super::minimax::MOST];
+        let mut coefficients = [0; super::minimax::MAX_COEFFICIENTS];
         coefficients[0] = constant;
         let mut at = 2;
         for (power, coefficient) in coefficients[1..=layout.powers.terms()].iter_mut().enumerate() {

@@ -1,7 +1,7 @@
 //! From one segmentation to integers: each segment's sums rounded, near enough to the curve to rise with it.
 
 use super::bounds::{Range, Sum};
-use super::minimax::{FitSample, MOST, fit};
+use super::minimax::{FitSample, MAX_COEFFICIENTS, fit};
 use super::owned::OwnedTables;
 use super::quantise::{Coefficients, round};
 use super::shape::{Segmentation, Span, instructions};
@@ -138,11 +138,11 @@ impl Candidate<'_> {
             spans,
             before,
         };
-        // Where real coefficients do not serve, rounding is not tried: the last segment's are the largest, those of the first have
+        // Where real coefficients are not exact enough, rounding is not tried: the last segment's are the largest, those of the first have
         // the fewest digits.
         for span in [spans.last()?, spans.first()?] {
             let samples = self.windows(layout, output, shift, tolerance, span, 0)?;
-            if fit(&samples, 1 + layout.powers.terms(), &[0.0; MOST]).error >= MARGIN {
+            if fit(&samples, 1 + layout.powers.terms(), &[0.0; MAX_COEFFICIENTS]).error >= MARGIN {
                 return None;
             }
         }
@@ -286,7 +286,7 @@ impl Tolerance {
 }
 
 /// What the coefficients are multiplied with at a count, in units of the sum.
-pub(super) fn factors(layout: &Layout, count: i32) -> [f64; MOST] {
+pub(super) fn factors(layout: &Layout, count: i32) -> [f64; MAX_COEFFICIENTS] {
     let [a, b, c, d] = layout
         .factors(layout.place(PressureRise(count)).mantissa)
         .map(|factor| f64::from(factor) / 65536.0);

@@ -4,7 +4,7 @@
 //! signs), so the best sum is the one whose error alternates between its extremes once more than it has coefficients.
 
 /// Coefficients of a sum at most.
-pub const MOST: usize = 5;
+pub const MAX_COEFFICIENTS: usize = 5;
 /// Exchanges at most; a handful is usual.
 const EXCHANGES: usize = 30;
 /// The largest error this close to that of the alternation is taken for it.
@@ -14,7 +14,7 @@ const CLOSE: f64 = 1.002;
 #[derive(Clone, Copy, Debug)]
 pub struct FitSample {
     /// What its coefficients are multiplied with.
-    pub factors: [f64; MOST],
+    pub factors: [f64; MAX_COEFFICIENTS],
     /// The middle of the window.
     pub middle: f64,
     /// Half its width, > 0.
@@ -23,7 +23,7 @@ pub struct FitSample {
 
 impl FitSample {
     /// How far a sum with these coefficients lies from the middle, in half widths.
-    pub fn error(&self, coefficients: &[f64; MOST]) -> f64 {
+    pub fn error(&self, coefficients: &[f64; MAX_COEFFICIENTS]) -> f64 {
         let mut sum = 0.0;
         for (coefficient, factor) in coefficients.iter().zip(self.factors) {
             sum += coefficient * factor;
@@ -36,13 +36,13 @@ impl FitSample {
 #[derive(Clone, Copy, Debug)]
 pub struct MinimaxFit {
     /// The coefficients.
-    pub coefficients: [f64; MOST],
+    pub coefficients: [f64; MAX_COEFFICIENTS],
     /// The largest error.
     pub error: f64,
 }
 
 /// The best sum whose coefficients from `free` on are those `given`. The samples are in the order of their inputs.
-pub fn fit(samples: &[FitSample], free: usize, given: &[f64; MOST]) -> MinimaxFit {
+pub fn fit(samples: &[FitSample], free: usize, given: &[f64; MAX_COEFFICIENTS]) -> MinimaxFit {
     let count = samples.len();
     let mut best = MinimaxFit {
         coefficients: *given,
@@ -83,12 +83,12 @@ fn alternating(
     samples: &[FitSample],
     reference: &[usize],
     free: usize,
-    given: &[f64; MOST],
-) -> Option<([f64; MOST], f64)> {
+    given: &[f64; MAX_COEFFICIENTS],
+) -> Option<([f64; MAX_COEFFICIENTS], f64)> {
     // Unknowns: the free coefficients and the level; last column: the right-hand side.
-    let mut rows = [[0.0; MOST + 2]; MOST + 1];
+    let mut rows = [[0.0; MAX_COEFFICIENTS + 2]; MAX_COEFFICIENTS + 1];
     let size = free + 1;
-    let mut scales = [1.0; MOST + 1];
+    let mut scales = [1.0; MAX_COEFFICIENTS + 1];
     for (column, scale) in scales.iter_mut().enumerate().take(free) {
         let largest = reference.iter().fold(0.0_f64, |largest, &at| {
             largest.max(samples[at].factors[column].abs() / samples[at].half)
@@ -98,7 +98,7 @@ fn alternating(
     for (i, &at) in reference.iter().enumerate() {
         let sample = &samples[at];
         let mut rest = sample.middle;
-        for column in free..MOST {
+        for column in free..MAX_COEFFICIENTS {
             rest -= given[column] * sample.factors[column];
         }
         for column in 0..free {
@@ -192,7 +192,7 @@ mod tests {
         (0..=400)
             .map(|i| {
                 let x = f64::from(i) / 400.0;
-                let mut factors = [0.0; MOST];
+                let mut factors = [0.0; MAX_COEFFICIENTS];
                 for (factor, &power) in factors.iter_mut().zip(powers) {
                     *factor = x.powi(power);
                 }
@@ -208,7 +208,7 @@ mod tests {
     /// The best line on `x^2` is `x - 1/8`, its error 1/8.
     #[test]
     fn finds_the_best_line_on_a_parabola() {
-        let found = fit(&sampled(&[0, 1], |x| x * x), 2, &[0.0; MOST]);
+        let found = fit(&sampled(&[0, 1], |x| x * x), 2, &[0.0; MAX_COEFFICIENTS]);
         assert!((found.error - 0.125).abs() < 1e-6, "{found:?}");
         assert!((found.coefficients[0] + 0.125).abs() < 1e-5 && (found.coefficients[1] - 1.0).abs() < 1e-5);
     }
@@ -216,14 +216,14 @@ mod tests {
     /// The best polynomial of degree 3 on `x^4` over [0, 1] errs by `2 / 4^4 / 2 = 1/128` (Chebyshev).
     #[test]
     fn finds_the_best_cubic_on_a_quartic() {
-        let found = fit(&sampled(&[0, 1, 2, 3], |x| x.powi(4)), 4, &[0.0; MOST]);
+        let found = fit(&sampled(&[0, 1, 2, 3], |x| x.powi(4)), 4, &[0.0; MAX_COEFFICIENTS]);
         assert!((found.error * 128.0 - 1.0).abs() < 2e-3, "{found:?}");
     }
 
     #[test]
     fn gives_back_a_sum_of_its_own_powers() {
         let sum = |x: f64| 3.0 - 2.0 * x + 0.5 * x.powi(2) - 0.7 * x.powi(6);
-        let found = fit(&sampled(&[0, 1, 2, 6], sum), 4, &[0.0; MOST]);
+        let found = fit(&sampled(&[0, 1, 2, 6], sum), 4, &[0.0; MAX_COEFFICIENTS]);
         assert!(found.error < 1e-12, "{found:?}");
         assert!((found.coefficients[3] + 0.7).abs() < 1e-9);
     }
@@ -244,7 +244,7 @@ mod tests {
     fn follows_the_windows() {
         let mut samples = sampled(&[0, 1], |x| x * x);
         samples[0].half = 1e-3;
-        let found = fit(&samples, 2, &[0.0; MOST]);
+        let found = fit(&samples, 2, &[0.0; MAX_COEFFICIENTS]);
         assert!(samples[0].error(&found.coefficients).abs() <= found.error * 1.001);
         assert!(found.coefficients[0].abs() < 1e-3);
     }

@@ -41,15 +41,15 @@ const MANY: usize = 192;
 const COUNTS_PER_RESOLUTION: f64 = 128.0;
 /// Inputs up to the end of the press at least, however coarse the transducer: with fewer, the segments of first contact hold too
 /// few, and the tables grow.
-const LEAST_INPUTS: f64 = 131_072.0;
+const MIN_INPUTS: f64 = 131_072.0;
 /// Half an input count moves an output by at most this part of its tolerance.
 const UNIT_SHARE: f64 = 0.125;
 /// Sums of the last input stay below this, so that those of the segments below, which may be half as large again, fit a word.
 const ROOM: f64 = 1.4e9;
 /// The last input as a multiple of the end of the press, at most.
-const MOST_BEYOND: f64 = 1.0 + 1.0 / 64.0;
+const MAX_BEYOND: f64 = 1.0 + 1.0 / 64.0;
 /// Fraction bits of a pascal at most.
-const MOST_FRACTION_BITS: u32 = 16;
+const MAX_FRACTION_BITS: u32 = 16;
 
 /// Tables and what holds of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -194,7 +194,7 @@ fn search<T>(
     let mut failure = None;
     let mut smallest: Option<search::Found<T>> = None;
     let work = Work::default();
-    // Two units at a time: segments of two octaves can lie two ways. Where the first that serve leave the segments of first
+    // Two units at a time: segments of two octaves can lie two ways. Where the first that are exact enough leave the segments of first
     // contact so few inputs that many are needed, the next may do with fewer.
     for first in (coarsest..=finest).step_by(2) {
         let mut truths = Vec::new();
@@ -229,7 +229,7 @@ fn search<T>(
 /// with in one instruction, if they are hardly beyond the end of the press and the curve goes so far; else at that end.
 fn last_inputs(curve: &Curve, counts: i32, fraction_bits: u32) -> impl Iterator<Item = i32> {
     let reach = libm::ldexp(curve.end().pressure_rise, fraction_bits as i32);
-    let reach = reach.min(f64::from(counts) * MOST_BEYOND);
+    let reach = reach.min(f64::from(counts) * MAX_BEYOND);
     let within = move |count: i64| (count as f64 <= reach).then_some(count as i32);
     let round = within(shape::immediate(counts)).unwrap_or(counts);
     within(shape::power_of_two(counts)).into_iter().chain([round])
@@ -262,19 +262,19 @@ fn fraction_bits(curve: &Curve, end: Contact, accuracy: &Accuracy, resolution: f
         before = point;
     }
     let bits = |unit: f64| {
-        (0..MOST_FRACTION_BITS)
+        (0..MAX_FRACTION_BITS)
             .find(|&bits| libm::ldexp(1.0, -(bits as i32)) <= unit)
-            .unwrap_or(MOST_FRACTION_BITS)
+            .unwrap_or(MAX_FRACTION_BITS)
     };
     // The sums of the highest octave: shifted left by half of the bits that its inputs leave free.
-    let roomy = (0..MOST_FRACTION_BITS)
+    let roomy = (0..MAX_FRACTION_BITS)
         .find(|&bits| {
             let counts = libm::ldexp(end.pressure_rise, bits as i32);
             let free = (counts as u32).leading_zeros() / 2;
             libm::ldexp((end.force * 1e6).max(end.indentation * 1e9), free as i32) < ROOM
         })
-        .unwrap_or(MOST_FRACTION_BITS);
-    let use_for = (resolution / COUNTS_PER_RESOLUTION).min(end.pressure_rise / LEAST_INPUTS);
+        .unwrap_or(MAX_FRACTION_BITS);
+    let use_for = (resolution / COUNTS_PER_RESOLUTION).min(end.pressure_rise / MIN_INPUTS);
     let coarsest = bits(wanted.max(use_for)).max(roomy);
     // Two more at least, for designs whose highest segment is short: the one below then needs the room.
     [coarsest, bits(wanted).max(coarsest + 3)]

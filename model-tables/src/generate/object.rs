@@ -6,7 +6,7 @@ use super::shape::Segmentation;
 use super::truth::Truth;
 use crate::curve::Contact;
 use crate::design_file::Accuracy;
-use crate::table::blend::{MOST_WORDS, blend, last_answered};
+use crate::table::blend::{MAX_WORDS, blend, last_answered};
 use crate::table::law::{BlendLaw, LAW_BITS, Touched, WEIGHT_BITS, Weights};
 use crate::table::loaded::LoadedTables;
 use crate::units::PressureRise;
@@ -100,7 +100,7 @@ impl SolvedObjects {
         truth: &Truth,
         accuracy: &Accuracy,
     ) -> Option<ObjectTables> {
-        if plate.layout.halvings > 0 || plate.words.len() > MOST_WORDS {
+        if plate.layout.halvings > 0 || plate.words.len() > MAX_WORDS {
             return None;
         }
         let accuracy = Accuracy {

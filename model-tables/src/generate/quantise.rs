@@ -3,16 +3,16 @@
 //! The coefficient of the highest power is rounded first, both ways; the others are fitted again to what it leaves, and so on
 //! down. Of all the roundings the one with the least largest error is kept.
 
-use super::minimax::{FitSample, MOST, fit};
+use super::minimax::{FitSample, MAX_COEFFICIENTS, fit};
 use crate::table::Constant;
 
-/// How many integers on either side of the best real coefficient are tried, one after the other until one serves: of the two
+/// How many integers on either side of the best real coefficient are tried, one after the other until one is exact enough: of the two
 /// highest powers, which over a short segment are worth little, so that what is best for them may be any number. What they
 /// leave is fitted again, and there the nearest two do.
 const REACHES: [i32; 3] = [1, 2, 5];
 
 /// The integers of one segment's sum: the constant in units of the sum, then the coefficients.
-pub(super) type Coefficients = [i32; MOST];
+pub(super) type Coefficients = [i32; MAX_COEFFICIENTS];
 
 /// The best integers with which every sample's error stays below `limit` half widths.
 pub(super) fn round(
@@ -30,7 +30,7 @@ pub(super) fn round(
             best: None,
             error: limit,
         };
-        search.descend(1 + terms, [0.0; MOST]);
+        search.descend(1 + terms, [0.0; MAX_COEFFICIENTS]);
         if search.best.is_some() {
             return search.best;
         }
@@ -49,7 +49,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Rounds the last of the `free` coefficients and goes on with those before it.
-    fn descend(&mut self, free: usize, given: [f64; MOST]) {
+    fn descend(&mut self, free: usize, given: [f64; MAX_COEFFICIENTS]) {
         let found = fit(self.samples, free, &given);
         if found.error >= self.error {
             return;
@@ -75,7 +75,7 @@ impl Search<'_> {
     }
 
     /// The constant term: with [`Constant::Half`] a multiple of 2^16 and what the linear coefficient adds to it.
-    fn finish(&mut self, real: f64, given: [f64; MOST]) {
+    fn finish(&mut self, real: f64, given: [f64; MAX_COEFFICIENTS]) {
         let (unit, fraction) = match self.constant {
             Constant::Half => (65536.0, f64::from(given[1] as i16 as u16)),
             Constant::Whole => (1.0, 0.0),

@@ -1,14 +1,14 @@
 //! The search: the fewest bytes that meet the accuracy within the instructions wanted, and among equals the fewest instructions.
 
 use super::candidate::{Candidate, Shifts, Tolerance, Work, counts, factors};
-use super::minimax::{FitSample, MOST, fit};
+use super::minimax::{FitSample, MAX_COEFFICIENTS, fit};
 use super::owned::OwnedTables;
 use super::shape::{Segmentation, Shape, biases, instructions};
 use super::truth::Truth;
 use crate::design_file::Accuracy;
 
 /// Segments at most.
-const MOST_SEGMENTS: usize = 32;
+const MAX_SEGMENTS: usize = 32;
 /// Tables of so many bytes are small, and a lookup of so many instructions is quick. Where small tables can meet the
 /// accuracy with a quick lookup they are taken before smaller ones with a slower; beyond, bytes alone count.
 const SMALL: usize = 192;
@@ -45,7 +45,7 @@ const USUAL: Effort = Effort {
 /// Sums that a search rounds before it looks at no further size. Most designs that get tables take some dozens; those that are hardly
 /// stretched, or have a transducer of 0.01 Pa, up to 2400; one measured curve of the tests more than 8000, in a second. What has no
 /// tables ends after minutes at the worst.
-const MOST_ROUNDED: u32 = 16_000;
+const MAX_ROUNDED: u32 = 16_000;
 /// Part of a unit that rounding can add to an error.
 const ROUNDING: f64 = 0.6;
 
@@ -68,7 +68,7 @@ pub(super) fn smallest<T>(
 ) -> Result<Found<T>, f64> {
     let sizes = |shapes: &[Shape]| {
         let of = |&shape: &Shape| {
-            let most = MOST_SEGMENTS << shape.halvings;
+            let most = MAX_SEGMENTS << shape.halvings;
             (1..=most).map(move |segments| (segments * shape.bytes(), segments, shape))
         };
         let mut sizes: Vec<(usize, usize, Shape)> = shapes.iter().flat_map(of).collect();
@@ -93,7 +93,7 @@ pub(super) fn smallest<T>(
             if unrounded.iter().filter(|&&other| other == shape).count() >= effort.patience {
                 continue;
             }
-            if work.rounded() > MOST_ROUNDED {
+            if work.rounded() > MAX_ROUNDED {
                 break;
             }
             let mut hopeful = Vec::new();
@@ -200,7 +200,7 @@ fn first_look(segmentation: &Segmentation, truth: &Truth, accuracy: &Accuracy) -
                     }
                 })
                 .collect();
-            worst = worst.max(fit(&samples, free, &[0.0; MOST]).error);
+            worst = worst.max(fit(&samples, free, &[0.0; MAX_COEFFICIENTS]).error);
             if worst >= HOPEFUL {
                 return Look {
                     error: worst,

@@ -6,7 +6,7 @@ use crate::units::PressureRise;
 /// Candidate biases in an octave: multiples of an eighth of it, so that the bias fits one instruction.
 const BIASES_PER_OCTAVE: i32 = 8;
 /// Inputs a segment needs, so that its sum is determined by them.
-const LEAST_COUNTS: i32 = 12;
+const MIN_COUNTS: i32 = 12;
 /// Significant bits of a constant that fits one instruction.
 const IMMEDIATE_BITS: u32 = 8;
 
@@ -34,7 +34,7 @@ impl Shape {
         Self::new(1, Powers::Eight, Constant::Whole),
     ];
 
-    /// For curves that no other serves: octaves cut into halves, quarters and eighths.
+    /// For curves that no other fits: octaves cut into halves, quarters and eighths.
     pub(super) const CUT: [Self; 3] = [
         Self::new(1, Powers::Four, Constant::Whole).cut(1),
         Self::new(1, Powers::Four, Constant::Whole).cut(2),
@@ -136,7 +136,7 @@ impl Segmentation {
             } else {
                 upper(&layout, number)? - i64::from(layout.bias)
             };
-            if end - i64::from(start) < i64::from(LEAST_COUNTS) {
+            if end - i64::from(start) < i64::from(MIN_COUNTS) {
                 return None;
             }
             let end = end as i32;

@@ -7,13 +7,13 @@ use super::relaxation::{MAX_TERMS, Relaxation, Term};
 pub struct Factor {
     /// 32 bits.
     pub mantissa: u32,
-    /// 0 to [`Factor::MOST_SHIFT`].
+    /// 0 to [`Factor::MAX_SHIFT`].
     pub shift: u32,
 }
 
 impl Factor {
     /// Largest shift.
-    pub const MOST_SHIFT: u32 = 31;
+    pub const MAX_SHIFT: u32 = 31;
 
     /// The nearest factor to a value from 0 to 1; one too small for the word is 0.
     pub fn nearest(value: f64) -> Self {
@@ -21,7 +21,7 @@ impl Factor {
         // From 2^31 to 2^32, which is one too many.
         let mantissa = libm::round(libm::ldexp(fraction, 32)) as u32;
         match u32::try_from(-exponent) {
-            Ok(shift @ 0..=Self::MOST_SHIFT) if value > 0.0 => Self { mantissa, shift },
+            Ok(shift @ 0..=Self::MAX_SHIFT) if value > 0.0 => Self { mantissa, shift },
             // One.
             Err(_) if value > 0.0 => Self {
                 mantissa: u32::MAX,
@@ -39,7 +39,7 @@ impl Factor {
         let high = (x >> 32) * self.mantissa as i64;
         let low = ((x as u32 as u64) * self.mantissa as u64) >> 32;
         // No wider shift, which the compiler then knows.
-        (high + low as i64) >> (self.shift & Self::MOST_SHIFT)
+        (high + low as i64) >> (self.shift & Self::MAX_SHIFT)
     }
 }
 
@@ -93,7 +93,7 @@ impl SeriesStep {
     /// Whether the settled wall and the terms share no more than the whole of a change: then nothing that they hold grows beyond
     /// what they are given.
     pub(crate) fn is_passive(&self) -> bool {
-        let part = |factor: Factor| u64::from(factor.mantissa) >> (factor.shift & Factor::MOST_SHIFT);
+        let part = |factor: Factor| u64::from(factor.mantissa) >> (factor.shift & Factor::MAX_SHIFT);
         let shares = self
             .terms()
             .iter()

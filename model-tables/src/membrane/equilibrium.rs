@@ -11,7 +11,7 @@ use crate::membrane::equations::{
     CONTACT_PARAMETER, CONTACT_RADIUS, HEIGHT, LocalEquations, POLE, PRESSURE, Response, VOLUME,
 };
 use crate::membrane::solution::{MAX_ELEMENTS, Pole, Solution};
-use crate::solver::chain::{self, BORDERS, BlockRow, Chain, UNKNOWNS};
+use crate::solver::bordered_block::{self, BORDERS, BlockRow, BorderedBlocks, UNKNOWNS};
 use crate::solver::collocation::{self, Condensed, Gauss, GaussPoint, PARAMETERS, STATES, Span};
 use core::f64::consts::FRAC_PI_2;
 
@@ -32,7 +32,7 @@ pub struct Equilibrium<L, const S: usize> {
     /// The collocation method.
     pub gauss: Gauss<S>,
     condensed: [Condensed<S>; MAX_ELEMENTS],
-    chain: Chain<MAX_ELEMENTS>,
+    linear_system: BorderedBlocks<MAX_ELEMENTS>,
     /// Relative size that the next step must be sure to stay below for the present one to be the last.
     tolerance: f64,
 }
@@ -54,7 +54,7 @@ impl<L, const S: usize> Equilibrium<L, S> {
             membrane,
             gauss: Gauss::BLANK,
             condensed: [Condensed::BLANK; MAX_ELEMENTS],
-            chain: Chain::BLANK,
+            linear_system: BorderedBlocks::BLANK,
             tolerance: 0.0,
         }
     }
@@ -147,7 +147,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
         let mut by_parameter = [[0.0; PARAMETERS]; STATES];
         by_parameter[0][POLE] = first_by_pole[0];
         by_parameter[1][POLE] = first_by_pole[1];
-        self.chain.restart(by_parameter);
+        self.linear_system.restart(by_parameter);
         let edge = self.membrane.meridian(contact_parameter);
         for e in 0..solution.elements() {
             if e == solution.contact_elements {
@@ -161,13 +161,13 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
                 row[STATES + CONTACT_RADIUS] = by[STATES + 1];
                 row[STATES + CONTACT_PARAMETER] = by[STATES + 2];
                 row[UNKNOWNS] = residual;
-                self.chain.add_to_border(CONTACT_EDGE, &row);
+                self.linear_system.add_to_border(CONTACT_EDGE, &row);
             }
             for integral in [HEIGHT, VOLUME] {
-                self.chain
+                self.linear_system
                     .add_to_border(integral, &self.condensed[e].integrals[integral]);
             }
-            self.chain.advance(&self.condensed[e].end)?;
+            self.linear_system.advance(&self.condensed[e].end)?;
         }
         Some(())
     }
@@ -176,8 +176,8 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     fn step(&mut self, solution: &mut Solution<S>, closure: &Closure) -> Option<[f64; UNKNOWNS]> {
         self.eliminate(solution)?;
         let [pole, pressure, contact_radius, contact_parameter] = solution.parameters;
-        let borders: [BlockRow; BORDERS] = self.chain.borders;
-        let [link_0, link_1] = self.chain.link();
+        let borders: [BlockRow; BORDERS] = self.linear_system.borders;
+        let [link_0, link_1] = self.linear_system.link();
         let last = solution.nodes[solution.elements()];
         let shifted = |mut row: BlockRow, target: f64| {
             row[UNKNOWNS] -= target;
@@ -223,7 +223,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
                 ]
             }
         };
-        chain::solve(rows)
+        bordered_block::solve(rows)
     }
 
     /// How an unpressed state goes on inflating while its edge is held. `None` where it does not go on smoothly.
@@ -231,8 +231,8 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     pub fn tangent(&mut self, solution: &mut Solution<S>) -> Option<ClosureTangent> {
         self.linearise(solution).ok()?;
         self.eliminate(solution)?;
-        let [link_0, link_1] = self.chain.link();
-        let change = chain::solve([
+        let [link_0, link_1] = self.linear_system.link();
+        let change = bordered_block::solve([
             link_0,
             link_1,
             unit_row(0, 0.0),
@@ -243,8 +243,8 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
         let of = |row: &BlockRow| row.iter().zip(&change).map(|(a, x)| a * x).sum::<f64>();
         Some(ClosureTangent {
             pressure: change[STATES + PRESSURE],
-            volume: of(&self.chain.borders[VOLUME]),
-            height: of(&self.chain.borders[HEIGHT]),
+            volume: of(&self.linear_system.borders[VOLUME]),
+            height: of(&self.linear_system.borders[HEIGHT]),
         })
     }
 
@@ -298,7 +298,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
     fn apply(&mut self, solution: &mut Solution<S>, change: &[f64; UNKNOWNS]) -> Step {
         let elements = solution.elements();
         let mut node_changes = [[0.0; STATES]; MAX_ELEMENTS + 1];
-        self.chain
+        self.linear_system
             .back_substitute(change, |k, node| node_changes[k] = node);
         let tension = solution.nodes[..=elements]
             .iter()

@@ -149,7 +149,7 @@ impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
                 Control::Equator => RestControl::EquatorStretch(equator_of(state) + step),
             };
             match self.settle(&mut next, &Closure::Rest(target)) {
-                // A leap is another branch.
+                // A step to another branch.
                 Ok(())
                     if (equator_of(&next) - equator_of(state)).abs() < 6.0 * step + SMALLEST_STEP
                         && (pole_of(&next) - pole_of(state)).abs() < 6.0 * step + SMALLEST_STEP => {}

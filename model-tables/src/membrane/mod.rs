@@ -7,9 +7,9 @@
 
 pub mod adapt;
 pub mod closure;
+pub mod continuation;
 pub mod equations;
 pub mod equilibrium;
-pub mod history;
 pub mod inflation;
 pub mod mesh;
 pub mod press;

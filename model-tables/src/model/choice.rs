@@ -1,9 +1,9 @@
 //! Which model a design needs.
 //!
-//! `kind = "auto"` solves every rung of a ladder up to the solid of 2 x 60 elements, at eight indentations up to the deepest. **The rule:**
-//! the first rung, from the cheapest, is taken whose force and pressure rise differ from that solid's by no more than 1 % of the
+//! `kind = "auto"` solves every fidelity of a ladder up to the solid of 2 x 60 elements, at eight indentations up to the deepest. **The rule:**
+//! the first fidelity, from the cheapest, is taken whose force and pressure rise differ from that solid's by no more than 1 % of the
 //! reading, or [`model_percent`](crate::design_file::Accuracy::model_percent) where a design states less, less the solid's own error
-//! ([`Wanted::own_error`]). Where that error takes most of what is allowed, or no rung is that near, a refined solid judges them all.
+//! ([`Wanted::own_error`]). Where that error takes most of what is allowed, or no fidelity is that near, a refined solid judges them all.
 //! Coarse solids judge nobody, because their errors are of one kind: two of them agreed with each other where both were wrong. Nor are they taken:
 //! under them the contact edge moves from element to element, which puts the indentation of a light touch 2 % off between the
 //! indentations compared, and the ripple costs tables 12 to 112 bytes more. `designer ladder` holds the rule to the refined solid over
@@ -43,12 +43,12 @@ pub const fn elements_in_time(model: ModelSection) -> Option<Elements> {
     }
 }
 
-/// What the other rungs are measured against.
+/// What the other fidelities are measured against.
 pub const REFINED: Elements = Elements {
     through: 3,
     along: 96,
 };
-/// Indentations at which rungs are compared, over the deepest.
+/// Indentations at which fidelities are compared, over the deepest.
 pub const PARTS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
 /// Error of [`FINE`], largest of the walls of `designer ladder` that are no [`THIN`] ones.
 const FINE_ERROR: f64 = 0.006;
@@ -96,7 +96,7 @@ impl Wanted {
         }
     }
 
-    /// The error that a rung counts with as a judge; infinite if it does not judge, as where its own error would leave cheaper rungs
+    /// The error that a fidelity counts with as a judge; infinite if it does not judge, as where its own error would leave cheaper fidelities
     /// too little.
     pub fn own_error(&self, kind: Kind, design: &Design) -> f64 {
         let outer = &design.membrane;
@@ -134,44 +134,44 @@ impl Wanted {
             .fold(0.0, f64::max)
     }
 
-    /// The first of some rungs, the judge among them, that is near enough to the judge with its own error.
+    /// The first of some fidelities, the judge among them, that is near enough to the judge with its own error.
     pub fn judge<'a>(
         &self,
-        mut rungs: impl Iterator<Item = &'a [Contact]>,
+        mut fidelities: impl Iterator<Item = &'a [Contact]>,
         truth: &[Contact],
         own_error: f64,
     ) -> Option<usize> {
-        rungs.position(|contacts| self.distance(contacts, truth) + own_error <= self.error)
+        fidelities.position(|contacts| self.distance(contacts, truth) + own_error <= self.error)
     }
 
     /// A model's contacts at [`PARTS`] of the deepest indentation.
     ///
     /// # Errors
     /// [`ModelError`] of the model.
-    pub fn contacts(&self, rung: &mut Fingertip) -> Result<Vec<Contact>, ModelError> {
+    pub fn contacts(&self, fingertip: &mut Fingertip) -> Result<Vec<Contact>, ModelError> {
         PARTS
             .iter()
-            .map(|part| rung.contact_at(part * self.deepest))
+            .map(|part| fingertip.contact_at(part * self.deepest))
             .collect()
     }
 }
 
-/// A rung that was taken, and on what evidence.
+/// A model that was taken, and on what evidence.
 #[derive(Clone, Debug)]
 pub struct Choice {
     /// The model.
     pub kind: Kind,
-    /// The rung that judged it, and how far it may be off, relative; `None` where none could judge.
+    /// The fidelity that judged it, and how far it may be off, relative; `None` where none could judge.
     pub judged: Option<(Kind, f64)>,
     /// The model at rest, its contacts solved.
-    pub rung: Fingertip,
+    pub fingertip: Fingertip,
 }
 
 /// Climbs the ladder for a design whose semi-axes are the outer surface's. Rungs that do not apply, or find no state, are
 /// passed over.
 ///
 /// # Errors
-/// [`ModelError`] of the last rung.
+/// [`ModelError`] of the last fidelity.
 pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
     let mut solved: Vec<(Kind, Fingertip, Vec<Contact>)> = Vec::new();
     let mut failure = ModelError::Solid(SolidError::RestNotForSolid);
@@ -180,13 +180,13 @@ pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
             continue;
         }
         let own_error = wanted.own_error(judge, design);
-        let found = Fingertip::of(judge, design).and_then(|mut rung| {
-            let contacts = wanted.contacts(&mut rung)?;
-            Ok((rung, contacts))
+        let found = Fingertip::of(judge, design).and_then(|mut fingertip| {
+            let contacts = wanted.contacts(&mut fingertip)?;
+            Ok((fingertip, contacts))
         });
         let contacts = match found {
-            Ok((rung, contacts)) => {
-                solved.push((judge, rung, contacts.clone()));
+            Ok((fingertip, contacts)) => {
+                solved.push((judge, fingertip, contacts.clone()));
                 contacts
             }
             Err(error) => {
@@ -194,22 +194,22 @@ pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
                 continue;
             }
         };
-        let rungs = solved.iter().map(|(_, _, contacts)| contacts.as_slice());
-        if let Some(near) = wanted.judge(rungs, &contacts, own_error) {
-            let (kind, rung, found) = solved.swap_remove(near);
+        let fidelities = solved.iter().map(|(_, _, contacts)| contacts.as_slice());
+        if let Some(near) = wanted.judge(fidelities, &contacts, own_error) {
+            let (kind, fingertip, found) = solved.swap_remove(near);
             let distance = wanted.distance(&found, &contacts);
             return Ok(Choice {
                 kind,
                 judged: Some((judge, distance + own_error)),
-                rung,
+                fingertip,
             });
         }
     }
     match solved.pop() {
-        Some((kind, rung, _)) => Ok(Choice {
+        Some((kind, fingertip, _)) => Ok(Choice {
             kind,
             judged: None,
-            rung,
+            fingertip,
         }),
         None => Err(failure),
     }

@@ -94,7 +94,7 @@ impl Fingertip {
                 };
                 Self::of(Kind::Solid(elements), &design)
             }
-            ModelSection::Auto => Ok(choice::choose(&design, &choice::Wanted::of(file))?.rung),
+            ModelSection::Auto => Ok(choice::choose(&design, &choice::Wanted::of(file))?.fingertip),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::batch::{Batch, Forces, Stiffness};
 use super::element::Material;
-use super::front::Fronts;
+use super::frontal::FrontalMatrix;
 use super::lanes::Lanes;
 use super::memory::Memory;
 use super::mesh::{CUBIC_PRESSURES, FUNCTIONS, Mesh, NODES, PRESSURES};
@@ -32,7 +32,7 @@ impl<const N: usize, const T: usize> Elements<N, T> {
         let places = (0..mesh.elements.through)
             .map(|layer| {
                 let nodes = super::batch::nodes::<N>(mesh, 0, layer);
-                nodes.map(|a| nodes.map(|b| Fronts::place(station, 2 * a.min(b), 2 * a.max(b))))
+                nodes.map(|a| nodes.map(|b| FrontalMatrix::place(station, 2 * a.min(b), 2 * a.max(b))))
             })
             .collect();
         Self {
@@ -83,10 +83,10 @@ impl<const N: usize, const T: usize> Elements<N, T> {
         material: &Material,
         memory: Option<&Memory>,
         state: &State,
-        fronts: &mut Fronts,
+        fronts: &mut FrontalMatrix,
     ) {
         self.stiffening = memory.map_or(1.0, Memory::stiffening);
-        let width = Fronts::width(2 * (N / 3 + 2 * (self.through - 1)));
+        let width = FrontalMatrix::width(2 * (N / 3 + 2 * (self.through - 1)));
         let mut element = 0;
         let pressures = state.pressures.chunks(super::lanes::LANES);
         let batches = self.batches.iter().enumerate().zip(pressures);
@@ -222,7 +222,7 @@ impl Assembly {
         material: &Material,
         memory: Option<&Memory>,
         state: &State,
-        fronts: &mut Fronts,
+        fronts: &mut FrontalMatrix,
     ) {
         of_either!(&mut self.0, elements => elements.stiffness(material, memory, state, fronts));
     }

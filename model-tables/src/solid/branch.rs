@@ -15,7 +15,7 @@ const BEYOND: [f64; 2] = [4.0, 8.0];
 /// Difference of forces or pressures from which on two states at one indentation are two, relative.
 const DISTINCT: f64 = 5e-3;
 /// Energy of a state over that of the path's, from which on it is none of a press: elements fold onto themselves.
-const MOST_ENERGY: f64 = 2.0;
+const MAX_ENERGY: f64 = 2.0;
 
 /// A state beside the path.
 pub(super) struct Beside {
@@ -61,7 +61,7 @@ fn settle(wall: &mut SolidWall, fluid: &Fluid, kept: &Kept, plate: f64, mut stat
     let distinct = |a: f64, b: f64| (a - b).abs() > DISTINCT * a.abs().max(b.abs());
     let is_other = distinct(balance.force, kept.balance.force) || distinct(state.fluid, kept.state.fluid);
     let energy = wall.energy(&state) + balance.contact_energy;
-    let is_of_press = energy < MOST_ENERGY * kept.energy && section::touches_base(wall, &state).is_none();
+    let is_of_press = energy < MAX_ENERGY * kept.energy && section::touches_base(wall, &state).is_none();
     (is_other && is_of_press).then(|| Beside {
         is_stable: wall.is_stable(fluid),
         state,

@@ -10,7 +10,7 @@ use super::assembly::Assembly;
 use super::element::{self, Material, positions};
 use super::fluid;
 use super::friction::Sliding;
-use super::front::Fronts;
+use super::frontal::FrontalMatrix;
 use super::memory::Memory;
 use super::mesh::{CUBIC_PRESSURES, Elements, Mesh};
 use super::object::Surface;
@@ -32,7 +32,7 @@ const STEP_LIMIT: f64 = 0.5;
 /// is the plate's part.
 const RENEWAL: f64 = 0.1;
 /// Smallest part of a step that is taken, with friction.
-const LEAST_DAMPING: f64 = 0.125;
+const MIN_DAMPING: f64 = 0.125;
 /// A step that leaves more than this part of the residual is the last with its factors.
 const CONTRACTION: f64 = 0.1;
 /// A step that leaves more than this part although the plate's part is of its own state is the last with the wall's.
@@ -76,7 +76,7 @@ pub struct SolidWall {
     sliding: Option<Sliding>,
     /// Undeformed radii and heights of each column's outer edge.
     outer: Vec<[[f64; 3]; 2]>,
-    fronts: Fronts,
+    fronts: FrontalMatrix,
     /// Forces on the nodes, unbalanced.
     forces: Vec<[f64; 2]>,
     /// Derivative of the volume by the nodes: zero but for the inner ones.
@@ -116,7 +116,7 @@ impl SolidWall {
             tolerance: TOLERANCE,
             contact_stiffness: CONTACT_STIFFNESS / mesh.thickness,
             outer,
-            fronts: Fronts::new(2 * mesh.stride(), elements.along),
+            fronts: FrontalMatrix::new(2 * mesh.stride(), elements.along),
             assembly: Assembly::new(&mesh, &material),
             forces: step.nodes.clone(),
             by_node: step.nodes.clone(),
@@ -266,7 +266,7 @@ impl SolidWall {
             if self.sliding.is_some() {
                 // Points that stick and slide in turn.
                 damping = if contraction > 1.0 {
-                    (0.5 * damping).max(LEAST_DAMPING)
+                    (0.5 * damping).max(MIN_DAMPING)
                 } else {
                     (2.0 * damping).min(1.0)
                 };

@@ -36,7 +36,7 @@ const TURN: f64 = 0.3;
 /// Travel, over the height, in which no next state is found where there is none.
 const SMALLEST_TRAVEL: f64 = 1e-6;
 /// Halvings of a step that fails.
-const MOST_HALVINGS: u32 = 24;
+const MAX_HALVINGS: u32 = 24;
 /// Energy that may be missing after a step, over the work done in it and over the most done so far.
 const ENERGY_TOLERANCE: [f64; 2] = [0.05, 5e-3];
 /// The same of the first step, in which the contact is smaller than an element.
@@ -288,7 +288,7 @@ impl History {
                         let travel = (end - done) * (to - from).abs();
                         let moves = matches!(drive, Drive::Indentation(_)) && travel > 0.0;
                         let stuck = moves && travel < SMALLEST_TRAVEL * self.height;
-                        if halvings > MOST_HALVINGS || stuck && !matches!(rejected, Rejected::TooLong(_)) {
+                        if halvings > MAX_HALVINGS || stuck && !matches!(rejected, Rejected::TooLong(_)) {
                             return Err(self.ends(rejected));
                         }
                         seconds *= match rejected {

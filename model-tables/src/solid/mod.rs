@@ -37,7 +37,7 @@ pub mod fluid;
 #[cfg(feature = "std")]
 mod friction;
 #[cfg(feature = "std")]
-pub mod front;
+pub mod frontal;
 #[cfg(feature = "std")]
 pub mod history;
 #[cfg(feature = "std")]

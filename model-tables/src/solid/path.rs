@@ -40,7 +40,7 @@ const ENERGY_TOLERANCE: f64 = 5e-3;
 /// The same in the first step, where the contact is smaller than an element and its force no power of the indentation.
 const FIRST_ENERGY_TOLERANCE: f64 = 0.2;
 /// Halvings on the way to an asked state.
-const MOST_HALVINGS: usize = 12;
+const MAX_HALVINGS: usize = 12;
 
 /// Why a state is not the next of the path.
 #[derive(Clone, Copy, Debug)]
@@ -173,7 +173,7 @@ impl Path {
                     targets.pop();
                     below = WallPoint { kept, tangent };
                 }
-                Err(_) if targets.len() <= MOST_HALVINGS => {
+                Err(_) if targets.len() <= MAX_HALVINGS => {
                     targets.push(0.5 * (below.kept.indentation + target));
                 }
                 Err(rejected) => {

@@ -14,7 +14,7 @@ use super::{Constant, Layout, Reading};
 use crate::units::PressureRise;
 
 /// Most words of a table that is blended at run time: of 40 segments, the most with two octaves or one each, 6 words each.
-pub const MOST_WORDS: usize = 240;
+pub const MAX_WORDS: usize = 240;
 
 /// Blends the words of two tables of one layout, [`Layout::words`] a segment, the segment of the largest inputs first. Octaves
 /// are not cut: of a layout with halvings the words are the plate's.
@@ -150,7 +150,7 @@ pub fn last_answered(
 #[derive(Clone, Copy, Debug)]
 pub struct BlendedTables {
     layout: Layout,
-    words: [[u8; 4]; MOST_WORDS],
+    words: [[u8; 4]; MAX_WORDS],
     length: usize,
 }
 
@@ -165,11 +165,11 @@ impl BlendedTables {
         ball: &[[u8; 4]],
         weights: &Weights,
     ) -> Result<Self, TablesError> {
-        let (mut from, mut to, mut blended) = ([0; MOST_WORDS], [0; MOST_WORDS], [0; MOST_WORDS]);
+        let (mut from, mut to, mut blended) = ([0; MAX_WORDS], [0; MAX_WORDS], [0; MAX_WORDS]);
         let length = plate.len();
         let (Some(own), true) = (blended.get_mut(..length), ball.len() == length) else {
             return Err(TablesError::Words {
-                needed: length.min(MOST_WORDS),
+                needed: length.min(MAX_WORDS),
                 found: ball.len(),
             });
         };

@@ -10,13 +10,13 @@ use crate::table::{Layout, Reading};
 use crate::units::PressureRise;
 
 /// Most fraction bits of a pascal.
-pub const MOST_FRACTION_BITS: u32 = 16;
+pub const MAX_FRACTION_BITS: u32 = 16;
 /// Last input and bias are below this, so that their sum fits a word.
 pub const INPUTS_END: i32 = 1 << 30;
 /// An octave is cut in halves at most so often.
-pub const MOST_HALVINGS: u32 = 3;
+pub const MAX_HALVINGS: u32 = 3;
 /// Most bits of a shift of a word.
-const MOST_SHIFT: u32 = 31;
+const MAX_SHIFT: u32 = 31;
 
 /// Tables whose words lie in memory as little-endian bytes, at any address; reads exactly as [`crate::table::Tables`] does.
 #[derive(Clone, Copy, Debug)]
@@ -66,18 +66,18 @@ impl<'a> LoadedTables<'a> {
 
 /// Whether every field is one that the lookup computes with.
 fn check_layout(layout: &Layout) -> Result<(), TablesError> {
-    let halvings = if layout.octaves == 1 { MOST_HALVINGS } else { 0 };
+    let halvings = if layout.octaves == 1 { MAX_HALVINGS } else { 0 };
     let fields = [
         (
             "pressure_fraction_bits",
-            layout.pressure_fraction_bits <= MOST_FRACTION_BITS,
+            layout.pressure_fraction_bits <= MAX_FRACTION_BITS,
         ),
         ("maximum", (1..INPUTS_END).contains(&layout.maximum)),
         ("bias", (1..INPUTS_END).contains(&layout.bias)),
         ("octaves", (1..=2).contains(&layout.octaves)),
         ("halvings", layout.halvings <= halvings),
-        ("force_shift", layout.force_shift <= MOST_SHIFT),
-        ("indentation_shift", layout.indentation_shift <= MOST_SHIFT),
+        ("force_shift", layout.force_shift <= MAX_SHIFT),
+        ("indentation_shift", layout.indentation_shift <= MAX_SHIFT),
     ];
     match fields.into_iter().find(|(_, holds)| !holds) {
         Some((field, _)) => Err(TablesError::Layout(field)),

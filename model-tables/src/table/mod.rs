@@ -119,7 +119,7 @@ pub(crate) struct Place {
 
 impl Layout {
     /// Words of a segment at most.
-    pub const MOST_WORDS: usize = 6;
+    pub const MAX_WORDS: usize = 6;
 
     /// Words of a segment. The first two hold the constant terms of force and indentation (with
     /// [`Constant::Half`] also their linear coefficients), each of the others the coefficients of one power: force in

@@ -16,7 +16,7 @@ use crate::units::PressureRise;
 const ROUNDING: i64 = 7;
 
 /// Stretches looked at in one segment, of one output, at most: it bounds the work.
-const MOST_STRETCHES: u32 = 1 << 12;
+const MAX_STRETCHES: u32 = 1 << 12;
 
 /// Room at either end of the word that a sum keeps, for what rounding adds.
 const ROOM: i64 = 16;
@@ -81,7 +81,7 @@ impl Output {
         let segment = tables.segment(number.wrapping_sub(layout.first_index) as usize);
         let sum = Sum::of(layout, &segment, self);
         let (mut at, mut length) = (start, end - start);
-        for _ in 0..MOST_STRETCHES {
+        for _ in 0..MAX_STRETCHES {
             if at >= end {
                 return Ok(());
             }
@@ -108,7 +108,7 @@ struct Sum {
 }
 
 impl Sum {
-    fn of(layout: &Layout, segment: &[i32; Layout::MOST_WORDS], output: Output) -> Self {
+    fn of(layout: &Layout, segment: &[i32; Layout::MAX_WORDS], output: Output) -> Self {
         let half = |word: i32| match output {
             Output::Force => i64::from((word >> 16) as i16),
             Output::Indentation => i64::from(word as i16),

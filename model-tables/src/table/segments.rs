@@ -17,10 +17,10 @@ impl Segments<'_> {
     }
 
     /// The words of the segment of this index, the last one's for any higher; those that a segment has not are 0.
-    pub(super) fn segment(&self, index: usize) -> [i32; Layout::MOST_WORDS] {
+    pub(super) fn segment(&self, index: usize) -> [i32; Layout::MAX_WORDS] {
         let width = self.layout.words();
         let index = index.min(self.count().saturating_sub(1));
-        let mut words = [0; Layout::MOST_WORDS];
+        let mut words = [0; Layout::MAX_WORDS];
         let segment = self.words.iter().skip(index * width).take(width);
         for (word, bytes) in words.iter_mut().zip(segment) {
             *word = i32::from_le_bytes(*bytes);

@@ -15,7 +15,7 @@ const FAULT_FRAME: &[u8] = &[
     0x05, 0x02, 0x02, 0xFF, 0xFF, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x01, 0xF5,
     0xCD, 0x00,
 ];
-/// Sequence 7, 1 s, 259 dropped; version 0.1.0, watchdog, hash 0x0123456789ABCDEF, tables 1, 1000 us; record 17 serves,
+/// Sequence 7, 1 s, 259 dropped; version 0.1.0, watchdog, hash 0x0123456789ABCDEF, tables 1, 1000 us; record 17 in use,
 /// task 3 was late, 2 resets in a row; 2 samples lost, 6 rejected, 259 frames dropped, 4 commands refused.
 const HELLO_FRAME: &[u8] = &[
     0x04, 0x02, 0x03, 0x07, 0x04, 0x40, 0x42, 0x0F, 0x01, 0x01, 0x01, 0x01, 0x03, 0x03, 0x01, 0x02, 0x01,
@@ -79,7 +79,7 @@ fn hello() -> Frame {
             design_hash: 0x0123_4567_89AB_CDEF,
             table_version: 1,
             report_period: 1000,
-            stored: Stored::Serves,
+            stored: Stored::InUse,
             last_fault: LastFault::Late,
             resets_in_a_row: 2,
             last_fault_detail: 3,

@@ -1,13 +1,13 @@
 use super::*;
 use proptest::prelude::*;
 
-const LEAPS: Leaps = Leaps {
+const STEP_LIMITS: StepLimits = StepLimits {
     noise: 80,
     press: 1000,
 };
 
 fn filtered(rises: &[i32]) -> Vec<Result<i32, Fault>> {
-    let mut filter = Filter::new(LEAPS);
+    let mut filter = Filter::new(STEP_LIMITS);
     rises
         .iter()
         .map(|&rise| {
@@ -23,10 +23,10 @@ const JUMP: Result<i32, Fault> = Err(Fault::Jump);
 #[test]
 fn leaps_of_a_design_are_its_noise_and_its_fastest_press() {
     use crate::signal::test_design::Linear;
-    // 8 grains of 10 Pa; 40 kPa in 4 ms; at 1/256 Pa.
-    let leaps = Leaps::of(&Linear::CONSTANTS, 8, 1000);
-    assert_eq!(leaps.noise, 80 << 8);
-    assert_eq!(leaps.press, 10_000 << 8);
+    // 8 noise floors of 10 Pa; 40 kPa in 4 ms; at 1/256 Pa.
+    let step_limits = StepLimits::of(&Linear::CONSTANTS, 8, 1000);
+    assert_eq!(step_limits.noise, 80 << 8);
+    assert_eq!(step_limits.press, 10_000 << 8);
 }
 
 #[test]
@@ -45,17 +45,23 @@ fn what_noise_makes_comes_out_as_one_two_one() {
 
 #[test]
 fn one_wild_sample_leaves_no_trace_whatever_its_size() {
-    for wild in [100, 400, 5_000, 1 << 30, i32::MIN, i32::MAX] {
-        let mut filter = Filter::new(LEAPS);
-        let outcomes: Vec<_> = [8, 8, 8, wild, 8, 8, 8]
+    for outlier in [100, 400, 5_000, 1 << 30, i32::MIN, i32::MAX] {
+        let mut filter = Filter::new(STEP_LIMITS);
+        let outcomes: Vec<_> = [8, 8, 8, outlier, 8, 8, 8]
             .iter()
-            .map(|&rise| filter.step(PressureRise(rise), Warnings::SATURATED.when(rise == wild), true))
+            .map(|&rise| {
+                filter.step(
+                    PressureRise(rise),
+                    Warnings::SATURATED.when(rise == outlier),
+                    true,
+                )
+            })
             .collect();
         assert!(
             outcomes[2..]
                 .iter()
                 .all(|&outcome| outcome == Ok((PressureRise(8), Warnings::NONE))),
-            "{wild}: {outcomes:?}"
+            "{outlier}: {outcomes:?}"
         );
         assert_eq!(filter.rejected(), 1);
     }
@@ -100,11 +106,11 @@ fn the_turn_of_a_fast_tap_is_not_wild() {
 
 #[test]
 fn a_wild_sample_on_a_ramp_leaves_no_trace() {
-    for wild in [85, 100, -85, -100, 5_000, -5_000] {
+    for outlier in [85, 100, -85, -100, 5_000, -5_000] {
         let mut ramp: Vec<i32> = (0..8).map(|i| i * 90).collect();
-        ramp[4] += wild;
+        ramp[4] += outlier;
         let expected: Vec<_> = (1..7).map(|i| Ok(i * 90)).collect();
-        assert_eq!(filtered(&ramp)[2..], expected, "{wild}");
+        assert_eq!(filtered(&ramp)[2..], expected, "{outlier}");
     }
 }
 
@@ -157,7 +163,7 @@ fn garbage_never_becomes_a_number_and_is_over_soon_after() {
 
 #[test]
 fn samples_that_come_unevenly_are_not_averaged() {
-    let mut filter = Filter::new(LEAPS);
+    let mut filter = Filter::new(STEP_LIMITS);
     let ramp = [
         (0, true),
         (10, true),
@@ -175,7 +181,7 @@ fn samples_that_come_unevenly_are_not_averaged() {
 
 #[test]
 fn a_gap_empties_it() {
-    let mut filter = Filter::new(LEAPS);
+    let mut filter = Filter::new(STEP_LIMITS);
     for _ in 0..3 {
         let _ = filter.step(PressureRise(7), Warnings::NONE, true);
     }
@@ -194,7 +200,7 @@ fn a_gap_empties_it() {
 
 #[test]
 fn a_warning_holds_as_long_as_its_block_is_inside() {
-    let mut filter = Filter::new(LEAPS);
+    let mut filter = Filter::new(STEP_LIMITS);
     let warnings = [false, false, true, false, false, false].map(|saturated| {
         filter
             .step(PressureRise(0), Warnings::SATURATED.when(saturated), true)

@@ -9,8 +9,8 @@ use proptest::prelude::*;
 const THINNEST: f64 = AIR[0] as f64;
 const DENSEST: f64 = AIR[1] as f64;
 
-/// How far a reading may be off, pascals: one grain of the transducer.
-const GRAIN: f64 = 10.0;
+/// How far a reading may be off, pascals: one noise floor of the transducer.
+const NOISE_FLOOR: f64 = 10.0;
 
 /// A fingertip in the air; one step is one sample of its transducer.
 struct Life {
@@ -122,7 +122,11 @@ impl Life {
             assert_eq!(report.status(), status, "air {}", self.air);
             let read = report.outcome.expect("a reading").pressure_rise;
             let read = read.pascals(Linear::PRESSURE_FRACTION_BITS);
-            assert!((read - rise).abs() < GRAIN, "{read} for {rise} in {}", self.air);
+            assert!(
+                (read - rise).abs() < NOISE_FLOOR,
+                "{read} for {rise} in {}",
+                self.air
+            );
         }
     }
 }

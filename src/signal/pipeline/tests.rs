@@ -105,7 +105,7 @@ fn a_fault_has_no_values_and_ends_with_its_cause() {
 fn beyond_the_tables_and_beyond_the_transducer_read_as_lower_bounds() {
     let mut bench = Bench::zeroed();
     for pascals in [70_000.0, 101_000.0] {
-        // A leap that no press makes has no number for eight blocks.
+        // A step that no press makes has no number for eight blocks.
         let measurement = bench.steps(12, Ok(at(pascals))).outcome.expect("held at the end");
         assert_eq!(measurement.warnings, Warnings::SATURATED);
         assert_eq!(measurement.force.0, RISE_END);
@@ -119,7 +119,7 @@ fn powered_up_while_pressed_is_said_so() {
     assert_eq!(report.status().to_string(), "warning: zero unverified");
     let rise = report
         .outcome
-        .expect("the design's rest pressure serves")
+        .expect("the design's rest pressure is valid")
         .pressure_rise
         .0;
     assert!(rise.abs_diff(10_000 << 8) <= 64);
@@ -240,7 +240,7 @@ fn temperature_is_compensated_untouched_and_held_in_contact() {
     // 10 Pa a kelvin: 5 K later the part reads 50 Pa more, and it is none.
     assert!(rise(bench.steps(5, warm(20_050.0, 2_500))).abs() < 0.1);
     assert!((rise(bench.steps(5, warm(21_050.0, 2_500))) - 1000.0).abs() < 0.1);
-    // 10 K more in contact: nothing moves, and the doubt is said.
+    // 10 K more in contact: nothing moves, and the doubt is reported.
     let report = bench.steps(5, warm(21_050.0, 3_500));
     assert!((rise(report) - 1000.0).abs() < 0.1);
     assert_eq!(report.status().to_string(), "warning: temperature");
@@ -267,7 +267,7 @@ fn what_is_stored_is_the_zero_that_serves_and_serves_at_the_next_start() {
     };
     let report = pressed.steps(2_100, Ok(at(20_400.0)));
     assert_eq!(report.status().to_string(), "warning: zero unverified");
-    let rise = report.outcome.expect("the stored zero serves").pressure_rise;
+    let rise = report.outcome.expect("the stored zero is in use").pressure_rise;
     assert!((rise.0 - (300 << 8)).abs() < 64);
     assert_eq!(pressed.pipeline.calibration_to_store(), None);
 }

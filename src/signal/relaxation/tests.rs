@@ -165,7 +165,7 @@ fn any_rise() -> impl Strategy<Value = i32> {
 }
 
 fn any_factor() -> impl Strategy<Value = Factor> {
-    (any::<u32>(), 0..=Factor::MOST_SHIFT).prop_map(|(mantissa, shift)| Factor { mantissa, shift })
+    (any::<u32>(), 0..=Factor::MAX_SHIFT).prop_map(|(mantissa, shift)| Factor { mantissa, shift })
 }
 
 proptest! {

@@ -98,7 +98,7 @@ fn from_untouched_rest_on_the_past_is_known() {
     }
 }
 
-/// A reset in a hold: what the wall really reads stays within what is said, and that narrows.
+/// A reset in a hold: what the wall really reads stays within what is reported, and that narrows.
 #[test]
 fn after_a_reset_in_a_grasp_two_states_bracket_the_wall() {
     for design in [InTime::mild(), InTime::agilus30()] {

@@ -16,7 +16,7 @@ const LONGEST_DRIFT: u64 = 1 << 37;
 pub(super) struct Interval {
     /// What reads as no rise.
     value: i64,
-    /// The true zero is not below: the word of who said that nothing presses, and drift since.
+    /// The true zero is not below: the word of a host that the fingertip is unloaded, and drift since.
     low: i64,
     /// Nor above: the lowest quiet level since then, and drift since.
     high: i64,

@@ -82,7 +82,7 @@ impl Limits {
     pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
         let transducer = &constants.transducer;
         let range = transducer.range[1] as i64 - transducer.range[0] as i64;
-        let floor = transducer.grain();
+        let floor = transducer.noise_floor();
         let absolute = matches!(transducer.quantity, Quantity::Absolute);
         let [thinnest, densest] = if absolute { AIR } else { [0; 2] };
         let (air, follows) = if absolute {
@@ -174,7 +174,7 @@ const fn wander(constants: &DesignConstants) -> i64 {
         UNSEEN_KELVINS as i64
     };
     let air = match zero.air {
-        AirReference::Host => constants.transducer.grain() / 2,
+        AirReference::Host => constants.transducer.noise_floor() / 2,
         AirReference::None | AirReference::Part => 0,
     };
     zero.fluid_head as i64

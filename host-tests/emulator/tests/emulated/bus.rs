@@ -158,14 +158,14 @@ fn every_fault_of_the_bus_has_its_reason_and_is_over_in_a_tenth_of_a_second() {
 fn check(run: &Run, fault: &WireFault) {
     let (from, until) = window(fault);
     let around = SAMPLES * run.sample;
-    let mut said: Vec<Fault> = vec![];
+    let mut reported: Vec<Fault> = vec![];
     for row in &run.record.rows {
         if (from + around..until - around).contains(&row.time)
             && let Status::Fault(fault) = row.status
             && fault != Fault::Settling
-            && !said.contains(&fault)
+            && !reported.contains(&fault)
         {
-            said.push(fault);
+            reported.push(fault);
         }
     }
     let mut rows = run.record.rows.iter();
@@ -175,14 +175,14 @@ fn check(run: &Run, fault: &WireFault) {
         .time
         - until;
     println!(
-        "{}, {:?}: {said:?}, a reading {back:.3} s after it ended",
+        "{}, {:?}: {reported:?}, a reading {back:.3} s after it ended",
         run.kind, fault.is
     );
     let (must, may) = reasons(run.kind, fault.is);
-    let about = format!("{}, {:?}: {said:?}", run.kind, fault.is);
-    assert!(must.iter().all(|fault| said.contains(fault)), "{about}");
+    let about = format!("{}, {:?}: {reported:?}", run.kind, fault.is);
+    assert!(must.iter().all(|fault| reported.contains(fault)), "{about}");
     // A start of the part that was broken off may leave another reason once, at the edges.
-    assert!(said.iter().all(|fault| may.contains(fault)), "{about}");
+    assert!(reported.iter().all(|fault| may.contains(fault)), "{about}");
     assert!(back < run.recovery(), "{about}: {back} s");
 }
 

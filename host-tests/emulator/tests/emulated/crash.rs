@@ -6,7 +6,7 @@ use emulator::bench;
 use emulator::inlined;
 use emulator::record::{Recorder, Recording, Row};
 use emulator::scenario::{Event, Happening, Scenario};
-use fingertip::device::supervisor::{RESET_LIMIT, Stage};
+use fingertip::device::task_monitor::{RESET_LIMIT, Stage};
 use fingertip::link::command::{CommandKind, Outcome};
 use fingertip::link::telemetry::Hello;
 use fingertip::status::{Fault, LastFault, ResetCause, Status};

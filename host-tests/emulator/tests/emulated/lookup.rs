@@ -11,7 +11,7 @@ use model_tables::generate;
 /// The lookup of a reading, not the one that its uncertainty takes.
 const LOOKUP: &[(&str, &str)] = &[("Tables", "lookup"), ("contact", "contact")];
 /// Most instructions from the tared pressure to both results and their flag: one above the certificate's count.
-const MOST: f64 = 29.0;
+const MAX_INSTRUCTIONS: f64 = 29.0;
 /// Virtual time: the start and half of the press.
 const TIME: f64 = 1.0;
 
@@ -45,7 +45,7 @@ fn both_results_and_their_flag_take_few_instructions() {
         taken,
         0.01,
     );
-    assert!(taken <= MOST, "{taken}");
+    assert!(taken <= MAX_INSTRUCTIONS, "{taken}");
     // The certificate's figure is counted from the tables' shape.
     assert!((taken - f64::from(counted)).abs() <= 1.0, "{taken} for {counted}");
 }

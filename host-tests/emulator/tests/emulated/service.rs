@@ -3,7 +3,7 @@
 use crate::{Run, run};
 use emulator::accuracy::is_wrong;
 use emulator::record::Row;
-use fingertip::device::station::findings;
+use fingertip::device::logic::findings;
 use fingertip::link::command::{CommandKind, Outcome};
 use fingertip::status::{LastFault, ResetCause, Status, Stored, Touch, Warnings};
 
@@ -78,7 +78,7 @@ fn a_hang_in_a_grasp_is_reset_and_the_grasp_goes_on() {
     assert_eq!(hello.reset_cause, ResetCause::Watchdog);
     assert_eq!(hello.last_fault, LastFault::Hang);
     assert_eq!(hello.resets_in_a_row, 1);
-    // The zero from before the reset serves: readings are right, and ok.
+    // The zero from before the reset is in use: readings are right, and ok.
     let after = between(&run, 1.6 + 0.45 + RECOVERY, 2.55);
     assert!(after.len() > 400, "{}", after.len());
     for row in after {

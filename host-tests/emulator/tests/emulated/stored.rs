@@ -69,7 +69,7 @@ fn held(record: &Recording) -> (f64, Vec<Status>) {
 fn a_stored_calibration_serves() {
     let record = run(design().hash());
     let hello = record.hellos.last().expect("it greets");
-    assert_eq!((hello.stored, hello.stored_sequence), (Stored::Serves, 1));
+    assert_eq!((hello.stored, hello.stored_sequence), (Stored::InUse, 1));
     let (ratio, statuses) = held(&record);
     assert!((ratio - 1.02).abs() < 1e-3, "{ratio}");
     // 98 % of the tables and 2 % more of the pressure is beyond them.

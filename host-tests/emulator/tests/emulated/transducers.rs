@@ -224,7 +224,7 @@ fn tell(design: &FingertipDesign, image: &Image, plant: &Plant, story: Story, ai
     }
 }
 
-/// What the firmware said beside its reports that it should not have.
+/// What the firmware sent beside its reports that it should not have.
 fn complaints(story: Story, record: &Recording) -> Vec<String> {
     let mut complaints = vec![];
     let answers: Vec<(CommandKind, Outcome)> = record
@@ -237,7 +237,7 @@ fn complaints(story: Story, record: &Recording) -> Vec<String> {
     }
     let stored = match story {
         Story::LongRest | Story::Reset => Stored::None,
-        Story::Stored | Story::StoredElsewhere => Stored::Serves,
+        Story::Stored | Story::StoredElsewhere => Stored::InUse,
     };
     if record.hellos.last().is_none_or(|hello| hello.stored != stored) {
         complaints.push(format!("{:?}", record.hellos.last()));

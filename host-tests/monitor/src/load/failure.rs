@@ -14,7 +14,7 @@ pub enum LoadFailure {
     Refused(LoadKind, LoadOutcome, u16),
     /// The board did not come back, or with another design than was to be in use.
     NotInUse {
-        /// The hash that it said last.
+        /// The hash of its last hello.
         found: Option<u64>,
     },
 }
@@ -33,7 +33,7 @@ impl fmt::Display for LoadFailure {
                 write!(f, "no connection: {reason}; see that the board is plugged in, and load again")
             }
             Self::Refused(kind, outcome, findings) => {
-                write!(f, "the board refused `{}`: {}", kind.word(), words(*kind, *outcome, *findings))
+                write!(f, "the board refused `{}`: {}", kind.word(), label(*kind, *outcome, *findings))
             }
             Self::NotInUse { found: Some(found) } => write!(
                 f,
@@ -47,7 +47,7 @@ impl fmt::Display for LoadFailure {
 }
 
 /// An outcome with its remedy.
-fn words(kind: LoadKind, outcome: LoadOutcome, findings: u16) -> String {
+fn label(kind: LoadKind, outcome: LoadOutcome, findings: u16) -> String {
     let plain = match outcome {
         LoadOutcome::OutOfBounds => {
             "the block is longer than its memory; ask a coarser accuracy of the design"

@@ -19,7 +19,7 @@ mod probe {
     /// Cycles, some milliseconds: the emulator counts calls from its first stop on, one millisecond after power-on.
     const HEAD_START: u32 = 1_000_000;
     /// The largest table.
-    const MOST: usize = SIZES[SIZES.len() - 1];
+    const MAX_SIZE: usize = SIZES[SIZES.len() - 1];
     /// Octaves that the segments of an octave each span.
     const OCTAVES: usize = 16;
 
@@ -47,13 +47,13 @@ mod probe {
     }
 
     fn fixed_point() {
-        let mut wide = [0_i32; MOST];
-        let mut narrow = [0_i16; MOST];
+        let mut wide = [0_i32; MAX_SIZE];
+        let mut narrow = [0_i16; MAX_SIZE];
         for (i, (wide, narrow)) in wide.iter_mut().zip(&mut narrow).enumerate() {
             *wide = (i as i32) << 21;
             *narrow = (i as i16) << 5;
         }
-        let end = (MOST as i32 - 1) << 20;
+        let end = (MAX_SIZE as i32 - 1) << 20;
         for i in 0..INPUTS {
             let x = (place(i, INPUTS) * end as f32) as i32;
             uniform_q31(black_box(&wide), x, black_box(&mut [0; 2]));
@@ -62,8 +62,8 @@ mod probe {
     }
 
     fn searched() {
-        let mut lines = [[0.0_f32; 3]; MOST];
-        let mut cubics = [[0.0_f32; 5]; MOST];
+        let mut lines = [[0.0_f32; 3]; MAX_SIZE];
+        let mut cubics = [[0.0_f32; 5]; MAX_SIZE];
         for size in SIZES {
             for i in 0..size {
                 let x = place(i, size - 1);
@@ -114,10 +114,10 @@ mod probe {
     }
 
     measured! {
-        uniform_q31(knots: &[i32; MOST], x: i32, out: &mut [i32; 2]) {
+        uniform_q31(knots: &[i32; MAX_SIZE], x: i32, out: &mut [i32; 2]) {
             lookups::uniform_q31([knots, knots], x, out);
         }
-        uniform_q15(knots: &[i16; MOST], x: i32, out: &mut [i16; 2]) {
+        uniform_q15(knots: &[i16; MAX_SIZE], x: i32, out: &mut [i16; 2]) {
             lookups::uniform_q15([knots, knots], x, out);
         }
         linear_f32(knots: &[[f32; 3]], x: f32, out: &mut [f32; 2]) {

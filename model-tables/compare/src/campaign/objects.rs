@@ -144,7 +144,7 @@ impl ObjectWorld {
         };
         let size = match kind {
             TouchedKind::Ball => random.logarithmic(BALLS[0], BALLS[1]),
-            TouchedKind::Tilted => random.uniform(0.0, quoted::MOST_TILT),
+            TouchedKind::Tilted => random.uniform(0.0, quoted::MAX_TILT),
             TouchedKind::Rubbed => (random.bits() % FRICTIONS.len() as u64) as f64,
         };
         loop {

@@ -1,4 +1,4 @@
-//! Random walls: every rung of the ladder against the refined solid, and what the rule of `auto` lets through.
+//! Random walls: every fidelity of the ladder against the refined solid, and what the rule of `auto` lets through.
 
 use crate::methods::light_contact::LightContact;
 use model_tables::curve::Contact;
@@ -29,7 +29,7 @@ pub struct RandomWall {
     pub design: Design,
 }
 
-/// What a rung did.
+/// What a fidelity did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
     /// Its contacts, or why there are none.
@@ -40,22 +40,22 @@ pub struct Evidence {
     pub error: f64,
 }
 
-/// Every rung of one wall.
+/// Every fidelity of one wall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredWall {
     /// The wall.
     pub case: RandomWall,
     /// The closed form of the membrane's light contact, where it has all states.
     pub closed_form: Option<f64>,
-    /// The ladder, in its order; `None` where a rung does not apply.
-    pub rungs: [Option<Evidence>; LADDER.len()],
+    /// The ladder, in its order; `None` where a fidelity does not apply.
+    pub fidelities: [Option<Evidence>; LADDER.len()],
 }
 
 /// What the rule takes, and the error it lets through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taken {
     /// Place on the ladder.
-    pub rung: usize,
+    pub fidelity: usize,
     /// Against the refined solid, relative.
     pub error: f64,
 }
@@ -108,17 +108,17 @@ impl RandomWall {
         }
     }
 
-    /// Solves every rung.
+    /// Solves every fidelity.
     pub fn measure(self) -> MeasuredWall {
         let wanted = self.wanted(1.0);
-        let mut rungs = LADDER.map(|kind| kind.applies(&self.design).then(|| self.solve(kind, &wanted)));
-        let truth = match &rungs[LADDER.len() - 1] {
+        let mut fidelities = LADDER.map(|kind| kind.applies(&self.design).then(|| self.solve(kind, &wanted)));
+        let truth = match &fidelities[LADDER.len() - 1] {
             Some(Evidence {
                 contacts: Ok(truth), ..
             }) => truth.clone(),
             _ => Vec::new(),
         };
-        for evidence in rungs.iter_mut().flatten() {
+        for evidence in fidelities.iter_mut().flatten() {
             if let Ok(contacts) = &evidence.contacts {
                 evidence.error = wanted.distance(contacts, &truth);
             }
@@ -130,14 +130,14 @@ impl RandomWall {
         MeasuredWall {
             case: self,
             closed_form,
-            rungs,
+            fidelities,
         }
     }
 
     fn solve(&self, kind: Kind, wanted: &Wanted) -> Evidence {
         let rest = Fingertip::of(kind, &self.design);
         let start = Instant::now();
-        let contacts = rest.and_then(|mut rung| wanted.contacts(&mut rung));
+        let contacts = rest.and_then(|mut fidelity| wanted.contacts(&mut fidelity));
         Evidence {
             contacts,
             seconds: start.elapsed().as_secs_f64() / PARTS.len() as f64,
@@ -161,7 +161,7 @@ impl RandomWall {
 impl MeasuredWall {
     /// Whether the refined solid has every state.
     pub fn has_truth(&self) -> bool {
-        self.rungs[LADDER.len() - 1]
+        self.fidelities[LADDER.len() - 1]
             .as_ref()
             .is_some_and(|evidence| evidence.contacts.is_ok())
     }
@@ -171,7 +171,7 @@ impl MeasuredWall {
         let wanted = self.case.wanted(error);
         let mut below: Vec<(usize, &[Contact])> = Vec::new();
         let mut taken = LADDER.len() - 1;
-        for (place, evidence) in self.rungs.iter().enumerate() {
+        for (place, evidence) in self.fidelities.iter().enumerate() {
             let Some(Evidence {
                 contacts: Ok(contacts),
                 ..
@@ -183,17 +183,17 @@ impl MeasuredWall {
                 continue;
             }
             below.push((place, contacts));
-            let rungs = below.iter().map(|&(_, contacts)| contacts);
+            let fidelities = below.iter().map(|&(_, contacts)| contacts);
             let own_error = wanted.own_error(LADDER[place], &self.case.design);
-            let judged = wanted.judge(rungs, contacts, own_error);
+            let judged = wanted.judge(fidelities, contacts, own_error);
             if let Some(near) = judged {
                 taken = below[near].0;
                 break;
             }
         }
         Taken {
-            rung: taken,
-            error: self.rungs[taken]
+            fidelity: taken,
+            error: self.fidelities[taken]
                 .as_ref()
                 .map_or(f64::INFINITY, |evidence| evidence.error),
         }

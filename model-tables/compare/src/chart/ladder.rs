@@ -55,7 +55,7 @@ fn one(drawing: &mut Drawing, panel: &Panel, design: &Measured) {
         Anchor::Start,
         14.0,
         BLACK,
-        design.sweep.contestant.title,
+        design.sweep.design.title,
     );
     let middle = 0.5 * (left + right);
     drawing.text(

@@ -5,7 +5,7 @@ mod speed;
 mod tables;
 
 use crate::methods::approximations::{APPROXIMATIONS, MeasuredErrors, SAMPLES, Yardstick};
-use crate::methods::contest::{self, Contestant, DESIGNS, Sweep};
+use crate::methods::benchmark::{self, BenchmarkDesign, DESIGNS, Sweep};
 use model_tables::membrane::TensionField;
 use output::files;
 use output::rows::{Cell, Rows};
@@ -34,7 +34,7 @@ pub struct ChartArguments {
 /// A design with what was measured.
 struct Measured {
     sweep: Sweep,
-    results: Vec<contest::Result>,
+    results: Vec<benchmark::Result>,
     ladder: Vec<MeasuredErrors>,
 }
 
@@ -65,7 +65,7 @@ pub fn run(arguments: &ChartArguments) -> Result<CommandAnswer, Refusal> {
 
 /// The methods of solving, and the ladder of models.
 fn methods(arguments: &ChartArguments) -> Result<Vec<(&'static str, Vec<u8>)>, Refusal> {
-    let chosen: Vec<Contestant> = DESIGNS
+    let chosen: Vec<BenchmarkDesign> = DESIGNS
         .into_iter()
         .filter(|d| arguments.designs.is_empty() || arguments.designs.iter().any(|name| name == d.name))
         .collect();
@@ -79,25 +79,20 @@ fn methods(arguments: &ChartArguments) -> Result<Vec<(&'static str, Vec<u8>)>, R
     ])
 }
 
-fn measure(contestant: &Contestant) -> Result<Measured, Refusal> {
-    let refuse = |reason: String| Refusal(format!("{}: {reason}", contestant.name));
-    eprintln!("{}: solving the states to compare with", contestant.title);
-    let sweep = Sweep::new(contestant).map_err(|error| refuse(error.to_string()))?;
-    let methods = contest::methods();
-    let results = contest::run(&sweep, &methods, |round| {
+fn measure(design: &BenchmarkDesign) -> Result<Measured, Refusal> {
+    let refuse = |reason: String| Refusal(format!("{}: {reason}", design.name));
+    eprintln!("{}: solving the states to compare with", design.title);
+    let sweep = Sweep::new(design).map_err(|error| refuse(error.to_string()))?;
+    let methods = benchmark::methods();
+    let results = benchmark::run(&sweep, &methods, |round| {
         if round < 3 || round % 10 == 0 {
-            eprintln!(
-                "{}: {} methods, round {}",
-                contestant.title,
-                methods.len(),
-                round + 1
-            );
+            eprintln!("{}: {} methods, round {}", design.title, methods.len(), round + 1);
         }
     });
-    eprintln!("{}: measuring the ladder of models", contestant.title);
+    eprintln!("{}: measuring the ladder of models", design.title);
     let deepest = sweep.indentations.last().copied().unwrap_or_default();
     let range = [LADDER_FROM * deepest, deepest];
-    let yardstick = Yardstick::new(&contestant.design, TensionField::Plain, range)
+    let yardstick = Yardstick::new(&design.design, TensionField::Plain, range)
         .map_err(|error| refuse(error.to_string()))?;
     let ladder = APPROXIMATIONS
         .map(|approximation| yardstick.measure(approximation))
@@ -110,7 +105,7 @@ fn measure(contestant: &Contestant) -> Result<Measured, Refusal> {
 }
 
 /// What became of a sweep, in a word or a sentence without commas.
-fn outcome(result: &contest::Result) -> String {
+fn outcome(result: &benchmark::Result) -> String {
     result
         .failure
         .as_ref()
@@ -126,7 +121,7 @@ fn results_csv(measured: &[Measured]) -> String {
             let _ = writeln!(
                 text,
                 "{},{},{},{:.6},{:.6e},{:.6e},{},{},{},{:.1e},{}",
-                design.sweep.contestant.name,
+                design.sweep.design.name,
                 result.method.family(),
                 result.method.settings(),
                 result.seconds * 1e6,
@@ -145,7 +140,7 @@ fn results_csv(measured: &[Measured]) -> String {
 
 fn ladder_csv(measured: &[Measured]) -> String {
     let mut text =
-        "design,rung,us_per_state,indentation_mm,force_error,pressure_rise_error,outcome\n".to_owned();
+        "design,fidelity,us_per_state,indentation_mm,force_error,pressure_rise_error,outcome\n".to_owned();
     for design in measured {
         for evidence in &design.ladder {
             for sample in &evidence.samples {
@@ -161,7 +156,7 @@ fn ladder_csv(measured: &[Measured]) -> String {
                 let _ = writeln!(
                     text,
                     "{},{},{:.6},{:.14},{error},{rise},{outcome}",
-                    design.sweep.contestant.name,
+                    design.sweep.design.name,
                     evidence.approximation,
                     evidence.seconds * 1e6 / SAMPLES as f64,
                     sample.indentation * 1e3,
@@ -176,7 +171,7 @@ fn sweeps_csv(measured: &[Measured]) -> String {
     let mut text = "design,indentation_mm,force_n\n".to_owned();
     for design in measured {
         for (indentation, force) in design.sweep.indentations.iter().zip(&design.sweep.forces) {
-            let name = design.sweep.contestant.name;
+            let name = design.sweep.design.name;
             let _ = writeln!(text, "{name},{:.15},{force:.15}", indentation * 1e3);
         }
     }

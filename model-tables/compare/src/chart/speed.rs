@@ -1,7 +1,7 @@
 //! Time a state against error of the force: one panel a design.
 
 use super::Measured;
-use crate::methods::contest::{Method, Result, STAGES, STATES};
+use crate::methods::benchmark::{Method, Result, STAGES, STATES};
 use output::drawing::{
     Anchor, Axis, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, Panel, VERMILION, power,
 };
@@ -138,7 +138,7 @@ fn one(drawing: &mut Drawing, panel: &Panel, design: &Measured) {
         Anchor::Start,
         14.0,
         BLACK,
-        design.sweep.contestant.title,
+        design.sweep.design.title,
     );
     let words = "largest error of the force over the sweep, relative";
     drawing.text(
@@ -200,7 +200,7 @@ fn place(drawing: &mut Drawing, labels: &[([f64; 2], &str, String)], [left, righ
 
 /// What stopped early, and why: one line a kind of method.
 fn failures(drawing: &mut Drawing, all: &[Series<'_>], [x, mut y]: [f64; 2]) {
-    let mut said = 0;
+    let mut labelled = 0;
     for series in all {
         let Some(result) = series.results.iter().find(|result| result.failure.is_some()) else {
             continue;
@@ -228,9 +228,9 @@ fn failures(drawing: &mut Drawing, all: &[Series<'_>], [x, mut y]: [f64; 2]) {
             &short(reason),
         );
         y += 29.0;
-        said += 1;
+        labelled += 1;
     }
-    if said == 0 {
+    if labelled == 0 {
         drawing.text(
             [x, y],
             Anchor::Start,
@@ -243,11 +243,11 @@ fn failures(drawing: &mut Drawing, all: &[Series<'_>], [x, mut y]: [f64; 2]) {
 
 /// The reason, cut where the panel ends.
 fn short(reason: &str) -> String {
-    const MOST: usize = 70;
-    if reason.chars().count() <= MOST {
+    const MAX_CHARACTERS: usize = 70;
+    if reason.chars().count() <= MAX_CHARACTERS {
         reason.to_owned()
     } else {
-        let cut: String = reason.chars().take(MOST).collect();
+        let cut: String = reason.chars().take(MAX_CHARACTERS).collect();
         format!("{}\u{2026}", cut.trim_end())
     }
 }

@@ -1,4 +1,4 @@
-//! `designer ladder`: the rungs over random walls, and what the rule of `auto` lets through.
+//! `designer ladder`: the fidelities over random walls, and what the rule of `auto` lets through.
 
 use crate::campaign::scaling;
 use crate::campaign::walls::{self, ASKED, MeasuredWall};
@@ -67,7 +67,7 @@ pub fn run(arguments: &LadderArguments) -> Result<CommandAnswer, Refusal> {
         for (place, kind) in LADDER.iter().enumerate() {
             let errors = taken
                 .iter()
-                .filter(|taken| taken.rung == place)
+                .filter(|taken| taken.fidelity == place)
                 .map(|taken| taken.error);
             let largest = errors.clone().fold(0.0, f64::max);
             rows.push(vec![
@@ -124,7 +124,7 @@ fn csv(measured: &[MeasuredWall]) -> String {
         if let Some(error) = wall.closed_form {
             let _ = writeln!(text, "{start},closed form,{error:.4e},,ok");
         }
-        for (kind, evidence) in LADDER.iter().zip(&wall.rungs) {
+        for (kind, evidence) in LADDER.iter().zip(&wall.fidelities) {
             let Some(evidence) = evidence else { continue };
             let _ = match &evidence.contacts {
                 Ok(_) => writeln!(
@@ -178,7 +178,7 @@ fn costs(drawing: &mut Drawing, measured: &[&MeasuredWall]) {
     let panel = panel(0, [-4.0, 0.0], [-4.0, 0.0]);
     panel.draw(drawing, [1, 1], [&power, &power]);
     for wall in measured {
-        for (place, evidence) in wall.rungs[..LADDER.len() - 1].iter().enumerate() {
+        for (place, evidence) in wall.fidelities[..LADDER.len() - 1].iter().enumerate() {
             if let Some(evidence) = evidence
                 && evidence.error.is_finite()
             {
@@ -217,7 +217,7 @@ fn map(drawing: &mut Drawing, place: usize, asked: f64, measured: &[&MeasuredWal
             some => some,
         };
         let at = panel.at([outer.thickness / outer.radial_semi_axis, stretch]);
-        drawing.marker(MARKERS[taken.rung], at, COLORS[taken.rung], false);
+        drawing.marker(MARKERS[taken.fidelity], at, COLORS[taken.fidelity], false);
     }
     let y = panel.y.at(1.2 * UNSTRETCHED[1]);
     drawing.line([panel.x.pixels[0], y], [panel.x.pixels[1], y], GREY, 1.0);

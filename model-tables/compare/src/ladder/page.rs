@@ -1,4 +1,4 @@
-//! The page: errors of the rungs over walls, indentations and pre-stretches, and what `auto` lets through.
+//! The page: errors of the fidelities over walls, indentations and pre-stretches, and what `auto` lets through.
 
 use super::pre_stretch;
 use crate::campaign::scaling::{self, Cost};
@@ -43,7 +43,7 @@ fn percent(error: f64) -> String {
 }
 
 fn evidence(wall: &MeasuredWall, place: usize) -> Option<&Evidence> {
-    wall.rungs[place].as_ref()
+    wall.fidelities[place].as_ref()
 }
 
 /// The larger relative error of force and pressure rise at one indentation.
@@ -209,9 +209,9 @@ fn by_indentation(text: &mut String, measured: &[&MeasuredWall]) {
 fn choices(text: &mut String, measured: &[&MeasuredWall]) {
     text.push_str(
         "\n## What `kind = \"auto\"` takes\n\n\
-         The cheapest rung that differs from the solid 2 x 60 by no more than what is allowed less that solid's own error (0.6 %; \
+         The cheapest fidelity that differs from the solid 2 x 60 by no more than what is allowed less that solid's own error (0.6 %; \
          1 % where the wall is thinner than 0.02 of the radius, or pressed deeper than 0.36 of the height), and otherwise the \
-         cheapest that is near enough to the refined one. How many walls end on which rung, and the largest error let through, \
+         cheapest that is near enough to the refined one. How many walls end on which fidelity, and the largest error let through, \
          with the number of its wall (`compare::campaign::walls::draw`):\n\n\
          | allowed, % |",
     );
@@ -230,7 +230,7 @@ fn choices(text: &mut String, measured: &[&MeasuredWall]) {
             let _ = write!(
                 text,
                 " {} |",
-                taken.iter().filter(|taken| taken.rung == place).count()
+                taken.iter().filter(|taken| taken.fidelity == place).count()
             );
         }
         let worst = measured

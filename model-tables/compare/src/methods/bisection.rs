@@ -27,15 +27,15 @@ const FIRST_SPREAD: f64 = 0.02;
 /// Growth of a bracket that does not hold the root.
 const SPREAD_GROWTH: f64 = 2.5;
 /// Attempts at a bracket.
-const MOST_BRACKETS: usize = 12;
+const MAX_BRACKETS: usize = 12;
 /// What is left of an equation, over the tolerance, at which a root was a jump.
 const JUMP: f64 = 300.0;
 /// Force error, relative, beyond which a state is refused.
-const MOST_ERROR: f64 = 0.005;
+const MAX_ERROR: f64 = 0.005;
 /// Relative differences that its estimate takes.
 const DIFFERENCE: f64 = 1e-4;
 /// Indentations below so many tolerances of the height are lost in the errors of the bisections.
-const LEAST_INDENTATION: f64 = 30.0;
+const MIN_INDENTATION: f64 = 30.0;
 
 /// How fine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,7 +113,7 @@ fn bisect(
     let mut below = value(guess);
     let mut above = below;
     let mut spread = FIRST_SPREAD;
-    for _ in 0..MOST_BRACKETS {
+    for _ in 0..MAX_BRACKETS {
         if below < 0.0 && above >= 0.0 {
             break;
         }
@@ -224,7 +224,7 @@ impl Bisection {
         let target = indentation / scale.length;
         let [stretch, pressure, contact] = self.latest.unwrap_or_else(|| self.first_contact(target));
         let tolerance = self.fineness.tolerance;
-        let least = LEAST_INDENTATION * tolerance * self.rest.height;
+        let least = MIN_INDENTATION * tolerance * self.rest.height;
         if target < least {
             return Err(MethodFailure::BelowResolution {
                 asked: indentation,
@@ -255,7 +255,7 @@ impl Bisection {
             return Err(MethodFailure::LawUnstable);
         }
         let estimate = self.error([pole_stretch, pressure, contact], target)?;
-        if estimate.is_nan() || estimate > MOST_ERROR {
+        if estimate.is_nan() || estimate > MAX_ERROR {
             return Err(MethodFailure::Inaccurate { estimate });
         }
         let contact_radius = reached.contact_radius * scale.length;

@@ -13,13 +13,13 @@ use model_tables::design::Design;
 use model_tables::membrane::press::Press;
 
 /// States at most.
-pub const MOST: usize = 16;
+pub const MAX_STATES: usize = 16;
 /// Points of one interpolating polynomial. The first points lie far closer than the last: higher degrees swing.
 const STENCIL: usize = 5;
 /// A radius that moves by less than this, relative, is found.
 const ROOT_TOLERANCE: f64 = 1e-13;
 /// Steps of the search for the radius of an indentation.
-const MOST_STEPS: usize = 100;
+const MAX_STEPS: usize = 100;
 
 /// A curve from first contact to the deepest of its states.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ pub struct FewStates {
 }
 
 impl FewStates {
-    /// A curve down to `deepest`, metres, through so many states of the press, 1 to [`MOST`].
+    /// A curve down to `deepest`, metres, through so many states of the press, 1 to [`MAX_STATES`].
     ///
     /// # Errors
     /// [`MethodFailure`].
@@ -45,7 +45,7 @@ impl FewStates {
     ) -> Result<Self, MethodFailure> {
         let light = LightContact::new(design)?;
         let slope = 0.5 * light.rest_pressure / light.rest_tension;
-        let states = states.clamp(1, MOST);
+        let states = states.clamp(1, MAX_STATES);
         let mut radii = vec![0.0];
         let mut values = vec![[
             slope * libm::log(light.length),
@@ -135,7 +135,7 @@ impl FewStates {
             return high;
         }
         let (mut side, mut before) = (0, 0.0);
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let next = (low * of_high - high * of_low) / (of_high - of_low);
             let value = excess(next);
             if value == 0.0 || (next - before).abs() < ROOT_TOLERANCE * next {

@@ -3,14 +3,14 @@
 //! What a designer could reach for instead of [`press`](model_tables::membrane::press), each in one file with its source and
 //! its weakness: the source paper's nested [`bisection`], [`shooting`] with Newton's method (from its [`unpressed`] state), the closed form for
 //! [`light_contact`], and curves through a [`few_states`]. [`approximations`] measures the cheap ones against the full
-//! membrane; [`contest`] times all of them in one run.
+//! membrane; [`benchmark`] times all of them in one run.
 //!
 //! Bisection and shooting integrate the plain membrane's equations as [`plain`] writes them, independently of the
 //! production method: a state found by both is right.
 
 pub mod approximations;
+pub mod benchmark;
 pub mod bisection;
-pub mod contest;
 pub mod dop853;
 pub mod few_states;
 pub mod light_contact;

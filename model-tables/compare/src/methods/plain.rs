@@ -112,7 +112,7 @@ impl LastStretches {
 }
 
 /// Newton steps of the inversion of the law.
-const MOST_INVERSIONS: usize = 40;
+const MAX_INVERSIONS: usize = 40;
 
 impl PlainMembrane {
     /// The membrane of a design.
@@ -152,7 +152,7 @@ impl PlainMembrane {
     /// The law at the meridional stretch with `W_1(l1, u) = n`.
     pub fn invert(&self, n: f64, u: f64, memory: &mut LastStretches) -> Option<Derivatives> {
         let mut l1 = memory.stretch;
-        for _ in 0..MOST_INVERSIONS {
+        for _ in 0..MAX_INVERSIONS {
             let d = self.law.derivatives(l1, u);
             if d.w11.is_nan() || d.w11 <= 0.0 {
                 return None;

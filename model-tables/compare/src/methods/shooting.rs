@@ -10,19 +10,19 @@ use super::matrix::invert;
 use super::plain::{
     Free, HEIGHT, LastStretches, Load, Met, PlainMembrane, RADIUS, STATE, THRUST, VARIED, VOLUME,
 };
-use super::unpressed::{FIRST_STEP, MOST_STEPS, ShootingRest, start_of, tolerance};
+use super::unpressed::{FIRST_STEP, MAX_STEPS, ShootingRest, start_of, tolerance};
 use super::{MethodFailure, MethodState};
 use core::f64::consts::{FRAC_PI_2, PI};
 use model_tables::design::Design;
 
 /// Halvings of a Newton step at most.
-const MOST_HALVINGS: usize = 8;
+const MAX_HALVINGS: usize = 8;
 /// Largest relative change of an unknown in one step.
 const LARGEST_CHANGE: f64 = 0.3;
 /// States kept for prediction.
 const HISTORY: usize = 4;
 /// Halvings of the way to a state.
-const MOST_DETOURS: usize = 6;
+const MAX_DETOURS: usize = 6;
 /// Contact radius over edge radius, minus one, that counts as rounding.
 const EDGE_ROUNDING: f64 = 1e-9;
 /// First indentation on the way from rest, over the height.
@@ -103,7 +103,7 @@ impl Shooting {
                         return Ok(self.found(indentation, &found));
                     }
                     Ok(_) => break,
-                    Err(failure) if detours == MOST_DETOURS => return Err(failure),
+                    Err(failure) if detours == MAX_DETOURS => return Err(failure),
                     Err(_) => {
                         detours += 1;
                         next = libm::sqrt(next * reached);
@@ -264,7 +264,7 @@ impl Shooting {
         let size = |r: &[f64; 3]| r.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
         let mut unknowns = guess;
         let mut shot = self.shoot(unknowns)?;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let (residual, matrix) = self.equations(target, &unknowns, &shot);
             let (inverse, condition) = invert(&matrix).ok_or(MethodFailure::Singular)?;
             self.condition = condition;
@@ -310,7 +310,7 @@ impl Shooting {
                 }
                 damping *= 0.5;
                 halvings += 1;
-                if halvings > MOST_HALVINGS {
+                if halvings > MAX_HALVINGS {
                     return Err(stalled);
                 }
             };

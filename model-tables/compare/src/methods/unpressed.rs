@@ -10,7 +10,7 @@ const START: f64 = 0.3;
 /// First step over the distance to the pole. Longer ones excite the singular solution, unseen by the error estimate.
 pub(super) const FIRST_STEP: f64 = 2.0;
 /// Newton steps at most.
-pub(super) const MOST_STEPS: usize = 30;
+pub(super) const MAX_STEPS: usize = 30;
 
 /// The rest state, dimensionless.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +77,7 @@ impl ShootingRest {
         let d = model_tables::material::Hyperelastic::derivatives(&problem.law, stretch, stretch);
         let mut pressure = 2.0 * d.w1 / (stretch * stretch) * problem.aspect;
         let mut moved = f64::INFINITY;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let (end, met) = match inflate(problem, stretch, pressure, [start_of(relative), relative], STATE)
             {
                 Ok(reached) => reached,

@@ -220,7 +220,7 @@ fn page(domes: &[Case; 3], papers: &[Case; 3], paper_data: &Data, target: &Targe
     text.push_str(
         "\nA membrane can be made to follow a wall that bends, but with values that the device does not have: the data were made \
          with the modulus as drawn, no stretch, no compliance and no offset. Inside the range it was fitted in, such a \
-         calibration serves; it carries over to no other depth or dome. The standard errors know nothing of that: they are \
+         calibration is valid; it carries over to no other depth or dome. The standard errors do not include that: they are \
          those of noise. Modulus and wall act on a membrane as one, so the wall is held.\n\n",
     );
     text.push_str(SURENESS);

@@ -92,7 +92,7 @@ enum Command {
     Chart(compare::chart::ChartArguments),
     /// Where each method answers, refuses or is silently wrong, over designs; and what a state costs
     #[command(after_help = "Example:\n  cargo designer atlas --stride 4 --out target/atlas")]
-    Atlas(compare::atlas::AtlasArguments),
+    Atlas(compare::robustness_map::RobustnessMapArguments),
     /// The models over random walls: error against time, and what `model.kind = "auto"` takes: SVG and CSV
     #[command(after_help = "Example:\n  cargo designer ladder --designs 50 --out target/ladder")]
     Ladder(compare::ladder::LadderArguments),
@@ -200,7 +200,7 @@ fn run(command: &Command, format: Format) -> Result<Vec<String>, Refusal> {
         Command::Load(arguments) => load::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Chart(arguments) => compare::chart::run(arguments),
-        Command::Atlas(arguments) => compare::atlas::run(arguments),
+        Command::Atlas(arguments) => compare::robustness_map::run(arguments),
         Command::Ladder(arguments) => compare::ladder::run(arguments),
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Actuator(arguments) => actuator::run(arguments),

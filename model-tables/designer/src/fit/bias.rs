@@ -13,7 +13,7 @@ const SURE: f64 = 5.0;
 /// Part of the largest reading that is worth a word.
 const WORTH: f64 = 0.01;
 /// Rows of a trial in which a drift can be seen.
-const LEAST_ROWS: usize = 10;
+const MIN_ROWS: usize = 10;
 /// A bias of so many times as good evidence as the next is told alone: one causes others.
 const ALONE: f64 = 0.5;
 
@@ -156,7 +156,7 @@ fn candidates(left: &Left<'_>) -> Vec<(Bias, Vec<f64>, f64)> {
                 let alone = column(&|row| if data.rows[row].trial == trial { 1.0 } else { 0.0 });
                 candidates.push((bias(quantity, Course::Offset, Some(trial)), alone, full_scale));
             }
-            if rows.len() >= LEAST_ROWS {
+            if rows.len() >= MIN_ROWS {
                 let part = |row: usize| (row - first) as f64 / (last - first) as f64;
                 let drift = column(&|row| {
                     if data.rows[row].trial == trial {

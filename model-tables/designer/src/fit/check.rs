@@ -150,7 +150,7 @@ impl Hysteresis {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Validation {
     /// Parts.
-    pub folds: usize,
+    pub parts: usize,
     /// Whether a part is a trial.
     pub by_trial: bool,
     /// Force.
@@ -163,29 +163,29 @@ pub struct Validation {
 type Pair = (DataQuantity, [f64; 2]);
 
 /// Trials from which on each is predicted from the others.
-const LEAST_TRIALS: usize = 3;
+const MIN_TRIALS: usize = 3;
 /// Parts at most.
-const MOST_FOLDS: usize = 10;
+const MAX_CROSS_VALIDATION_PARTS: usize = 10;
 /// Parts of data without so many trials: every so many-th row in the order of depth.
 const INTERLEAVED: usize = 5;
 
 /// The part that each row belongs to, and how many there are.
-pub(super) fn folds(data: &Data) -> (Vec<usize>, usize, bool) {
-    if data.trials.len() >= LEAST_TRIALS {
-        let folds = data.trials.len().min(MOST_FOLDS);
+pub(super) fn cross_validation_parts(data: &Data) -> (Vec<usize>, usize, bool) {
+    if data.trials.len() >= MIN_TRIALS {
+        let parts = data.trials.len().min(MAX_CROSS_VALIDATION_PARTS);
         return (
-            data.rows.iter().map(|row| row.trial % folds).collect(),
-            folds,
+            data.rows.iter().map(|row| row.trial % parts).collect(),
+            parts,
             true,
         );
     }
     let mut order: Vec<usize> = (0..data.rows.len()).collect();
     order.sort_by(|&a, &b| data.rows[a].depth().total_cmp(&data.rows[b].depth()));
-    let mut folds = vec![0; data.rows.len()];
+    let mut parts = vec![0; data.rows.len()];
     for (place, &row) in order.iter().enumerate() {
-        folds[row] = place % INTERLEAVED;
+        parts[row] = place % INTERLEAVED;
     }
-    (folds, INTERLEAVED, false)
+    (parts, INTERLEAVED, false)
 }
 
 /// Fits to all but one part, from the whole fit on with its weights, and predicts that part. `None` where a part would
@@ -205,13 +205,13 @@ pub(super) fn validate(
     } = *task;
     let kind = task.model.kind;
     let work = task.model.work();
-    let (fold_of, folds, by_trial) = folds(data);
+    let (part_of, parts, by_trial) = cross_validation_parts(data);
     let pick = |fold: usize, held_out: bool| -> Vec<usize> {
         (0..targets.len())
-            .filter(|&i| (fold_of[targets[i].row] == fold) == held_out)
+            .filter(|&i| (part_of[targets[i].row] == fold) == held_out)
             .collect()
     };
-    let predicted: Option<Vec<Vec<Pair>>> = (0..folds)
+    let predicted: Option<Vec<Vec<Pair>>> = (0..parts)
         .into_par_iter()
         .map(|fold| {
             let model = Model::sharing(kind, file, data, free, Arc::clone(&work));
@@ -256,7 +256,7 @@ pub(super) fn validate(
         )
     });
     Some(Validation {
-        folds,
+        parts,
         by_trial,
         force,
         rise,

@@ -6,12 +6,12 @@ use super::record::{Data, DataRow};
 /// Values this near to the extreme one, over the range of the channel, are the same.
 const SAME: f64 = 1e-6;
 /// Rows that stand at the end at least, and over the usual number of rows of one value: a coarse channel has ties everywhere.
-const LEAST: usize = 3;
+const MIN_TIES: usize = 3;
 const OVER_USUAL: f64 = 3.0;
 /// Part of the range of every other channel that is passed through meanwhile.
 const GOES_ON: f64 = 0.05;
 /// Part of the rows that stand at a value at most; more is another kind of data.
-const MOST: f64 = 0.9;
+const MAX_SHARE: f64 = 0.9;
 
 /// Takes the values of force and pressure out that stood at an end of their channel; gives one line for each end.
 pub(super) fn take_out(data: &mut Data) -> Vec<String> {
@@ -53,8 +53,8 @@ fn standing(rows: &[DataRow], quantity: Measured, upper: bool) -> Option<Vec<usi
         })
         .collect();
     let count = members.len();
-    if count < LEAST
-        || count as f64 > MOST * rows.len() as f64
+    if count < MIN_TIES
+        || count as f64 > MAX_SHARE * rows.len() as f64
         || (count as f64) < OVER_USUAL * usual_ties(rows, quantity, end)
     {
         return None;

@@ -20,11 +20,11 @@ pub struct DataChoice {
 }
 
 /// Rows that a fit takes at least.
-const LEAST_ROWS: usize = 3;
+const MIN_ROWS: usize = 3;
 /// Numbers of no bench, SI: a logger's mark of a missing value, or a slip.
 const LARGEST: f64 = 1e12;
 /// Rank correlation under which a quantity does not grow with another.
-const LEAST_CORRELATION: f64 = 0.5;
+const MIN_CORRELATION: f64 = 0.5;
 /// A turn back by more than this part of the range of a trial changes the direction.
 const TURN: f64 = 0.15;
 
@@ -151,7 +151,7 @@ impl Data {
         for quantity in [Measured::Indentation, Measured::Force] {
             let values = || self.rows.iter().filter_map(|row| row.get(quantity));
             let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
-            if -low > NEGATIVE * high && values().count() >= LEAST_ROWS {
+            if -low > NEGATIVE * high && values().count() >= MIN_ROWS {
                 for row in &mut self.rows {
                     let turned = row.get(quantity).map(|value| -value);
                     row.set(quantity, turned);
@@ -198,10 +198,10 @@ impl Data {
 
     fn check(&self) -> Result<(), DataError> {
         use Measured::{Force, Indentation, PressureRise};
-        if self.rows.len() < LEAST_ROWS {
+        if self.rows.len() < MIN_ROWS {
             return Err(DataError::TooFewRows {
                 found: self.rows.len(),
-                needed: LEAST_ROWS,
+                needed: MIN_ROWS,
             });
         }
         for quantity in Measured::ALL {
@@ -225,11 +225,11 @@ impl Data {
                 .iter()
                 .filter_map(|row| Some([row.get(b)?, row.get(a)?]))
                 .collect();
-            if pairs.len() < LEAST_ROWS {
+            if pairs.len() < MIN_ROWS {
                 continue;
             }
             let correlation = rank_correlation(&pairs);
-            if correlation < LEAST_CORRELATION {
+            if correlation < MIN_CORRELATION {
                 return Err(DataError::NotGrowing {
                     column: a.column().to_owned(),
                     with: b.column().to_owned(),

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, SVD};
 const DEPENDENT: f64 = 1e-6;
 /// A standard deviation, in coordinates, beyond which the data do not say where a direction stands. One is what a
 /// parameter could change at all.
-const UNTOLD: f64 = 0.7;
+const UNIDENTIFIABLE_FROM: f64 = 0.7;
 /// Components under this part of the largest do not belong to a direction.
 const PART: f64 = 0.3;
 
@@ -24,7 +24,11 @@ pub struct Unidentified {
 
 /// The worst direction that the data do not determine, of a Jacobian in standard deviations; `None` if all are told.
 /// With `noise` unknown only dependence is found.
-pub(super) fn untold(jacobian: &DMatrix<f64>, free: &[Parameter], noise_known: bool) -> Option<Unidentified> {
+pub(super) fn unidentifiable(
+    jacobian: &DMatrix<f64>,
+    free: &[Parameter],
+    noise_known: bool,
+) -> Option<Unidentified> {
     let svd = SVD::new(jacobian.clone(), false, true);
     let directions = svd.v_t.as_ref()?;
     let largest = svd.singular_values.max();
@@ -35,7 +39,7 @@ pub(super) fn untold(jacobian: &DMatrix<f64>, free: &[Parameter], noise_known: b
         .min_by(|a, b| a.1.total_cmp(b.1))?;
     let dependent = *value <= DEPENDENT * largest || free.len() > jacobian.nrows();
     let deviation = if dependent { f64::INFINITY } else { 1.0 / value };
-    if !(dependent || (noise_known && deviation > UNTOLD)) {
+    if !(dependent || (noise_known && deviation > UNIDENTIFIABLE_FROM)) {
         return None;
     }
     let row = directions.row(least);
@@ -87,14 +91,16 @@ mod tests {
             1 => 1.0 + i as f64,
             _ => 30.0 + (i * i) as f64,
         });
-        let found = untold(&jacobian, &[Material, PoleStretch, Thickness], false).expect("two act as one");
+        let found =
+            unidentifiable(&jacobian, &[Material, PoleStretch, Thickness], false).expect("two act as one");
         assert_eq!(found.held, Thickness);
         assert_eq!(found.direction.len(), 2);
         assert!((found.direction[0].1 + found.direction[1].1).abs() < 1e-9);
         let told = jacobian.remove_column(2);
-        assert_eq!(untold(&told, &[Material, PoleStretch], true), None);
+        assert_eq!(unidentifiable(&told, &[Material, PoleStretch], true), None);
         // So much noise that nothing is left of the difference.
-        let drowned = untold(&(told * 1e-4), &[Material, PoleStretch], true).expect("nothing is told");
+        let drowned =
+            unidentifiable(&(told * 1e-4), &[Material, PoleStretch], true).expect("nothing is told");
         assert!(drowned.deviation.is_finite());
     }
 

@@ -2,10 +2,10 @@
 //!
 //! [`data`] (rows of indentation, force and pressure rise, checked) -> the membrane as the bench would read it, for any
 //! values of the [`parameter`]s -> least squares by Levenberg and Marquardt, reweighted robustly, with the noise taken
-//! from what is left -> standard errors, correlations, directions that the data do not determine (held, and said) ->
+//! from what is left -> standard errors, correlations, directions that the data do not determine (held, and reported) ->
 //! [`check`]s: hysteresis, cross-validation, order in what is left.
 //!
-//! Standard errors are those of noise alone, with what it costs that the weights are found in the same data (`widening`): they hold
+//! Standard errors are those of noise alone, with what it costs that the weights are found in the same data (`error_inflation`): they hold
 //! if the model is right, which [`Fit::systematic`] doubts where what is left has an order.
 
 mod bias;
@@ -15,6 +15,7 @@ mod columns;
 pub mod data;
 mod data_error;
 mod error;
+mod error_inflation;
 mod heading;
 mod identify;
 mod kind;
@@ -29,7 +30,6 @@ mod robust;
 mod search;
 mod solve;
 pub mod spline;
-mod widening;
 
 use check::{Hysteresis, Misfit, Validation};
 use data::Data;
@@ -211,13 +211,13 @@ fn finish(
         .collect();
     let slopes = task.slopes(values);
     let covariance = identify::covariance(&jacobian, &counted).map(|covariance| {
-        let groups = [DataQuantity::Force, DataQuantity::Rise].map(|quantity| widening::Group {
+        let groups = [DataQuantity::Force, DataQuantity::Rise].map(|quantity| error_inflation::Group {
             members: (0..residuals.len())
                 .filter(|&i| residuals[i].quantity == quantity && !residuals[i].outlier)
                 .collect(),
             largest: weighting.noise[solve::index(quantity)].largest,
         });
-        let wider = widening::factors(&jacobian, &weighting.sigma, &predicted, &groups);
+        let wider = error_inflation::factors(&jacobian, &weighting.sigma, &predicted, &groups);
         let wider = DMatrix::from_diagonal(&wider.into());
         &slopes * (&wider * covariance * &wider) * slopes.transpose()
     });
@@ -387,7 +387,7 @@ fn check_swapped(targets: &[Target], predicted: &[f64]) -> Result<(), FitError> 
             rows.push([[force.measured, predicted[i]], [rise.measured, predicted[i + 1]]]);
         }
     }
-    if rows.len() < robust::ENOUGH {
+    if rows.len() < robust::MIN_RESIDUALS {
         return Ok(());
     }
     let left = |measured: usize, by: usize| {

@@ -26,9 +26,9 @@ const STEP: f64 = 1.3;
 /// The last state of a press that ends, over its limit.
 const NEARLY: f64 = 0.9995;
 /// States of a curve at most: a press of any depth from a thousandth of it on.
-const MOST_STATES: usize = 64;
+const MAX_STATES: usize = 64;
 /// States that a fit of a membrane, and of a solid, solves at most: many times what data of such a device take.
-const MOST_WORK: [usize; 2] = [60_000, 2_500];
+const MAX_WORK: [usize; 2] = [60_000, 2_500];
 /// Curves that are kept.
 const KEPT: usize = 512;
 
@@ -194,9 +194,9 @@ impl Model {
     /// Whether the fit has solved as many states as it may.
     pub(super) fn is_spent(&self) -> bool {
         let most = if self.kind.is_cheap() {
-            MOST_WORK[0]
+            MAX_WORK[0]
         } else {
-            MOST_WORK[1]
+            MAX_WORK[1]
         };
         self.work.load(Ordering::Relaxed) > most
     }
@@ -289,7 +289,7 @@ impl Model {
         };
         let mut points: Vec<Contact> = Vec::new();
         let mut ends = false;
-        while points.len() < MOST_STATES {
+        while points.len() < MAX_STATES {
             self.work.fetch_add(1, Ordering::Relaxed);
             SOLVED.fetch_add(1, Ordering::Relaxed);
             match press.contact_at(indentation) {

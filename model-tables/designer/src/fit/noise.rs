@@ -18,7 +18,7 @@ const OUTLYING: f64 = 4.5;
 /// Size of rounding, over the largest reading.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Residuals under which a ratio is not worth estimating.
-const ENOUGH: usize = 12;
+const MIN_RESIDUALS: usize = 12;
 
 /// Noise of one quantity, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +62,7 @@ impl NoiseModel {
             let logarithms: f64 = readings.iter().map(|&reading| libm::log(shape(reading))).sum();
             (student(&scaled, least) + logarithms, floor)
         };
-        let ratio = if residuals.len() < ENOUGH {
+        let ratio = if residuals.len() < MIN_RESIDUALS {
             FIRST_RATIO
         } else {
             let cost = |ratio: &f64| with(*ratio).0;

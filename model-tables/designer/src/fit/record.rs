@@ -9,7 +9,7 @@ pub enum Direction {
     Loading,
     /// Back.
     Unloading,
-    /// Not said, and not to be seen.
+    /// Not given, and not to be seen in the data.
     Unknown,
 }
 

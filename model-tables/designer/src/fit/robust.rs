@@ -1,7 +1,7 @@
 //! Statistics that single outliers do not move.
 
 /// Residuals from which on outliers can be told from noise; under that all count alike.
-pub(super) const ENOUGH: usize = 10;
+pub(super) const MIN_RESIDUALS: usize = 10;
 /// Median absolute deviation -> standard deviation of a normal distribution.
 const TO_DEVIATION: f64 = 1.482_602_218_505_602;
 /// An outlier is so many standard deviations from its neighbours, and as many of the whole from the fit.
@@ -26,7 +26,7 @@ pub(super) fn median(values: &[f64]) -> f64 {
 
 /// Standard deviation about zero: from the median of the magnitudes, or of a few values from their squares.
 pub(super) fn deviation(values: &[f64]) -> f64 {
-    if values.len() < ENOUGH {
+    if values.len() < MIN_RESIDUALS {
         let squares: f64 = values.iter().map(|value| value * value).sum();
         return libm::sqrt(squares / values.len().max(1) as f64);
     }
@@ -38,7 +38,7 @@ pub(super) fn deviation(values: &[f64]) -> f64 {
 /// their neighbours do not share. What a model leaves in order is no outlier, however large.
 pub(super) fn outliers(residuals: &[f64]) -> Vec<bool> {
     let mut flags = vec![false; residuals.len()];
-    if residuals.len() < ENOUGH {
+    if residuals.len() < MIN_RESIDUALS {
         return flags;
     }
     for _ in 0..residuals.len() / 4 {
@@ -102,7 +102,7 @@ pub(super) fn runs(residuals: &[f64]) -> Option<f64> {
     let positive = signs.iter().filter(|sign| **sign).count() as f64;
     let count = signs.len() as f64;
     let negative = count - positive;
-    if positive.min(negative) < 3.0 || count < ENOUGH as f64 {
+    if positive.min(negative) < 3.0 || count < MIN_RESIDUALS as f64 {
         return None;
     }
     let runs = 1.0 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count() as f64;

@@ -76,7 +76,7 @@ pub(super) fn search(
         let (values, weighting) = best(&task, &origin)?;
         let predicted = task.predict(&values)?;
         let jacobian = task.jacobian(&values, &predicted, &weighting.factors())?;
-        if let Some(found) = identify::untold(&jacobian, &free, true) {
+        if let Some(found) = identify::unidentifiable(&jacobian, &free, true) {
             free.retain(|parameter| *parameter != found.held);
             unidentified.push(found);
             continue;
@@ -110,7 +110,7 @@ fn dependent(task: &Task<'_>, start: &ParameterValues) -> Result<Option<Unidenti
     let sigma = Weighting::unknown(task.targets).sigma;
     let factors: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
     let jacobian = task.jacobian(start, &task.predict(start)?, &factors)?;
-    Ok(identify::untold(&jacobian, task.free, false))
+    Ok(identify::unidentifiable(&jacobian, task.free, false))
 }
 
 /// The best of the fits from several starts.

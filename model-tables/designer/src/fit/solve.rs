@@ -18,7 +18,7 @@ const TOLERANCES: [f64; 2] = [1e-9, 1e-7];
 /// Evaluations of one minimisation, over parameters and one more.
 const PATIENCE: usize = 25;
 /// Rounds of reweighting at most.
-const MOST_ROUNDS: usize = 12;
+const MAX_ROUNDS: usize = 12;
 /// A round that moves no coordinate by more than this has settled.
 const SETTLED: f64 = 1e-4;
 /// Residual that stands for a place where there is no model, in standard deviations.
@@ -124,7 +124,7 @@ impl Task<'_> {
     }
 
     /// The place of values on the scale of the fit. The compliance counts by what it does to a membrane, which goes with
-    /// the stiffness: one curve then serves all stiffnesses.
+    /// the stiffness: one curve then covers all stiffnesses.
     fn coordinates(&self, values: &ParameterValues) -> DVector<f64> {
         let mut scaled = *values;
         scaled.set(
@@ -233,7 +233,7 @@ impl Task<'_> {
     pub(super) fn settle(&self, start: &ParameterValues) -> Result<(ParameterValues, Weighting), ModelError> {
         let mut weighting = Weighting::unknown(self.targets);
         let mut values = self.minimise(start, &weighting)?;
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             if self.model.is_spent() {
                 break;
             }

@@ -4,7 +4,7 @@
 //! and Hanson 1974) on their tail sums. The number of knots is the one that predicts best what was left out. Noise and
 //! outliers are taken from what is left, as in a fit of the model. The pressure rise is taken as exact.
 
-use super::check::{Hysteresis, Misfit, folds};
+use super::check::{Hysteresis, Misfit, cross_validation_parts};
 use super::data::{Data, DataRow};
 use super::noise::NoiseModel;
 use super::non_negative::non_negative;
@@ -17,9 +17,9 @@ const KNOTS: [usize; 7] = [0, 1, 2, 3, 5, 8, 12];
 /// Rounds of taking outliers out.
 const ROUNDS: usize = 4;
 /// Rows that a curve takes at least.
-const LEAST: usize = 8;
+const MIN_ROWS: usize = 8;
 /// The least growth of a coefficient over the largest reading, so that the curve grows strictly.
-const LEAST_GROWTH: f64 = 1e-4;
+const MIN_GROWTH: f64 = 1e-4;
 /// A slope so many times the median one: the pressure says little there.
 const STEEP: f64 = 5.0;
 /// Places at which a slope is looked at.
@@ -97,7 +97,7 @@ impl Spline {
         let mut basis = DMatrix::zeros(places.len(), width);
         let mut target = DVector::zeros(places.len());
         let largest = values.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-        let least = LEAST_GROWTH * largest;
+        let least = MIN_GROWTH * largest;
         for (i, &place) in places.iter().enumerate() {
             let tails = Self::tails(&knots, place);
             let floor: f64 = least * tails.iter().sum::<f64>();
@@ -133,7 +133,7 @@ pub struct DataBranch {
     /// Rows that would not have been predicted, because they lay beyond the range of the others.
     pub refused: usize,
     /// Parts of the cross-validation, and whether a part is a trial.
-    pub folds: (usize, bool),
+    pub cross_validation: (usize, bool),
     /// Unloading less loading at equal pressure.
     pub hysteresis: Option<Hysteresis>,
 }
@@ -191,7 +191,7 @@ impl fmt::Display for NoCurve {
             ),
             Self::TooFew { found } => write!(
                 f,
-                "{found} rows have pressure rise and force, and a curve from data alone needs at least {LEAST}: measure more"
+                "{found} rows have pressure rise and force, and a curve from data alone needs at least {MIN_ROWS}: measure more"
             ),
             Self::Lost => write!(
                 f,
@@ -213,7 +213,7 @@ impl DataBranch {
         let members: Vec<usize> = (0..data.rows.len())
             .filter(|&i| data.rows[i].rise.is_some() && quantity(&data.rows[i]).is_some())
             .collect();
-        if members.len() < LEAST {
+        if members.len() < MIN_ROWS {
             return None;
         }
         let mut order = members;
@@ -221,8 +221,8 @@ impl DataBranch {
         order.sort_by(|&a, &b| place(a).total_cmp(&place(b)));
         let places: Vec<f64> = order.iter().map(|&i| place(i)).collect();
         let values: Vec<f64> = order.iter().filter_map(|&i| quantity(&data.rows[i])).collect();
-        let (fold_of, fold_count, by_trial) = folds(data);
-        let parts: Vec<usize> = order.iter().map(|&i| fold_of[i]).collect();
+        let (part_of, part_count, by_trial) = cross_validation_parts(data);
+        let parts: Vec<usize> = order.iter().map(|&i| part_of[i]).collect();
         let mut best: Option<(f64, Self)> = None;
         for inner in KNOTS {
             let Some(Counted {
@@ -241,7 +241,7 @@ impl DataBranch {
                 }
             };
             let (mut pairs, mut refused, mut lost) = (Vec::new(), 0, false);
-            for fold in 0..fold_count {
+            for fold in 0..part_count {
                 let kept: Vec<usize> = (0..places.len()).filter(|&i| parts[i] != fold).collect();
                 if kept.len() == places.len() {
                     continue;
@@ -299,7 +299,7 @@ impl DataBranch {
                     misfit,
                     held_out,
                     refused,
-                    folds: (fold_count, by_trial),
+                    cross_validation: (part_count, by_trial),
                     hysteresis: Hysteresis::of_rows(&rows),
                     spline,
                 };
@@ -363,7 +363,7 @@ pub fn from_data(data: &Data) -> Result<FromData, NoCurve> {
     if found == 0 {
         return Err(NoCurve::NoPressure);
     }
-    if found < LEAST {
+    if found < MIN_ROWS {
         return Err(NoCurve::TooFew { found });
     }
     let rises = || {
@@ -409,7 +409,7 @@ fn falls(data: &Data) -> Option<[usize; 2]> {
         .iter()
         .filter_map(|row| Some([row.indentation?, row.rise?]))
         .collect();
-    if rows.len() < LEAST {
+    if rows.len() < MIN_ROWS {
         return None;
     }
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));

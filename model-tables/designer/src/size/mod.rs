@@ -1,6 +1,6 @@
 //! Sizing: a wanted force over the indentation, and bounds -> the membranes that come nearest, with what each costs.
 //!
-//! [`target`] (what is wanted) -> a search over materials, aspects and stretches, in which one solved press serves every
+//! [`target`] (what is wanted) -> a search over materials, aspects and stretches, in which one solved press covers every
 //! size and wall, because a membrane's force is proportional to modulus, wall and size -> least squares from the
 //! best -> [`Sized`] designs, ranked.
 

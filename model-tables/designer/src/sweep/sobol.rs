@@ -1,14 +1,14 @@
 //! The Sobol sequence, in the order of its numbers (no Gray code): any point without those before it.
 
 /// Coordinates that there are direction numbers for.
-pub const MOST_DIMENSIONS: usize = 21;
+pub const MAX_DIMENSIONS: usize = 21;
 
 /// Bits of a coordinate.
 const BITS: usize = 32;
 
 /// Degree, coefficients and first direction numbers of the coordinates from the second on: S. Joe and F. Y. Kuo, SIAM J.
 /// Sci. Comput. 30 (2008) 2635, table `new-joe-kuo-6`.
-const DIRECTIONS: [(usize, u32, [u32; 7]); MOST_DIMENSIONS - 1] = [
+const DIRECTIONS: [(usize, u32, [u32; 7]); MAX_DIMENSIONS - 1] = [
     (1, 0, [1, 0, 0, 0, 0, 0, 0]),
     (2, 1, [1, 3, 0, 0, 0, 0, 0]),
     (3, 1, [1, 3, 1, 0, 0, 0, 0]),
@@ -32,15 +32,15 @@ const DIRECTIONS: [(usize, u32, [u32; 7]); MOST_DIMENSIONS - 1] = [
 ];
 
 /// Direction numbers of every coordinate, the first bit's highest.
-const MATRICES: [[u32; BITS]; MOST_DIMENSIONS] = {
-    let mut matrices = [[0_u32; BITS]; MOST_DIMENSIONS];
+const MATRICES: [[u32; BITS]; MAX_DIMENSIONS] = {
+    let mut matrices = [[0_u32; BITS]; MAX_DIMENSIONS];
     let mut bit = 0;
     while bit < BITS {
         matrices[0][bit] = 1 << (BITS - 1 - bit);
         bit += 1;
     }
     let mut dimension = 1;
-    while dimension < MOST_DIMENSIONS {
+    while dimension < MAX_DIMENSIONS {
         let (degree, coefficients, first) = DIRECTIONS[dimension - 1];
         let mut bit = 0;
         while bit < BITS {
@@ -81,7 +81,7 @@ mod tests {
     /// 100 and 777 are 86 and 653 here.
     #[test]
     fn points_are_those_of_scipy() {
-        let reference: [(u32, [u32; MOST_DIMENSIONS]); 2] = [
+        let reference: [(u32, [u32; MAX_DIMENSIONS]); 2] = [
             (
                 86,
                 [

@@ -1,7 +1,7 @@
 //! The file of a sweep: a base design, what varies, and what is computed.
 
 use super::sample::{SamplePoints, Sampling};
-use super::sobol::MOST_DIMENSIONS;
+use super::sobol::MAX_DIMENSIONS;
 use super::vary::{Variable, missing, refuse, variables};
 use model_tables::design_file::bounds::Bounds;
 use model_tables::design_file::section::{KeyFault, Section, line_at};
@@ -16,9 +16,9 @@ use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 /// Designs of a part where a file does not say.
 const DESIGNS_PER_PART: u64 = 1000;
 /// Numbers that a part may hold, so that its memory stays far below 200 MB.
-const MOST_NUMBERS: u64 = 2_000_000;
+const MAX_NUMBERS: u64 = 2_000_000;
 /// Designs of a sweep at most: what the Sobol sequence has.
-const MOST_DESIGNS: u64 = 1 << 32;
+const MAX_DESIGNS: u64 = 1 << 32;
 /// Numbers of a row that is not a curve, about.
 const NUMBERS_A_ROW: u64 = 40;
 /// Lists of a curve, with what says how long they are.
@@ -194,7 +194,7 @@ fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
     let count = whole(
         &mut section,
         "count",
-        Bounds::within(1.0, MOST_DESIGNS as f64, "(designs)"),
+        Bounds::within(1.0, MAX_DESIGNS as f64, "(designs)"),
     )?;
     let seed = whole(&mut section, "seed", Bounds::within(0.0, 9e15, ""))?;
     let computed = computed(&mut section)?;
@@ -237,10 +237,10 @@ fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
     )?;
     let varied = document["vary"].as_table_like();
     let variables = varied.map_or(Ok(Vec::new()), |table| variables(table, method))?;
-    if method == Sampling::Sobol && variables.len() > MOST_DIMENSIONS {
+    if method == Sampling::Sobol && variables.len() > MAX_DIMENSIONS {
         return Err(section.refuse(
             "method",
-            &format!("another one: sobol has {MOST_DIMENSIONS} keys at most"),
+            &format!("another one: sobol has {MAX_DIMENSIONS} keys at most"),
         ));
     }
     let count = designs(&section, method, count, &variables)?;
@@ -278,7 +278,7 @@ fn designs(
             let all = variables
                 .iter()
                 .try_fold(1_u64, |all, variable| all.checked_mul(variable.steps()))
-                .filter(|&all| all <= MOST_DESIGNS);
+                .filter(|&all| all <= MAX_DESIGNS);
             all.ok_or_else(|| section.refuse("method", "another one: this grid has more than 2^32 designs"))
         }
         (Sampling::Grid, Some(_)) => Err(section.refuse(
@@ -298,7 +298,7 @@ fn part_size(
     curve_states: u64,
 ) -> Result<u64, KeyFault> {
     let numbers = NUMBERS_A_ROW + variables + NUMBERS_A_STATE * curve_states;
-    let most = (MOST_NUMBERS / numbers).max(1);
+    let most = (MAX_NUMBERS / numbers).max(1);
     if asked.is_some_and(|asked| asked > most) {
         let allowed = format!("at most {most} with so many columns and states, which keeps the memory small");
         return Err(section.refuse("designs_per_part", &allowed));

@@ -353,6 +353,6 @@ pub(crate) fn assert_one_chip(line: &str, arguments: &[String]) {
         .skip(1)
         .filter_map(|rest| rest.split('"').next())
         .collect();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(chips.len(), 1, "{line}: {chips:?}\n{said}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(chips.len(), 1, "{line}: {chips:?}\n{stderr}");
 }

@@ -29,10 +29,10 @@ const CHECKED_SOLID: usize = 6;
 const BEYOND: f64 = 1.0 + 1.0 / 64.0;
 
 /// A relaxing wall's stress of a change in no time over the settled one: less than this.
-const MOST_STIFFENED: f64 = 65_535.0;
+const MAX_STIFFENED: f64 = 65_535.0;
 
 /// How often the accuracy is doubled at most where worse is allowed: a thousand times what was asked.
-const MOST_DOUBLINGS: u32 = 10;
+const MAX_DOUBLINGS: u32 = 10;
 
 /// What tables of a design are made from.
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ pub struct Solved {
     /// The end that the tables cover.
     pub end: Contact,
     /// The model that solved it; nothing where the curve is of data.
-    pub rung: Option<Fingertip>,
+    pub fingertip: Option<Fingertip>,
 }
 
 /// Tables of a design, with everything that is written beside them.
@@ -98,7 +98,7 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
 /// # Errors
 /// [`GenerateError`].
 pub fn from_design_or_worse(design: DesignFile) -> Result<Generated, GenerateError> {
-    make(design, MOST_DOUBLINGS)
+    make(design, MAX_DOUBLINGS)
 }
 
 fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> {
@@ -115,28 +115,32 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         rest_pressure,
         curve,
         end,
-        rung,
+        fingertip,
     } = solve(&touching)?;
-    let objects = match &rung {
+    let objects = match &fingertip {
         _ if !blends => None,
         None => return Err(GenerateError::Objects(NoObjects::Data)),
-        Some(rung) => Some(SolvedObjects::solve(&design, rung, &curve, end)?),
+        Some(fingertip) => Some(SolvedObjects::solve(&design, fingertip, &curve, end)?),
     };
     let fluid_half = match design.relaxation {
         None => None,
-        Some(_) => Some(share::half_borne_by_the_fluid(&touching, rung.as_ref(), end)?),
+        Some(_) => Some(share::half_borne_by_the_fluid(
+            &touching,
+            fingertip.as_ref(),
+            end,
+        )?),
     };
     let is_unknown = design.object.is_some_and(|object| object.unknown);
-    let unknown = rung
+    let unknown = fingertip
         .as_ref()
         .and_then(|tip| Unknown::solve(&design, tip, &curve, end));
     let from = accuracy.from_percent_of_full_scale / 100.0;
     let (mut model_error, mut membrane_error) = (None, None);
-    let kind = rung.as_ref().map(Fingertip::kind);
-    if let Some(mut rung) = rung {
-        model_error = convergence(&touching, &rung, &curve, end, from);
-        if matches!(rung, Fingertip::Membrane(_)) {
-            membrane_error = Some(OwnError::of(&mut rung, &touching, end.indentation, from));
+    let kind = fingertip.as_ref().map(Fingertip::kind);
+    if let Some(mut fingertip) = fingertip {
+        model_error = convergence(&touching, &fingertip, &curve, end, from);
+        if matches!(fingertip, Fingertip::Membrane(_)) {
+            membrane_error = Some(OwnError::of(&mut fingertip, &touching, end.indentation, from));
         }
     }
     is_near_enough(
@@ -190,14 +194,14 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
     if design.air == AirReference::Part {
         return Err(GenerateError::SecondTransducer);
     }
-    let (rest_pressure, curve, end, rung) = if let Some(data) = &design.calibration.curve {
+    let (rest_pressure, curve, end, fingertip) = if let Some(data) = &design.calibration.curve {
         let curve = measured(data, indentation * 1e-3)?;
         let end = curve.end();
         (data.rest_pressure_kpa * 1e3, curve, end, None)
     } else {
-        let mut rung = Fingertip::for_curve(design).map_err(GenerateError::Model)?;
-        let (rest_pressure, curve, end) = pressed(&mut rung, design, &transducer, indentation)?;
-        (rest_pressure, curve, end, Some(rung))
+        let mut fingertip = Fingertip::for_curve(design).map_err(GenerateError::Model)?;
+        let (rest_pressure, curve, end) = pressed(&mut fingertip, design, &transducer, indentation)?;
+        (rest_pressure, curve, end, Some(fingertip))
     };
     in_range(&transducer, DesignState::Rest, rest_pressure)?;
     in_range(
@@ -211,7 +215,7 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         rest_pressure,
         curve,
         end,
-        rung,
+        fingertip,
     })
 }
 
@@ -220,7 +224,7 @@ fn is_convolved(design: &DesignFile) -> Result<(), GenerateError> {
     let Some(relaxation) = &design.relaxation else {
         return Ok(());
     };
-    let reason = if relaxation.instantaneous() >= MOST_STIFFENED {
+    let reason = if relaxation.instantaneous() >= MAX_STIFFENED {
         "material.relaxation.g adds up to 65 535 or more, which the chip does not compute with: give less"
     } else if design.model == ModelSection::Membrane {
         "model.kind is \"membrane\": with [material.relaxation] set it to \"solid\" or \"auto\""
@@ -273,13 +277,13 @@ fn is_felt(transducer: &TransducerSection, rise: f64) -> Result<(), GenerateErro
 /// Solves the design again on a finer mesh at some indentations.
 fn convergence(
     design: &DesignFile,
-    rung: &Fingertip,
+    fingertip: &Fingertip,
     curve: &Curve,
     end: Contact,
     from: f64,
 ) -> Option<Comparison> {
-    let (mut press, better) = rung.finer(design).ok()?;
-    let checked = match rung {
+    let (mut press, better) = fingertip.finer(design).ok()?;
+    let checked = match fingertip {
         Fingertip::Membrane(_) => CHECKED,
         Fingertip::Solid(_) => CHECKED_SOLID,
     };

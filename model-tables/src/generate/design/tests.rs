@@ -48,9 +48,9 @@ fn tables_of_the_shipped_designs_agree_with_fresh_states_of_the_model() {
                 (reading.force.newtons(), state.force, end.force),
                 (reading.indentation.metres(), indentation, 2.5e-3),
             ] {
-                // The curve of a solid has the grain of its elements.
-                let grain = if name == "paper-prestretched" { 0.0 } else { 1e-3 };
-                let allowed = (1e-3 + grain) * truth.max(0.01 * full) + 1.05 * rounding * truth;
+                // The curve of a solid has the roughness of its elements.
+                let roughness = if name == "paper-prestretched" { 0.0 } else { 1e-3 };
+                let allowed = (1e-3 + roughness) * truth.max(0.01 * full) + 1.05 * rounding * truth;
                 assert!(
                     (got - truth).abs() <= allowed,
                     "{name} at {indentation}: {got} for {truth}"

@@ -200,7 +200,7 @@ fn write_band(band: &Band, out: &mut String) -> fmt::Result {
          largest_tilt_degrees = {:?}",
         band.tables_of,
         band.smallest_ball_mm,
-        quoted::MOST_TILT
+        quoted::MAX_TILT
     )?;
     if let Some(cup) = band.cup_mm {
         writeln!(out, "cup_mm = {cup:?}")?;

@@ -157,8 +157,8 @@ impl Unknown {
                 own.indentation / plate.indentation * indentation,
             );
         }
-        for tilted in quoted::tilted_force(quoted::MOST_TILT) {
-            let product = quoted::tilted_product(quoted::MOST_TILT);
+        for tilted in quoted::tilted_force(quoted::MAX_TILT) {
+            let product = quoted::tilted_product(quoted::MAX_TILT);
             found.take(tilted * force, product / tilted * indentation);
         }
         let depth = indentation / self.height;
@@ -346,7 +346,7 @@ impl fmt::Display for Band {
              degrees, friction",
             self.tables_of,
             self.smallest_ball_mm,
-            quoted::MOST_TILT
+            quoted::MAX_TILT
         )?;
         if let Some(cup) = self.cup_mm {
             write!(f, ", a cup of {cup} mm")?;

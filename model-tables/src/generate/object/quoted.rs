@@ -4,7 +4,7 @@
 //! for tilts, axisymmetric ones for friction. Other domes take the same figures, friction at the same depth over their height.
 
 /// Largest tilt of a band, degrees.
-pub const MOST_TILT: f64 = 20.0;
+pub const MAX_TILT: f64 = 20.0;
 
 /// Tilts of a plate, degrees, with what a plate's table reads over the true normal force, less one: least and most over depths of
 /// 0.5 to 2.5 mm.
@@ -12,7 +12,7 @@ const TILTS: [(f64, [f64; 2]); 4] = [
     (0.0, [0.0, 0.0]),
     (5.0, [-0.013, -0.003]),
     (10.0, [-0.049, -0.015]),
-    (MOST_TILT, [-0.18, -0.07]),
+    (MAX_TILT, [-0.18, -0.07]),
 ];
 /// True force times true indentation over the table's, at the largest tilt.
 const TILTED_PRODUCT: f64 = 1.3;
@@ -46,14 +46,14 @@ fn between(rows: &[(f64, f64)], at: f64) -> f64 {
 }
 
 /// True normal force of a tilted plate over that of the plate's table at the same pressure: least and most. `degrees` 0 to
-/// [`MOST_TILT`].
+/// [`MAX_TILT`].
 pub fn tilted_force(degrees: f64) -> [f64; 2] {
     [1, 0].map(|end| 1.0 / (1.0 + between(&TILTS.map(|(tilt, errors)| (tilt, errors[end])), degrees)))
 }
 
 /// True force times true indentation of a tilted plate over the table's: by the square of the tilt, as its force.
 pub fn tilted_product(degrees: f64) -> f64 {
-    1.0 + (TILTED_PRODUCT - 1.0) * (degrees / MOST_TILT) * (degrees / MOST_TILT)
+    1.0 + (TILTED_PRODUCT - 1.0) * (degrees / MAX_TILT) * (degrees / MAX_TILT)
 }
 
 /// True force of a plate with friction over that of the table at the same pressure, at a depth over the dome's height.

@@ -147,23 +147,23 @@ impl SolvedObjects {
     /// [`GenerateError::Objects`].
     pub fn solve(
         design: &DesignFile,
-        rung: &Fingertip,
+        fingertip: &Fingertip,
         curve: &Curve,
         end: Contact,
     ) -> Result<Self, GenerateError> {
-        Self::try_solve(design, rung, curve, end).map_err(GenerateError::Objects)
+        Self::try_solve(design, fingertip, curve, end).map_err(GenerateError::Objects)
     }
 
     fn try_solve(
         design: &DesignFile,
-        rung: &Fingertip,
+        fingertip: &Fingertip,
         curve: &Curve,
         end: Contact,
     ) -> Result<Self, NoObjects> {
-        let rest = rung.rest();
+        let rest = fingertip.rest();
         let pole = rest.edge_radius * rest.edge_radius / rest.height;
         let last = curve.end().pressure_rise;
-        let presses = Presses::of(design, rung, last, end.indentation);
+        let presses = Presses::of(design, fingertip, last, end.indentation);
         // Whole micrometres, as the chip has them.
         let radius = |share: f64| f64::from(micrometres(share * pole)) * 1e-6;
         let deep = |curve: &Curve| curve.at_indentation(end.indentation).pressure_rise.min(last);

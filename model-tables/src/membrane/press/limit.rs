@@ -1,6 +1,6 @@
 //! Where a press ends, and by what.
 
-use super::way::Stop;
+use super::load_stepping::Stop;
 use super::{LARGEST_STEP, MembraneError, Press, SMALLEST_STEP};
 use crate::limit::{EndsBy, Limit};
 use crate::material::Hyperelastic;
@@ -61,7 +61,10 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         };
         // Indentation and contact radius of the last two states on the way.
         let mut before = [(0.0, 0.0); 2];
-        let mut at = self.history.latest().map_or(0.0, |g| height - g.solution.height);
+        let mut at = self
+            .predictor
+            .latest()
+            .map_or(0.0, |g| height - g.solution.height);
         let mut step = LARGEST_STEP * height;
         loop {
             if at >= NEARLY_FLAT * height {
@@ -106,7 +109,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             }
             // The edge lies between: land on it.
             let closure = self.closure(PressControl::ContactRadius(edge));
-            if let (Stop::BeyondLimit, Some(latest)) = (stop, self.history.latest())
+            if let (Stop::BeyondLimit, Some(latest)) = (stop, self.predictor.latest())
                 && let mut landed = latest.clone()
                 && self.solver.settle(&mut landed, &closure).is_ok()
             {

@@ -2,9 +2,9 @@
 
 mod error;
 mod limit;
+mod load_stepping;
 #[cfg(feature = "std")]
 mod sampled;
-mod way;
 
 pub use error::MembraneError;
 
@@ -16,15 +16,15 @@ use crate::material::stability::Margin;
 use crate::material::{Hyperelastic, Law, Scaled};
 use crate::membrane::adapt::{Adaptive, Graded, Resolution};
 use crate::membrane::closure::{Closure, PressControl};
+use crate::membrane::continuation::Predictor;
 use crate::membrane::equations::{CONTACT_PARAMETER, CONTACT_RADIUS, PRESSURE, TensionField};
-use crate::membrane::history::Predictor;
 use crate::membrane::press::workspace::Workspace;
 use crate::membrane::rest::Branch;
 use crate::membrane::solution::Solution;
 use crate::membrane::state::{self, MeridianPoint, PressShape, PressedState, UnitScale};
 use crate::object::{Friction, Object, Shape as ObjectShape};
 use core::f64::consts::{FRAC_PI_2, PI};
-use way::Stop;
+use load_stepping::Stop;
 
 pub mod workspace;
 
@@ -73,7 +73,7 @@ pub struct Press<L = Law, const S: usize = STAGES> {
     rest: Graded<S>,
     rest_shape: PressShape,
     branch: Branch,
-    history: Predictor<S>,
+    predictor: Predictor<S>,
     limit: Option<Result<Limit, MembraneError>>,
 }
 
@@ -154,7 +154,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             });
         }
         self.solver.equilibrium.membrane.curvature = curvature;
-        self.history.clear();
+        self.predictor.clear();
         self.limit = None;
         Ok(self)
     }
@@ -274,7 +274,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     }
 
     fn latest(&self) -> &Graded<S> {
-        self.history.latest().unwrap_or(&self.rest)
+        self.predictor.latest().unwrap_or(&self.rest)
     }
 
     fn closure(&self, control: PressControl) -> Closure {

@@ -7,8 +7,8 @@ use crate::design::{Membrane as Dimensions, RestBy};
 use crate::material::{Hyperelastic, Law, Scaled};
 use crate::membrane::adapt::Resolution;
 use crate::membrane::adapt::{Adaptive, Graded};
+use crate::membrane::continuation::Predictor;
 use crate::membrane::equations::{LocalEquations, TensionField};
-use crate::membrane::history::Predictor;
 use crate::membrane::inflation::End;
 use crate::membrane::press::{MembraneError, Press, STAGES};
 use crate::membrane::rest::{Branch, RestFailure, RestQuantity};
@@ -37,7 +37,7 @@ impl<L, const S: usize> Workspace<L, S> {
                 rest: Graded::BLANK,
                 rest_shape: PressShape::BLANK,
                 branch: Branch::Only,
-                history: Predictor::new(),
+                predictor: Predictor::new(),
                 limit: None,
             },
         }

@@ -20,7 +20,7 @@ const NEARLY: f64 = 0.999;
 /// Accuracy of the pressure rise at which a model is read, relative.
 const TOLERANCE: f64 = 1e-5;
 /// States that it takes to get there, at most.
-const MOST_STATES: usize = 8;
+const MAX_STATES: usize = 8;
 /// The power of the indentation that a pressure rise goes with, about: where a second state does not tell yet.
 const POWER: f64 = 2.0;
 
@@ -167,7 +167,7 @@ fn up_to_the_end(model: &mut Fingertip, indentation: f64) -> Result<Contact, Mod
 fn reading(model: &mut Fingertip, truth: &Contact) -> Result<Contact, ModelError> {
     let mut state = up_to_the_end(model, truth.indentation)?;
     let mut power = POWER;
-    for _ in 0..MOST_STATES {
+    for _ in 0..MAX_STATES {
         let ratio = truth.pressure_rise / state.pressure_rise;
         if (ratio - 1.0).abs() < TOLERANCE {
             break;

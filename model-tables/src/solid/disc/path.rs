@@ -29,11 +29,11 @@ const ENERGY_TOLERANCE: f64 = 2e-3;
 /// The same in the first step, which is as small as what is left unbalanced allows.
 const FIRST_ENERGY_TOLERANCE: f64 = 5e-2;
 /// Volume, over that of the disc, from which on energies are compared: a blocked disc takes only what its contact gives way.
-const LEAST_VOLUME: f64 = 1e-3;
+const MIN_VOLUME: f64 = 1e-3;
 /// Relative growth of the volume, over that of the pressure, from which on the pressure counts as at its greatest.
 const AT_MAXIMUM: f64 = 30.0;
 /// Halvings on the way to an asked state.
-const MOST_HALVINGS: u32 = 12;
+const MAX_HALVINGS: u32 = 12;
 
 /// A state of the path.
 #[derive(Clone, Debug)]
@@ -155,7 +155,7 @@ impl Path {
                     below = kept;
                     target = pressure;
                 }
-                Err(_) if halvings < MOST_HALVINGS => {
+                Err(_) if halvings < MAX_HALVINGS => {
                     halvings += 1;
                     target = 0.5 * (below.pressure() + target);
                 }
@@ -262,7 +262,7 @@ impl Path {
         } else {
             FIRST_ENERGY_TOLERANCE
         };
-        let least = step * LEAST_VOLUME * PI * wall.mesh.thickness;
+        let least = step * MIN_VOLUME * PI * wall.mesh.thickness;
         let allowed = tolerance * scale.unwrap_or(done).abs().max(least);
         let corrections = guess.nodes.as_flattened().iter().zip(state.nodes.as_flattened());
         let corrected = corrections.map(|(guess, found)| (guess - found).abs());

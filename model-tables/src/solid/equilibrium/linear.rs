@@ -2,7 +2,7 @@
 
 use super::{SolidWall, Tangent, edge, edge_nodes};
 use crate::solid::fluid;
-use crate::solid::front::Fronts;
+use crate::solid::frontal::FrontalMatrix;
 use crate::solid::state::{Fluid, State};
 
 impl SolidWall {
@@ -23,7 +23,7 @@ impl SolidWall {
                 for j in 0..6 {
                     let [row, other] = [i, j].map(|i| 2 * local[i % 3] + i / 3);
                     if row <= other {
-                        front[Fronts::place(station, row, other)] -= state.fluid * share.second[i][j];
+                        front[FrontalMatrix::place(station, row, other)] -= state.fluid * share.second[i][j];
                     }
                 }
             }
@@ -63,7 +63,8 @@ impl SolidWall {
                 for j in 0..6 {
                     let [row, other] = [i, j].map(|i| 2 * local[i % 3] + i / 3);
                     if row <= other {
-                        front[Fronts::place(station, row, other)] += now[i][j] - self.by_edge[column][i][j];
+                        front[FrontalMatrix::place(station, row, other)] +=
+                            now[i][j] - self.by_edge[column][i][j];
                     }
                 }
             }

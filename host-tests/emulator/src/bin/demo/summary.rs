@@ -41,7 +41,7 @@ pub(crate) fn print(record: &Recording, plant: &Plant, accuracy: &RunAccuracy) {
     let unverified = |status: &Status| matches!(status, Status::Warning(warnings) if warnings.contains(Warnings::ZERO_UNVERIFIED));
     if ok == 0 && record.rows.iter().any(|row| unverified(&row.status)) {
         say!(
-            "note: nobody has said that nothing presses: this zero needs a tare (cargo demo --scenario long-rest)"
+            "note: the fingertip was not confirmed to be unloaded: this zero needs a tare (cargo demo --scenario long-rest)"
         );
     }
 }

@@ -42,7 +42,7 @@ pub struct LivesTally {
     pub ok: u64,
     /// Those further off than the zero's bound and three deviations, their own white noise left out.
     pub wrong: u64,
-    /// Those among them where the filter replaced a corner of a press, with noise of four deviations on it, as a wild sample.
+    /// Those among them where the filter replaced a corner of a press, with noise of four deviations on it, as an outlier.
     pub replaced: u64,
     /// By how much at most, pascals.
     pub worst: f64,

@@ -128,7 +128,7 @@ fn cost(solved: &Solved, percent: f64) -> Result<Option<Cost>, NoTables> {
 }
 
 /// `bytes / instructions`.
-fn words(cost: Option<Cost>) -> String {
+fn label(cost: Option<Cost>) -> String {
     cost.map_or("none".to_owned(), |cost| {
         format!("{} / {}", cost.bytes, cost.instructions)
     })
@@ -186,7 +186,7 @@ mod tests {
 
     /// Most bytes and instructions at 0.1 %, but for one design: the longest way to touch down takes an instruction more, as the
     /// page explains.
-    const MOST: Cost = Cost {
+    const MAX_COST: Cost = Cost {
         bytes: 192,
         instructions: 28,
     };
@@ -213,10 +213,10 @@ mod tests {
                 panic!("{}: no tables", front.name)
             };
             assert!(
-                fine.bytes <= MOST.bytes && fine.instructions <= MOST.instructions + 1,
+                fine.bytes <= MAX_COST.bytes && fine.instructions <= MAX_COST.instructions + 1,
                 "{row}"
             );
-            slower += usize::from(fine.instructions > MOST.instructions);
+            slower += usize::from(fine.instructions > MAX_COST.instructions);
             larger += usize::from(coarser.bytes > COARSER);
             // The page has three accuracies more.
             let cells = |row: &str| {
@@ -224,19 +224,19 @@ mod tests {
                     .map(|cell| cell.trim().to_owned())
                     .collect::<Vec<_>>()
             };
-            let said = page
+            let stated = page
                 .lines()
                 .find(|line| line.starts_with(&format!("| {} |", front.name)));
-            let (said, found) = (cells(said.unwrap_or_default()), cells(&row));
+            let (stated, found) = (cells(stated.unwrap_or_default()), cells(&row));
             assert!(
-                said.len() == 11 && said[..5] == found[..5] && said[6..8] == found[5..7],
+                stated.len() == 11 && stated[..5] == found[..5] && stated[6..8] == found[5..7],
                 "the page is stale: {row}"
             );
         }
         assert!(
             larger <= LARGER && slower <= SLOWER,
             "{larger} designs take more than {COARSER} bytes, {slower} more than {} instructions",
-            MOST.instructions
+            MAX_COST.instructions
         );
     }
 }

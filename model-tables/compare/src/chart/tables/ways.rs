@@ -8,7 +8,7 @@ use super::placing::{FROM, least, spread, weighted_lines};
 use crate::lookups;
 use micromath::F32Ext;
 use model_tables::curve::{Contact, Curve};
-use model_tables::generate::minimax::{self, FitSample, MOST};
+use model_tables::generate::minimax::{self, FitSample, MAX_COEFFICIENTS};
 use nalgebra::{SMatrix, SVector};
 
 /// Samples of an interval that a fit sees.
@@ -320,7 +320,7 @@ impl<'a> Press<'a> {
                                 dense
                             };
                             let x = ((first * (1.0 + t) - f64::from(bias)) / end).clamp(0.0, 1.0);
-                            let mut factors = [0.0; MOST];
+                            let mut factors = [0.0; MAX_COEFFICIENTS];
                             for (power, factor) in factors.iter_mut().enumerate().take(N) {
                                 *factor = libm::pow(t, power as f64);
                             }
@@ -334,7 +334,7 @@ impl<'a> Press<'a> {
                         .collect()
                 };
                 [0, 1].map(|output| {
-                    let found = minimax::fit(&samples(output), N, &[0.0; MOST]).coefficients;
+                    let found = minimax::fit(&samples(output), N, &[0.0; MAX_COEFFICIENTS]).coefficients;
                     std::array::from_fn(|power| libm::round(found[power] * scale) as i32)
                 })
             })

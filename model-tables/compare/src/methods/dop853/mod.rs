@@ -19,7 +19,7 @@ const RETREAT: f64 = 0.25;
 /// Steps below this part of the whole way end the integration.
 const NEGLIGIBLE: f64 = 1e-10;
 /// Steps at most.
-const MOST_STEPS: usize = 20_000;
+const MAX_STEPS: usize = 20_000;
 
 /// What a step may err.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ pub fn integrate<const N: usize>(
     let blew_up = |t| MethodFailure::BlewUp { position: t };
     stages[0] = rates(t, &y).ok_or(blew_up(t))?;
     let mut rejected = false;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let last = t + step * (1.0 + 1e-10) >= to;
         if last {
             step = to - t;

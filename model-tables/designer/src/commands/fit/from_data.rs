@@ -223,9 +223,9 @@ fn findings(found: &FromData, data: &Data) -> Vec<String> {
             "force_n" => ("force", "N"),
             _ => ("indentation", "mm"),
         };
-        let (folds, by_trial) = branch.folds;
+        let (parts, by_trial) = branch.cross_validation;
         lines.push(format!(
-            "{name}: predicted from the others ({folds} parts{}), a row is met to {} {unit} RMS ({:.2} % of the largest) and \
+            "{name}: predicted from the others ({parts} parts{}), a row is met to {} {unit} RMS ({:.2} % of the largest) and \
              {} {unit} at most; {} rows were refused as beyond the others' range, {} of {} are outliers",
             if by_trial { ", whole trials" } else { "" },
             digits(factor * branch.held_out.rms),

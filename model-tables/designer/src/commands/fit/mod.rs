@@ -28,11 +28,11 @@ const FILES: [&str; 3] = ["fit.md", "fit.svg", "residuals.csv"];
 pub(super) const HELP: &str = "\
 DATA.csv has the columns indentation_mm, force_n and pressure_rise_kpa, of which any two suffice, and may have
 trial and direction (loading, unloading). Headings like `Force (kN)` or `Pressure (in bar)`, separators `;` and tab,
-decimal commas, a row of units, UTF-16 and Latin-1 are recognised, and said; --columns names what is not. Lines that
+decimal commas, a row of units, UTF-16 and Latin-1 are recognised, and reported; --columns names what is not. Lines that
 begin with # are comments. Indentation is taken as exact.
 
 Parameters: material and thickness (factors), pole-stretch, compliance, pressure-gain, pressure-offset,
-indentation-offset. What the data cannot tell apart is held at the design's value, and said.
+indentation-offset. What the data cannot tell apart is held at the design's value, and reported.
 
 With --relaxation DATA.csv is a record in time of one or more trials, each from the untouched tip to the end of a hold: time_s,
 indentation_mm, pressure_rise_kpa or force_n or both, and trial and temperature_c where there are several. Press in a second or

@@ -39,7 +39,7 @@ pub(super) fn findings(file: &DesignFile, data: &Data, fit: &Fit) -> Vec<String>
             ));
         }
     }
-    lines.extend(fit.unidentified.iter().map(untold));
+    lines.extend(fit.unidentified.iter().map(unidentifiable));
     for estimate in &fit.estimates {
         if estimate.held == Some(Held::AtBound) {
             lines.push(format!(
@@ -163,7 +163,7 @@ fn validation(fit: &Fit) -> Vec<String> {
             Some(format!(
                 "cross-validation ({} parts, each {part} predicted from the others): {name} to {} {unit} RMS ({:.2} % of the \
                  largest), {} {unit} at most",
-                validation.folds,
+                validation.parts,
                 digits(factor * rms),
                 misfit?.rms_percent(),
                 digits(factor * largest),
@@ -173,7 +173,7 @@ fn validation(fit: &Fit) -> Vec<String> {
 }
 
 /// What the data do not tell, in words.
-fn untold(found: &Unidentified) -> String {
+fn unidentifiable(found: &Unidentified) -> String {
     let held = found.held;
     if let [(only, _)] = found.direction[..] {
         return format!("the data do not tell {only}; it was held at the design's value");

@@ -1,8 +1,8 @@
 //! The charts of a report: lines over linear axes, and speed against accuracy.
 
 use super::cost::Cost;
-use super::findings::{Findings, Meridian, Said};
-use super::words::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit};
+use super::findings::{Findings, Meridian, TableReading};
+use super::labels::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit};
 use model_tables::model::state::{MeridianStation, Pressed};
 use output::drawing::{
     self, Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION, power, spread,
@@ -173,19 +173,25 @@ pub(super) fn contact(found: &Findings) -> String {
 }
 
 /// What the model gives over the pressure rise and, where there are tables, what they say.
-fn known(found: &Findings, of_model: fn(&Pressed) -> f64, of_tables: fn(&Said) -> f64) -> Vec<Series> {
+fn known(
+    found: &Findings,
+    of_model: fn(&Pressed) -> f64,
+    of_tables: fn(&TableReading) -> f64,
+) -> Vec<Series> {
     let mut series = model(found, |state| [rise(found, state), of_model(state)]);
-    if found.said.is_empty() {
+    if found.table_readings.is_empty() {
         return vec![series];
     }
     "model".clone_into(&mut series.label);
-    let said = found.said.iter().step_by(3);
+    let readings = found.table_readings.iter().step_by(3);
     let tables = Series {
         label: "tables on the chip".to_owned(),
         color: VERMILION,
         marker: Some(Marker::Circle),
         line: false,
-        points: said.map(|said| [said.pressure_rise, of_tables(said)]).collect(),
+        points: readings
+            .map(|reading| [reading.pressure_rise, of_tables(reading)])
+            .collect(),
     };
     vec![series, tables]
 }
@@ -193,14 +199,14 @@ fn known(found: &Findings, of_model: fn(&Pressed) -> f64, of_tables: fn(&Said) -
 /// Force over the pressure rise.
 pub(super) fn readout(found: &Findings) -> String {
     let axes = [Named("pressure rise", KPA), Named("force", NEWTON)];
-    let series = known(found, |state| state.force, |said| said.force);
+    let series = known(found, |state| state.force, |reading| reading.force);
     lines("Force against pressure rise", axes, true, &series)
 }
 
 /// Indentation over the pressure rise: the other table.
 pub(super) fn depth(found: &Findings) -> String {
     let axes = [Named("pressure rise", KPA), Named("indentation", MM)];
-    let series = known(found, |state| state.indentation, |said| said.indentation);
+    let series = known(found, |state| state.indentation, |reading| reading.indentation);
     lines("Indentation against pressure rise", axes, true, &series)
 }
 
@@ -208,9 +214,9 @@ pub(super) fn depth(found: &Findings) -> String {
 pub(super) fn errors(found: &Findings) -> Option<String> {
     let of = |output: usize| -> Vec<[f64; 2]> {
         found
-            .said
+            .table_readings
             .iter()
-            .filter_map(|said| Some([said.pressure_rise, said.errors?[output]]))
+            .filter_map(|reading| Some([reading.pressure_rise, reading.errors?[output]]))
             .collect()
     };
     if of(0).is_empty() {
@@ -229,7 +235,7 @@ pub(super) fn errors(found: &Findings) -> Option<String> {
     });
     let axes = [
         Named("pressure rise", KPA),
-        Named("error of reading", super::words::PERCENT),
+        Named("error of reading", super::labels::PERCENT),
     ];
     Some(lines(
         "Error of the tables against the model",
@@ -309,14 +315,14 @@ pub(super) fn actuator(found: &Findings) -> String {
 }
 
 /// Least error that the chart shows, percent.
-const LEAST_ERROR: f64 = 1e-10;
+const MIN_ERROR: f64 = 1e-10;
 
 /// Speed against accuracy of the models.
 pub(super) fn speed(costs: &[Cost]) -> Option<String> {
     let shown: Vec<(&Cost, [f64; 2])> = costs
         .iter()
         .filter_map(|cost| {
-            let percent = (100.0 * cost.distance?).max(LEAST_ERROR);
+            let percent = (100.0 * cost.distance?).max(MIN_ERROR);
             Some((cost, [percent, 1e3 * cost.seconds]))
         })
         .collect();

@@ -50,7 +50,7 @@ pub(super) struct Findings {
     /// The tables, or the section that they would need.
     pub(super) tables: Result<Generated, &'static str>,
     /// What the tables say of the states.
-    pub(super) said: Vec<Said>,
+    pub(super) table_readings: Vec<TableReading>,
     /// Presses at several speeds, where the wall relaxes.
     pub(super) in_time: Vec<TimedPress>,
     pub(super) costs: Vec<Cost>,
@@ -72,7 +72,7 @@ pub(super) struct Meridian {
 }
 
 /// What the tables say of a state.
-pub(super) struct Said {
+pub(super) struct TableReading {
     pub(super) pressure_rise: f64,
     pub(super) force: f64,
     pub(super) indentation: f64,
@@ -119,9 +119,10 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     progress.set(0.4);
     let tables = tables(&file).map_err(|error| refusal(path, error))?;
     progress.set(0.6);
-    let said = tables
-        .as_ref()
-        .map_or_else(|_| Vec::new(), |generated| said(generated, &file, &states));
+    let table_readings = tables.as_ref().map_or_else(
+        |_| Vec::new(),
+        |generated| table_readings(generated, &file, &states),
+    );
     let in_time = tables
         .as_ref()
         .map_or_else(|_| Vec::new(), |generated| in_time::presses(&file, generated));
@@ -144,7 +145,7 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
         states,
         meridians,
         tables,
-        said,
+        table_readings,
         in_time,
         costs,
         bending,
@@ -179,7 +180,7 @@ fn tables(
     }
 }
 
-fn said(generated: &Generated, file: &DesignFile, states: &[Pressed]) -> Vec<Said> {
+fn table_readings(generated: &Generated, file: &DesignFile, states: &[Pressed]) -> Vec<TableReading> {
     let tables = &generated.certified.tables;
     let bits = tables.layout.pressure_fraction_bits;
     let from = file
@@ -199,7 +200,7 @@ fn said(generated: &Generated, file: &DesignFile, states: &[Pressed]) -> Vec<Sai
             };
             let reading = tables.lookup(PressureRise::from_pascals(pressure_rise, bits));
             let (force, indentation) = (reading.force.newtons(), reading.indentation.metres());
-            Said {
+            TableReading {
                 pressure_rise,
                 force,
                 indentation,

@@ -1,6 +1,6 @@
 //! What static tables say of a wall that relaxes, pressed at several speeds.
 
-use super::words::{KPA, MM, NEWTON, PERCENT, SECONDS};
+use super::labels::{KPA, MM, NEWTON, PERCENT, SECONDS};
 use maud::{Markup, html};
 use model_tables::design_file::{Axes, DesignFile};
 use model_tables::generate::Generated;

@@ -1,7 +1,7 @@
 //! The page's part that repeats what the design states.
 
 use super::findings::Findings;
-use super::words::{KPA, MM, MM3, NEWTON, PA, STRETCH, Unit, count};
+use super::labels::{KPA, MM, MM3, NEWTON, PA, STRETCH, Unit, count};
 use maud::{Markup, html};
 use model_tables::constants::Quantity;
 use model_tables::design_file::{Axes, Calibration, RestSection, TransducerKindSection};

@@ -5,9 +5,9 @@ mod cost;
 mod findings;
 mod in_time;
 mod inputs;
+mod labels;
 mod page;
 mod shapes;
-mod words;
 
 use output::files;
 use output::progress::Progress;

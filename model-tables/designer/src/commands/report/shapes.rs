@@ -1,7 +1,7 @@
 //! Pressed shapes: sections through the axis, wall and all, to one scale.
 
 use super::findings::{Findings, Meridian};
-use super::words::{MM, NEWTON};
+use super::labels::{MM, NEWTON};
 use model_tables::model::state::MeridianStation;
 use output::drawing::{Anchor, BLACK, BLUE, Drawing, GREY};
 

@@ -10,14 +10,14 @@ const RELEASED: f64 = 5e-4;
 /// Noise of a stage that is more than rounding, over the depth.
 const STILL: f64 = 1e-6;
 /// A hold is so many times as long as its press, at least.
-const LEAST_HOLD: f64 = 2.0;
+const MIN_HOLD: f64 = 2.0;
 /// Rows of a press, and of a hold, that are told apart.
-const MOST_PRESSED: usize = 200;
+const MAX_PRESSED: usize = 200;
 const FEW_HELD: usize = 300;
 /// Rows of a hold closer than this part of the time since it began are read as one.
 const BIN: f64 = 0.01;
 /// Rows of a hold at least.
-const LEAST_ROWS: usize = 10;
+const MIN_ROWS: usize = 10;
 /// Pressure or force of an untouched tip, over the largest, that is a zero not taken.
 const UNTOUCHED: f64 = 0.01;
 
@@ -164,7 +164,7 @@ pub(super) fn trial(raw: RawTrial, notes: &mut Vec<String>) -> Result<HoldTrial,
     }
     let last = rows[rows.len() - 1].time;
     let (pressed, held) = (rows[held_from].time - rows[0].time, last - rows[held_from].time);
-    if held < LEAST_HOLD * pressed || rows.len() - held_from < LEAST_ROWS {
+    if held < MIN_HOLD * pressed || rows.len() - held_from < MIN_ROWS {
         return Err(HoldError::NoHold {
             title,
             depth,
@@ -235,7 +235,7 @@ fn zero(title: &str, untouched: &[HoldRow], rows: &[HoldRow]) -> Result<(), Hold
 /// Every so many rows of a long press, and means over rows of a long hold that are close on the scale of the time since it began; where the
 /// hold begins in them.
 fn thinned(rows: &[HoldRow], held_from: usize) -> (Vec<HoldRow>, usize) {
-    let stride = held_from.div_ceil(MOST_PRESSED).max(1);
+    let stride = held_from.div_ceil(MAX_PRESSED).max(1);
     let mut kept: Vec<HoldRow> = rows[..held_from].iter().step_by(stride).copied().collect();
     let start = kept.len();
     let held = &rows[held_from..];

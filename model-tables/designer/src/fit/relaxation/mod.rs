@@ -3,7 +3,7 @@
 //! [`record`] (trials from the untouched tip to the end of a hold) -> `forward` (quasi-linear: the settled wall's pressure and force at
 //! each
 //! indentation, convolved) -> `least_squares` (times and weights of so many terms) -> `search` (how many: by the Bayesian information
-//! criterion) -> `told` (standard errors, depths compared, the relaxed modulus). The reduced model errs by up to 5 % while the plate
+//! criterion) -> `identifiability` (standard errors, depths compared, the relaxed modulus). The reduced model errs by up to 5 % while the plate
 //! moves and by
 //! 1 % early in a hold; `solid` solves the wall in time with the series found, and what that reads over the reduced model enters the next
 //! round, until the series stays.
@@ -11,14 +11,14 @@
 mod error;
 mod forward;
 pub mod hold;
+mod identifiability;
 mod least_squares;
 pub mod record;
 mod search;
 mod solid;
-mod told;
 
 pub use error::HoldError;
-pub use told::{DepthComparison, FittedTerm, Told};
+pub use identifiability::{DepthComparison, FittedTerm, Identifiability};
 
 use super::check::Misfit;
 use super::heading::Measured;
@@ -49,7 +49,7 @@ const FIRST_SHIFT: f64 = 0.1;
 /// Sum of the weights below which a wall is elastic: twice the solid's own error in time.
 const RELAXES: f64 = 0.005;
 /// Readings that a fit takes at least.
-const LEAST: usize = 20;
+const MIN_ROWS: usize = 20;
 
 /// What the solid in time reads over the reduced model, largest difference from 1: pressing and held.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,7 +152,7 @@ pub fn fit_relaxation(
     let elements = elements_in_time(file.model);
     let curve = curve(file, record)?;
     let mut forward = Forward::new(record, &file.calibration, &curve, temperature)?;
-    if forward.targets.len() < LEAST {
+    if forward.targets.len() < MIN_ROWS {
         return Err(HoldError::TooFew(forward.targets.len()));
     }
     if !free_modulus {
@@ -240,7 +240,7 @@ fn finish(
     solid: Result<SolidDifference, String>,
 ) -> RelaxationFit {
     let series = &settled.series;
-    let errors = told::Errors::of(forward, settled);
+    let errors = identifiability::Errors::of(forward, settled);
     let terms: Vec<Term> = series
         .terms()
         .map(|[time, weight]| Term { time, weight })
@@ -284,9 +284,9 @@ fn finish(
         terms: errors.terms(settled, more, hold),
         modulus: libm::exp(series.modulus.0),
         modulus_error: series.modulus.1.then(|| errors.of_one(Varied::Modulus)),
-        open_moduli: told::open_moduli(forward, settled, hold),
+        open_moduli: identifiability::open_moduli(forward, settled, hold),
         shift_error: series.shift.1.then(|| errors.of_one(Varied::Shift)),
-        depths: told::compare_depths(record, forward, settled),
+        depths: identifiability::compare_depths(record, forward, settled),
         solid,
         noise,
         misfit,
@@ -324,7 +324,7 @@ fn bounds(record: &HoldRecord, hold: f64) -> [f64; 2] {
     let shortest = pairs.map(|pair| pair[1].time - pair[0].time).fold(hold, f64::min);
     [
         libm::log((TIMES[0] * shortest).max(SHORTEST)),
-        libm::log((TIMES[1] * hold).min(told::LONGEST)),
+        libm::log((TIMES[1] * hold).min(identifiability::LONGEST)),
     ]
 }
 

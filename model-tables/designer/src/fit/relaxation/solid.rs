@@ -10,7 +10,7 @@ use model_tables::solid::mesh::Elements;
 use nalgebra::DVector;
 
 /// Readings below this part of the largest have no factor.
-const LEAST: f64 = 1e-3;
+const MIN_REDUCED: f64 = 1e-3;
 
 /// What the solid reads over what the reduced model reads with a series, for each target.
 ///
@@ -45,7 +45,7 @@ pub(super) fn factors(
             let instant = history.advance(row.time, Drive::Indentation(indentation))?;
             for (k, truth) in [instant.pressure_rise, instant.force].into_iter().enumerate() {
                 if let Some(place) = forward.place(at, i, k)
-                    && reduced[place] > LEAST * largest[k]
+                    && reduced[place] > MIN_REDUCED * largest[k]
                 {
                     factors[place] = modulus * truth / reduced[place];
                 }

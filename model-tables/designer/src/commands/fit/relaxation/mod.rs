@@ -23,7 +23,7 @@ const COLUMNS: &[&str] = &[
     "g_standard_error",
     "g_low",
     "g_high",
-    "told",
+    "identifiable",
 ];
 
 /// What is written beside the design.
@@ -93,7 +93,7 @@ fn rows(fit: &RelaxationFit) -> Rows {
             Some(term.weight_error),
             term.weight_interval(),
         ));
-        row.push(Cell::word(term.told.words()));
+        row.push(Cell::word(term.identifiability.label()));
         rows.push(row);
     }
     rows

@@ -1,7 +1,7 @@
 //! What a fitted series says, one line each.
 
 use crate::fit::relaxation::record::HoldRecord;
-use crate::fit::relaxation::{RelaxationFit, Told};
+use crate::fit::relaxation::{Identifiability, RelaxationFit};
 use model_tables::design_file::DesignFile;
 use output::rows::significant;
 
@@ -56,17 +56,17 @@ pub(super) fn findings(file: &DesignFile, record: &HoldRecord, fit: &RelaxationF
     });
     lines.extend(fit.terms.iter().filter_map(|term| {
         let time = digits(term.time);
-        match term.told {
-            Told::Both => None,
-            Told::Product => Some(format!(
+        match term.identifiability {
+            Identifiability::Both => None,
+            Identifiability::Product => Some(format!(
                 "the record tells g times tau of the term of {time} s only: it relaxes faster than the rows show; press faster, and log \
                  more often, to tell them apart"
             )),
-            Told::Weight => Some(format!(
+            Identifiability::Weight => Some(format!(
                 "the term of {time} s stands for all that relaxes more slowly than the hold of {} s: hold longer to tell its times",
                 digits(fit.hold)
             )),
-            Told::Neither => Some(format!("the record does not tell the term of {time} s: neither its g nor its tau alone")),
+            Identifiability::Neither => Some(format!("the record does not tell the term of {time} s: neither its g nor its tau alone")),
         }
     }));
     lines.push(modulus(fit));

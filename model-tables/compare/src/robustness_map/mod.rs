@@ -15,7 +15,7 @@ const COLUMNS: &[&str] = &["map", "method", "verdict", "cells"];
 
 /// What is asked.
 #[derive(Debug, clap::Args)]
-pub struct AtlasArguments {
+pub struct RobustnessMapArguments {
     /// The folder to write to; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "target/atlas")]
     out: PathBuf,
@@ -28,7 +28,7 @@ pub struct AtlasArguments {
 ///
 /// # Errors
 /// [`Refusal`] where a design cannot be solved or a file not be written.
-pub fn run(arguments: &AtlasArguments) -> Result<CommandAnswer, Refusal> {
+pub fn run(arguments: &RobustnessMapArguments) -> Result<CommandAnswer, Refusal> {
     files::expect_folder(&arguments.out, &["cost.svg", "cost.csv"])?;
     let stride = arguments.stride as usize;
     let mut contents: Vec<(String, Vec<u8>)> = Vec::new();

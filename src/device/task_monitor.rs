@@ -1,10 +1,10 @@
 //! Who watches the tasks, what is remembered across a reset, and when resets stop.
 //!
-//! - The watchdog is fed only while every task has reported within its time ([`Roster`]).
-//! - What ended a run is left in memory that a reset keeps ([`Breadcrumb`]), with the zero that served.
-//! - Resets in a row that nobody asked for end in a board that measures nothing and says so ([`Breadcrumb::start`]).
+//! - The watchdog is fed only while every task has reported within its time ([`TaskMonitor`]).
+//! - What ended a run is left in memory that a reset keeps ([`CrashRecord`]), with the zero in use.
+//! - Resets in a row that nobody asked for end in a board that measures nothing and says so ([`CrashRecord::start`]).
 //!
-//! A transducer that does not answer is the matter of its [`keeper`](crate::transducer::keeper).
+//! A transducer that does not answer is the matter of its [`supervisor`](crate::transducer::supervisor).
 
 use crate::signal::zero::Zero;
 use crate::status::{LastFault, ResetCause, code_of, named_by};
@@ -20,13 +20,13 @@ pub const RESET_LIMIT: u8 = 5;
 
 /// The tasks that must report, and how often.
 #[derive(Clone, Copy, Debug)]
-pub struct Roster<const TASKS: usize> {
+pub struct TaskMonitor<const TASKS: usize> {
     /// Longest time between two reports of each, microseconds.
     allowed: [u64; TASKS],
     last: [Microseconds; TASKS],
 }
 
-impl<const TASKS: usize> Roster<TASKS> {
+impl<const TASKS: usize> TaskMonitor<TASKS> {
     /// All tasks report at `now`.
     pub const fn new(allowed: [u64; TASKS], now: Microseconds) -> Self {
         Self {
@@ -65,7 +65,7 @@ pub enum Stage {
 
 /// What a run leaves for the next one. In memory that no start-up clears, so any bits may lie there first.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub struct Breadcrumb {
+pub struct CrashRecord {
     /// What went wrong, and where.
     pub fault: LastFault,
     /// Which task, line or address; the [`Stage`] as long as nothing went wrong.
@@ -76,11 +76,11 @@ pub struct Breadcrumb {
     pub good: bool,
     /// The design the zero is of: its hash.
     pub design_hash: u64,
-    /// The zero that served.
+    /// The zero in use.
     pub zero: Option<Zero>,
 }
 
-/// Words of a [`Breadcrumb`] in memory.
+/// Words of a [`CrashRecord`] in memory.
 pub const WORDS: usize = 8;
 
 const MAGIC: u32 = 0x4642_5243;
@@ -95,7 +95,7 @@ fn check(words: &[u32; WORDS]) -> u32 {
     digest.finalize()
 }
 
-impl Breadcrumb {
+impl CrashRecord {
     /// The words to be kept.
     pub fn to_words(&self) -> [u32; WORDS] {
         let zero = self.zero.unwrap_or(Zero {
@@ -122,7 +122,7 @@ impl Breadcrumb {
         words
     }
 
-    /// What was kept; nothing when the words are none that [`Breadcrumb::to_words`] gives.
+    /// What was kept; nothing when the words are none that [`CrashRecord::to_words`] gives.
     pub fn from_words(words: &[u32; WORDS]) -> Option<Self> {
         let [magic, flags, detail, low, high, zero, bound, sum] = *words;
         if magic != MAGIC || sum != check(words) {
@@ -164,7 +164,7 @@ impl Breadcrumb {
             detail,
             kept: before.zero.filter(|_| before.design_hash == design_hash),
             give_up: resets > RESET_LIMIT,
-            crumb: Self {
+            crash_record: Self {
                 fault: LastFault::None,
                 detail: Stage::Board as u32,
                 resets,
@@ -183,12 +183,12 @@ pub struct Start {
     pub fault: LastFault,
     /// Which task, line, address or stage.
     pub detail: u32,
-    /// The zero that served then, if it is of this design.
+    /// The zero in use then, if it is of this design.
     pub kept: Option<Zero>,
     /// Reset after reset: measure nothing, say so.
     pub give_up: bool,
     /// To be kept from now on.
-    pub crumb: Breadcrumb,
+    pub crash_record: CrashRecord,
 }
 
 #[cfg(test)]
@@ -198,24 +198,24 @@ mod tests {
 
     #[test]
     fn the_watchdog_is_fed_only_while_every_task_reports() {
-        let mut roster = Roster::new([2_000, 50_000], Microseconds(0));
+        let mut task_monitor = TaskMonitor::new([2_000, 50_000], Microseconds(0));
         for ms in 0..40 {
-            roster.report(0, Microseconds(ms * 1000));
-            assert_eq!(roster.late(Microseconds(ms * 1000)), None);
+            task_monitor.report(0, Microseconds(ms * 1000));
+            assert_eq!(task_monitor.late(Microseconds(ms * 1000)), None);
         }
         // The second one reports in time, then the first hangs, then the second.
-        roster.report(1, Microseconds(40_000));
-        assert_eq!(roster.late(Microseconds(41_000)), None);
-        assert_eq!(roster.late(Microseconds(41_001)), Some(0));
-        roster.report(0, Microseconds(90_000));
-        assert_eq!(roster.late(Microseconds(90_000)), None);
-        roster.report(0, Microseconds(90_001));
-        assert_eq!(roster.late(Microseconds(90_001)), Some(1));
-        roster.report(9, Microseconds(90_001));
-        assert_eq!(roster.late(Microseconds(90_001)), Some(1));
+        task_monitor.report(1, Microseconds(40_000));
+        assert_eq!(task_monitor.late(Microseconds(41_000)), None);
+        assert_eq!(task_monitor.late(Microseconds(41_001)), Some(0));
+        task_monitor.report(0, Microseconds(90_000));
+        assert_eq!(task_monitor.late(Microseconds(90_000)), None);
+        task_monitor.report(0, Microseconds(90_001));
+        assert_eq!(task_monitor.late(Microseconds(90_001)), Some(1));
+        task_monitor.report(9, Microseconds(90_001));
+        assert_eq!(task_monitor.late(Microseconds(90_001)), Some(1));
     }
 
-    const CRUMB: Breadcrumb = Breadcrumb {
+    const CRASH_RECORD: CrashRecord = CrashRecord {
         fault: LastFault::Late,
         detail: 2,
         resets: 3,
@@ -230,65 +230,68 @@ mod tests {
 
     #[test]
     fn a_watchdog_reset_keeps_the_zero_and_says_what_hung() {
-        let start = Breadcrumb::start(Some(CRUMB), ResetCause::Watchdog, CRUMB.design_hash);
+        let start = CrashRecord::start(Some(CRASH_RECORD), ResetCause::Watchdog, CRASH_RECORD.design_hash);
         assert_eq!((start.fault, start.detail), (LastFault::Late, 2));
-        assert_eq!(start.kept, CRUMB.zero);
-        assert_eq!((start.crumb.resets, start.give_up), (4, false));
-        let other = Breadcrumb::start(Some(CRUMB), ResetCause::Watchdog, 1);
+        assert_eq!(start.kept, CRASH_RECORD.zero);
+        assert_eq!((start.crash_record.resets, start.give_up), (4, false));
+        let other = CrashRecord::start(Some(CRASH_RECORD), ResetCause::Watchdog, 1);
         assert_eq!(other.kept, None);
     }
 
     #[test]
     fn a_hang_without_a_trace_is_one_all_the_same() {
-        let start = Breadcrumb::start(None, ResetCause::Watchdog, 1);
+        let start = CrashRecord::start(None, ResetCause::Watchdog, 1);
         assert_eq!((start.fault, start.kept), (LastFault::Hang, None));
     }
 
     #[test]
     fn a_hang_while_it_starts_says_where() {
-        let first = Breadcrumb::start(None, ResetCause::PowerOn, 1);
-        let again = Breadcrumb::start(Some(first.crumb), ResetCause::Watchdog, 1);
+        let first = CrashRecord::start(None, ResetCause::PowerOn, 1);
+        let again = CrashRecord::start(Some(first.crash_record), ResetCause::Watchdog, 1);
         assert_eq!(
             (again.fault, again.detail),
             (LastFault::Hang, Stage::Board as u32)
         );
-        let left = Breadcrumb {
+        let left = CrashRecord {
             detail: Stage::Store as u32,
-            ..again.crumb
+            ..again.crash_record
         };
-        let third = Breadcrumb::start(Some(left), ResetCause::Watchdog, 1);
+        let third = CrashRecord::start(Some(left), ResetCause::Watchdog, 1);
         assert_eq!(
             (third.fault, third.detail),
             (LastFault::Hang, Stage::Store as u32)
         );
-        assert_eq!(third.crumb.resets, 2);
+        assert_eq!(third.crash_record.resets, 2);
         // A button is no hang, wherever it was pressed.
-        let pressed = Breadcrumb::start(Some(left), ResetCause::Pin, 1);
+        let pressed = CrashRecord::start(Some(left), ResetCause::Pin, 1);
         assert_eq!((pressed.fault, pressed.detail), (LastFault::None, 0));
     }
 
     #[test]
     fn power_and_the_button_start_afresh() {
-        let start = Breadcrumb::start(None, ResetCause::PowerOn, CRUMB.design_hash);
+        let start = CrashRecord::start(None, ResetCause::PowerOn, CRASH_RECORD.design_hash);
         assert_eq!(
-            (start.fault, start.kept, start.crumb.resets),
+            (start.fault, start.kept, start.crash_record.resets),
             (LastFault::None, None, 0)
         );
-        let start = Breadcrumb::start(Some(CRUMB), ResetCause::Pin, CRUMB.design_hash);
-        assert_eq!((start.fault, start.crumb.resets), (LastFault::Late, 0));
+        let start = CrashRecord::start(Some(CRASH_RECORD), ResetCause::Pin, CRASH_RECORD.design_hash);
+        assert_eq!((start.fault, start.crash_record.resets), (LastFault::Late, 0));
     }
 
     #[test]
     fn a_supply_that_sags_keeps_the_zero_and_is_counted() {
         for cause in [ResetCause::PowerOn, ResetCause::BrownOut] {
-            let mut found = Some(Breadcrumb { resets: 0, ..CRUMB });
+            let mut found = Some(CrashRecord {
+                resets: 0,
+                ..CRASH_RECORD
+            });
             for reset in 1..=RESET_LIMIT {
-                let start = Breadcrumb::start(found, cause, CRUMB.design_hash);
-                assert_eq!((start.crumb.resets, start.give_up), (reset, false));
-                assert!(reset > 1 || start.kept == CRUMB.zero);
-                found = Some(start.crumb);
+                let start = CrashRecord::start(found, cause, CRASH_RECORD.design_hash);
+                assert_eq!((start.crash_record.resets, start.give_up), (reset, false));
+                assert!(reset > 1 || start.kept == CRASH_RECORD.zero);
+                found = Some(start.crash_record);
             }
-            assert!(Breadcrumb::start(found, cause, CRUMB.design_hash).give_up);
+            assert!(CrashRecord::start(found, cause, CRASH_RECORD.design_hash).give_up);
         }
     }
 
@@ -296,19 +299,27 @@ mod tests {
     fn a_loop_of_resets_ends_and_a_good_run_between_them_counts() {
         let mut found = None;
         for reset in 1..=RESET_LIMIT {
-            let start = Breadcrumb::start(found, ResetCause::Watchdog, 1);
-            assert_eq!((start.crumb.resets, start.give_up), (reset, false));
-            found = Some(start.crumb);
+            let start = CrashRecord::start(found, ResetCause::Watchdog, 1);
+            assert_eq!((start.crash_record.resets, start.give_up), (reset, false));
+            found = Some(start.crash_record);
         }
-        assert!(Breadcrumb::start(found, ResetCause::Watchdog, 1).give_up);
-        let good = found.map(|crumb| Breadcrumb { good: true, ..crumb });
-        assert_eq!(Breadcrumb::start(good, ResetCause::Watchdog, 1).crumb.resets, 1);
+        assert!(CrashRecord::start(found, ResetCause::Watchdog, 1).give_up);
+        let good = found.map(|crash_record| CrashRecord {
+            good: true,
+            ..crash_record
+        });
+        assert_eq!(
+            CrashRecord::start(good, ResetCause::Watchdog, 1)
+                .crash_record
+                .resets,
+            1
+        );
     }
 
     proptest! {
         #[test]
         fn what_is_kept_is_found(fault in 0..LastFault::CODES.len(), detail in any::<u32>(), resets in any::<u8>(), flags in any::<[bool; 3]>(), hash in any::<u64>(), zero in any::<[i32; 2]>()) {
-            let crumb = Breadcrumb {
+            let crash_record = CrashRecord {
                 fault: LastFault::CODES[fault].0,
                 detail,
                 resets,
@@ -316,23 +327,23 @@ mod tests {
                 design_hash: hash,
                 zero: flags[1].then_some(Zero { pressure: Pressure(zero[0]), bound: zero[1], verified: flags[2] }),
             };
-            prop_assert_eq!(Breadcrumb::from_words(&crumb.to_words()), Some(crumb));
+            prop_assert_eq!(CrashRecord::from_words(&crash_record.to_words()), Some(crash_record));
         }
 
         #[test]
-        fn random_memory_is_no_breadcrumb(words in any::<[u32; WORDS]>(), magic in any::<bool>()) {
+        fn random_memory_is_no_crash_record(words in any::<[u32; WORDS]>(), magic in any::<bool>()) {
             let mut words = words;
             if magic {
                 words[0] = MAGIC;
             }
-            prop_assert_eq!(Breadcrumb::from_words(&words), None);
+            prop_assert_eq!(CrashRecord::from_words(&words), None);
         }
 
         #[test]
-        fn one_flipped_bit_is_no_breadcrumb(word in 0..WORDS, bit in 0..32) {
-            let mut words = CRUMB.to_words();
+        fn one_flipped_bit_is_no_crash_record(word in 0..WORDS, bit in 0..32) {
+            let mut words = CRASH_RECORD.to_words();
             words[word] ^= 1_u32 << bit;
-            prop_assert_eq!(Breadcrumb::from_words(&words), None);
+            prop_assert_eq!(CrashRecord::from_words(&words), None);
         }
     }
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::device::supervisor::Breadcrumb;
+use crate::device::task_monitor::CrashRecord;
 use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::Touch;
 use crate::units::{Millipascals, Pressure};
@@ -13,7 +13,7 @@ const BEGINNING: Beginning = Beginning {
         detail: 0,
         kept: None,
         give_up: false,
-        crumb: Breadcrumb {
+        crash_record: CrashRecord {
             fault: LastFault::None,
             detail: 0,
             resets: 0,
@@ -30,24 +30,24 @@ const BEGINNING: Beginning = Beginning {
 };
 
 struct Bench {
-    station: Station<Linear>,
+    device: Device<Linear>,
     ms: u64,
-    said: Vec<Message>,
+    emitted: Vec<Message>,
 }
 
 impl Bench {
     fn new(beginning: &Beginning) -> Self {
         Self {
-            station: Station::new(Linear::NEW, beginning),
+            device: Device::new(Linear::NEW, beginning),
             ms: 0,
-            said: vec![],
+            emitted: vec![],
         }
     }
 
     fn zeroed() -> Self {
         let mut bench = Self::new(&BEGINNING);
         bench.steps(400, 20_000.0);
-        bench.said.clear();
+        bench.emitted.clear();
         bench
     }
 
@@ -60,33 +60,33 @@ impl Bench {
         };
         for _ in 0..times {
             self.ms += 1;
-            let said = &mut self.said;
-            self.station
+            let emitted = &mut self.emitted;
+            self.device
                 .step(Microseconds(self.ms * 1000), Ok(sample), |message| {
-                    said.push(*message);
+                    emitted.push(*message);
                 });
         }
     }
 
     fn ask(&mut self, command: Command) -> Option<ToStore> {
-        let said = &mut self.said;
+        let emitted = &mut self.emitted;
         let request = Request { sequence: 9, command };
-        self.station
+        self.device
             .request(Microseconds(self.ms * 1000), request, |message| {
-                said.push(*message);
+                emitted.push(*message);
             })
     }
 
     fn stored(&mut self, result: Result<(), StoreError>) {
-        let said = &mut self.said;
-        self.station
+        let emitted = &mut self.emitted;
+        self.device
             .stored(Microseconds(self.ms * 1000), result, 17, |message| {
-                said.push(*message);
+                emitted.push(*message);
             });
     }
 
     fn answers(&mut self) -> Vec<(CommandKind, Outcome, u16)> {
-        self.said
+        self.emitted
             .drain(..)
             .filter_map(|message| match message {
                 Message::Answer(answer) => {
@@ -99,7 +99,7 @@ impl Bench {
     }
 
     fn reports(&self) -> usize {
-        self.said
+        self.emitted
             .iter()
             .filter(|message| matches!(message, Message::Report { .. }))
             .count()
@@ -111,7 +111,7 @@ fn a_report_each_period_and_a_hello_each_second() {
     let mut bench = Bench::zeroed();
     bench.steps(2_000, 20_000.0);
     assert_eq!(bench.reports(), 2_000);
-    assert_eq!(bench.said.len(), 2_002);
+    assert_eq!(bench.emitted.len(), 2_002);
 }
 
 #[test]
@@ -121,10 +121,10 @@ fn at_a_lower_rate_a_change_of_status_is_still_said_at_once() {
     assert_eq!(bench.answers(), [(CommandKind::Rate, Outcome::Done, 0)]);
     bench.steps(1_000, 20_000.0);
     assert_eq!(bench.reports(), 10);
-    bench.said.clear();
+    bench.emitted.clear();
     bench.steps(20, 70_000.0);
     let statuses: Vec<String> = bench
-        .said
+        .emitted
         .iter()
         .filter_map(|message| match message {
             Message::Report { report, .. } => Some(report.status().to_string()),
@@ -175,21 +175,21 @@ fn a_save_is_answered_when_the_memory_has_it() {
         .ask(Command::Save { gain: None })
         .and_then(|to_store| to_store.0);
     assert_eq!(again.map(|calibration| calibration.gain), Some(1_000));
-    bench.said.clear();
+    bench.emitted.clear();
     bench.stored(Err(StoreError::Failed));
     assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::MemoryFailed, 0)]);
     bench.ask(Command::Info);
-    let Some(Message::Hello(hello)) = bench.said.first() else {
-        panic!("{:?}", bench.said);
+    let Some(Message::Hello(hello)) = bench.emitted.first() else {
+        panic!("{:?}", bench.emitted);
     };
-    assert_eq!((hello.stored, hello.stored_sequence), (Stored::Serves, 17));
+    assert_eq!((hello.stored, hello.stored_sequence), (Stored::InUse, 17));
 }
 
 #[test]
 fn without_a_verified_zero_nothing_is_saved() {
     let mut bench = Bench::new(&BEGINNING);
     bench.steps(2_100, 25_000.0);
-    bench.said.clear();
+    bench.emitted.clear();
     assert_eq!(bench.ask(Command::Save { gain: None }), None);
     assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::ZeroUnverified, 0)]);
 }
@@ -212,7 +212,7 @@ fn a_self_test_names_what_it_finds() {
     );
     // 1 nm a count of 1/256 Pa: 500 Pa are 0.128 mm.
     bench.steps(5, 20_500.0);
-    bench.said.clear();
+    bench.emitted.clear();
     bench.ask(Command::SelfTest { indentation: 128_000 });
     bench.ask(Command::SelfTest { indentation: 256_000 });
     bench.steps(1, 20_500.0);
@@ -246,7 +246,7 @@ fn given_up() -> Bench {
 
 #[test]
 fn after_too_many_resets_it_measures_nothing() {
-    assert!(given_up().said.iter().all(|message| match message {
+    assert!(given_up().emitted.iter().all(|message| match message {
         Message::Report { report, .. } => report.outcome == Err(Fault::ResetLoop),
         _ => true,
     }));
@@ -265,7 +265,7 @@ fn after_too_many_resets_every_command_is_answered() {
         (Command::Forget, Outcome::Done, 0),
     ] {
         let mut bench = given_up();
-        bench.said.clear();
+        bench.emitted.clear();
         if bench.ask(command).is_some() {
             bench.stored(Ok(()));
         }
@@ -276,16 +276,16 @@ fn after_too_many_resets_every_command_is_answered() {
 
 /// The report periods of two hellos: the first, and one at every tenth report.
 fn greeted_periods(transducer: usize) -> [u32; 2] {
-    let mut station = Station::new(Linear::with(TRANSDUCERS[transducer]), &BEGINNING);
+    let mut device = Device::new(Linear::with(TRANSDUCERS[transducer]), &BEGINNING);
     let mut greeted = vec![];
     let mut hear = |message: &Message| {
         if let Message::Hello(hello) = message {
             greeted.push(hello.report_period);
         }
     };
-    station.step(Microseconds(0), Err(Fault::SensorAbsent), &mut hear);
+    device.step(Microseconds(0), Err(Fault::SensorAbsent), &mut hear);
     for command in [Command::Rate { every: 10 }, Command::Info] {
-        station.request(Microseconds(1), Request { sequence: 1, command }, &mut hear);
+        device.request(Microseconds(1), Request { sequence: 1, command }, &mut hear);
     }
     greeted.try_into().expect("two hellos")
 }
@@ -304,7 +304,7 @@ fn a_record_that_cannot_serve_qualifies_every_reading() {
     for stored in [Stored::OtherDesign, Stored::Damaged, Stored::Unreadable] {
         let mut bench = Bench::new(&Beginning { stored, ..BEGINNING });
         bench.steps(400, 20_000.0);
-        let Some(Message::Report { report, .. }) = bench.said.last() else {
+        let Some(Message::Report { report, .. }) = bench.emitted.last() else {
             panic!("it reports");
         };
         assert_eq!(report.status().to_string(), "warning: calibration refused");
@@ -343,16 +343,16 @@ proptest! {
 #[test]
 fn a_supply_that_sags_in_a_grasp_keeps_the_zero_and_ends_with_a_reason() {
     let mut bench = Bench::zeroed();
-    let mut zero = bench.station.zero();
-    let mut found = Some(Breadcrumb {
+    let mut zero = bench.device.zero();
+    let mut found = Some(CrashRecord {
         design_hash: 1,
         zero,
-        ..Breadcrumb::default()
+        ..CrashRecord::default()
     });
     for reset in 1..=6 {
-        let start = Breadcrumb::start(found, ResetCause::BrownOut, 1);
+        let start = CrashRecord::start(found, ResetCause::BrownOut, 1);
         let gives_up = reset == 6;
-        assert_eq!((start.crumb.resets, start.give_up), (reset, gives_up));
+        assert_eq!((start.crash_record.resets, start.give_up), (reset, gives_up));
         bench = Bench::new(&Beginning {
             reset_cause: ResetCause::BrownOut,
             start,
@@ -360,9 +360,9 @@ fn a_supply_that_sags_in_a_grasp_keeps_the_zero_and_ends_with_a_reason() {
         });
         // 200 Pa over rest would be near enough for a new zero.
         bench.steps(3, 20_200.0);
-        bench.said.clear();
+        bench.emitted.clear();
         bench.steps(1, 20_200.0);
-        let Some(Message::Report { report, .. }) = bench.said.last() else {
+        let Some(Message::Report { report, .. }) = bench.emitted.last() else {
             panic!("a report each step, and the hello was before")
         };
         match report.outcome {
@@ -372,12 +372,15 @@ fn a_supply_that_sags_in_a_grasp_keeps_the_zero_and_ends_with_a_reason() {
             }
             Err(fault) => assert_eq!((fault, gives_up), (Fault::ResetLoop, true)),
         }
-        zero = bench.station.zero().or(zero);
-        found = Some(Breadcrumb { zero, ..start.crumb });
+        zero = bench.device.zero().or(zero);
+        found = Some(CrashRecord {
+            zero,
+            ..start.crash_record
+        });
     }
-    bench.said.clear();
+    bench.emitted.clear();
     bench.ask(Command::Info);
-    let hello = bench.said.iter().find_map(|message| match message {
+    let hello = bench.emitted.iter().find_map(|message| match message {
         Message::Hello(hello) => Some(*hello),
         _ => None,
     });
@@ -394,7 +397,7 @@ fn an_object_is_refused_by_a_design_that_has_none() {
     bench.ask(Command::Object(Touched::Ball(8_000)));
     bench.ask(Command::Indentation { known: 1_000_000 });
     let outcomes: Vec<Outcome> = bench
-        .said
+        .emitted
         .iter()
         .filter_map(|message| match message {
             Message::Answer(answer) => Some(answer.outcome),

@@ -23,7 +23,7 @@ fn color(verdict: Verdict) -> &'static str {
     }
 }
 
-fn words(verdict: Verdict) -> &'static str {
+fn label(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Exact => "force within 1e-6",
         Verdict::Coarse => "force within 1 %",
@@ -50,7 +50,7 @@ pub(super) fn svg(survey: &Survey) -> String {
         if verdict == Verdict::Silent {
             drawing.marker(Marker::Cross, [x + 7.0, y + 7.0], "#ffffff", false);
         }
-        drawing.text([x + 20.0, y + 12.0], Anchor::Start, 12.0, BLACK, words(verdict));
+        drawing.text([x + 20.0, y + 12.0], Anchor::Start, 12.0, BLACK, label(verdict));
     }
     for (i, method) in METHODS.iter().enumerate() {
         let left = LEFT + i as f64 * (wide + GAP);
@@ -79,7 +79,7 @@ fn legend(width: f64) -> Vec<([f64; 2], Verdict)> {
     VERDICTS
         .into_iter()
         .map(|verdict| {
-            let wide = 20.0 + LETTER * words(verdict).chars().count() as f64;
+            let wide = 20.0 + LETTER * label(verdict).chars().count() as f64;
             if x > LEFT && x + wide > width {
                 [x, y] = [LEFT, y + LEGEND[1]];
             }

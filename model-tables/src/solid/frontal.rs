@@ -8,9 +8,9 @@
 /// Rows that are eliminated together; a column's own are a multiple of it, four for each node through the wall.
 const BLOCK: usize = 4;
 
-/// A symmetric matrix, and after [`Fronts::eliminate`] its factors.
+/// A symmetric matrix, and after [`FrontalMatrix::eliminate`] its factors.
 #[derive(Clone, Debug)]
-pub struct Fronts {
+pub struct FrontalMatrix {
     /// Unknowns of a station.
     station: usize,
     columns: usize,
@@ -24,7 +24,7 @@ pub struct Fronts {
     inverse: Vec<f64>,
 }
 
-impl Fronts {
+impl FrontalMatrix {
     /// Room for a number of columns.
     pub fn new(station: usize, columns: usize) -> Self {
         let rows = (2 * columns + 1) * station;
@@ -55,7 +55,7 @@ impl Fronts {
         row * width + other - if row < 2 * station { 0 } else { 2 * station }
     }
 
-    /// The entries of a column, of those [`Fronts::place`]s.
+    /// The entries of a column, of those [`FrontalMatrix::place`]s.
     #[inline]
     pub fn column(&mut self, column: usize) -> &mut [f64] {
         &mut self.matrix[column * 6 * self.station * self.station..]
@@ -237,9 +237,9 @@ mod tests {
     const UNKNOWNS: usize = 2 * COLUMNS * STATION;
 
     /// A matrix of sums of random columns, with `diagonal` besides on every unknown that moves, and itself in full.
-    fn matrix(diagonal: impl Fn(usize) -> f64) -> (Fronts, Vec<Vec<f64>>) {
+    fn matrix(diagonal: impl Fn(usize) -> f64) -> (FrontalMatrix, Vec<Vec<f64>>) {
         let mut seed = 7;
-        let mut fronts = Fronts::new(STATION, COLUMNS);
+        let mut fronts = FrontalMatrix::new(STATION, COLUMNS);
         let mut full = vec![vec![0.0; UNKNOWNS]; UNKNOWNS];
         fronts.clear();
         for column in 0..COLUMNS {
@@ -252,7 +252,7 @@ mod tests {
                         0.0
                     };
                     let value = random(&mut seed) + own;
-                    fronts.column(column)[Fronts::place(STATION, i, j)] += value;
+                    fronts.column(column)[FrontalMatrix::place(STATION, i, j)] += value;
                     if other < UNKNOWNS {
                         full[row][other] += value;
                         if i != j {
@@ -265,7 +265,7 @@ mod tests {
         (fronts, full)
     }
 
-    fn negative_count(fronts: &mut Fronts) -> Option<usize> {
+    fn negative_count(fronts: &mut FrontalMatrix) -> Option<usize> {
         let mut negative = Vec::new();
         fronts.eliminate(0, &mut negative)?;
         Some(negative.iter().sum())
@@ -294,7 +294,7 @@ mod tests {
     fn a_change_is_factored_from_its_column_on() {
         let (mut fronts, _) = matrix(|_| 20.0);
         assert_eq!(negative_count(&mut fronts), Some(0));
-        fronts.column(3)[Fronts::place(STATION, 1, 8)] += 0.5;
+        fronts.column(3)[FrontalMatrix::place(STATION, 1, 8)] += 0.5;
         let mut anew = fronts.clone();
         assert!(fronts.eliminate(3, &mut Vec::new()).is_some() && negative_count(&mut anew).is_some());
         let [mut x, mut y] = [(); 2].map(|()| vec![1.0; UNKNOWNS + STATION]);
@@ -325,7 +325,7 @@ mod tests {
 
     #[test]
     fn notices_singular_equations() {
-        let mut fronts = Fronts::new(2, 2);
+        let mut fronts = FrontalMatrix::new(2, 2);
         fronts.clear();
         assert!(negative_count(&mut fronts).is_none());
     }

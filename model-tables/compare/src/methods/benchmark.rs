@@ -22,9 +22,9 @@ pub const STATES: usize = 64;
 /// Depth of a sweep over the limit of the press.
 const DEPTH: f64 = 0.6;
 /// Repetitions at most.
-const MOST_REPETITIONS: usize = 41;
+const MAX_REPETITIONS: usize = 41;
 /// Repetitions that are made however long they take.
-const LEAST_REPETITIONS: usize = 3;
+const MIN_REPETITIONS: usize = 3;
 /// Time after which a method is not repeated.
 const BUDGET: Duration = Duration::from_millis(400);
 /// Time after which it is not repeated even so.
@@ -45,9 +45,9 @@ const CHECK: Resolution = Resolution {
     last_term: 1e-7,
 };
 
-/// A design of the contest.
+/// A design of the benchmark.
 #[derive(Clone, Copy, Debug)]
-pub struct Contestant {
+pub struct BenchmarkDesign {
     /// Short name, for files.
     pub name: &'static str,
     /// What it is, for people.
@@ -71,18 +71,18 @@ const fn dome(radial: f64, axial: f64, law: Law, pole_stretch: f64) -> Design {
 }
 
 /// The designs: much, little and moderate pre-stretch. Nothing in them is compressed, so that wrinkles play no part.
-pub const DESIGNS: [Contestant; 3] = [
-    Contestant {
+pub const DESIGNS: [BenchmarkDesign; 3] = [
+    BenchmarkDesign {
         name: "paper",
         title: "4.5 x 2.7 mm, Agilus30, pole stretch 2.3",
         design: dome(4.5e-3, 2.7e-3, AGILUS30, 2.3),
     },
-    Contestant {
+    BenchmarkDesign {
         name: "finger",
         title: "9 x 7 mm, Agilus30, pole stretch 1.02",
         design: dome(9e-3, 7e-3, AGILUS30, 1.02),
     },
-    Contestant {
+    BenchmarkDesign {
         name: "skin",
         title: "9 x 7 mm, skin analogue, pole stretch 1.1",
         design: dome(9e-3, 7e-3, SKIN, 1.1),
@@ -194,7 +194,7 @@ pub struct Result {
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// The design.
-    pub contestant: Contestant,
+    pub design: BenchmarkDesign,
     /// Indentations, metres.
     pub indentations: Vec<f64>,
     /// Forces, newtons.
@@ -208,8 +208,8 @@ impl Sweep {
     ///
     /// # Errors
     /// [`MembraneError`].
-    pub fn new(contestant: &Contestant) -> core::result::Result<Self, MembraneError> {
-        let design = &contestant.design;
+    pub fn new(design: &BenchmarkDesign) -> core::result::Result<Self, MembraneError> {
+        let design = &design.design;
         let mut press = Press::<Law, 8>::with_resolution(design, TensionField::Plain, TRUTH)?;
         let mut check = Press::<Law, 7>::with_resolution(design, TensionField::Plain, CHECK)?;
         let deepest = DEPTH * press.clone().limit()?.indentation;
@@ -222,7 +222,7 @@ impl Sweep {
             forces.push(force);
         }
         Ok(Self {
-            contestant: *contestant,
+            design: *design,
             indentations,
             forces,
             uncertainty,
@@ -354,16 +354,16 @@ fn every(values: &[f64], stride: usize) -> Vec<f64> {
 pub fn run(sweep: &Sweep, methods: &[Method], mut progress: impl FnMut(usize)) -> Vec<Result> {
     let mut ready: Vec<core::result::Result<Ready, String>> = methods
         .iter()
-        .map(|&method| ready(method, &sweep.contestant.design))
+        .map(|&method| ready(method, &sweep.design.design))
         .collect();
     let mut times: Vec<Vec<Duration>> = vec![Vec::new(); methods.len()];
     let mut runs: Vec<Option<Run>> = vec![None; methods.len()];
-    for repetition in 0..MOST_REPETITIONS {
+    for repetition in 0..MAX_REPETITIONS {
         progress(repetition);
         for (i, method) in ready.iter_mut().enumerate() {
             let Ok(method) = method else { continue };
             let spent: Duration = times[i].iter().sum();
-            if spent > LARGEST_BUDGET || (repetition >= LEAST_REPETITIONS && spent > BUDGET) {
+            if spent > LARGEST_BUDGET || (repetition >= MIN_REPETITIONS && spent > BUDGET) {
                 continue;
             }
             let (took, run) = method(&every(&sweep.indentations, methods[i].stride()));

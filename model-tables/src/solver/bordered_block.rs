@@ -21,7 +21,7 @@ type Eliminated = [BlockRow; STATES];
 
 /// The elimination in progress.
 #[derive(Clone, Debug)]
-pub struct Chain<const MAX: usize> {
+pub struct BorderedBlocks<const MAX: usize> {
     eliminated: [Eliminated; MAX],
     nodes: usize,
     /// Two equations on the present node.
@@ -30,7 +30,7 @@ pub struct Chain<const MAX: usize> {
     pub borders: [BlockRow; BORDERS],
 }
 
-impl<const MAX: usize> Chain<MAX> {
+impl<const MAX: usize> BorderedBlocks<MAX> {
     /// Room for a chain, to be restarted.
     pub(crate) const BLANK: Self = Self {
         eliminated: [[[0.0; UNKNOWNS + 1]; STATES]; MAX],
@@ -46,7 +46,7 @@ impl<const MAX: usize> Chain<MAX> {
         chain
     }
 
-    /// Begins anew, as [`Chain::new`].
+    /// Begins anew, as [`BorderedBlocks::new`].
     pub fn restart(&mut self, by_parameter: [[f64; PARAMETERS]; STATES]) {
         self.nodes = 0;
         self.borders = [[0.0; UNKNOWNS + 1]; BORDERS];
@@ -206,7 +206,7 @@ mod tests {
         element[1][1] = 1.0 / g;
         element[0][STATES + 1] = 1.0;
         element[1][STATES + 1] = 1.0;
-        let mut chain = Chain::<ELEMENTS>::new([[1.0, 0.0, 0.0, 0.0], [0.0; 4]]);
+        let mut system = BorderedBlocks::<ELEMENTS>::new([[1.0, 0.0, 0.0, 0.0], [0.0; 4]]);
         // Border 0: the sum of all second components, less 5.
         for _ in 0..ELEMENTS {
             let mut row = [0.0; UNKNOWNS + 1];

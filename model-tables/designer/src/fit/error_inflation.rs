@@ -188,7 +188,7 @@ mod tests {
     #[test]
     fn widened_errors_cover_the_truth_as_often_as_they_should() {
         const BENCHES: usize = 300;
-        /// Widening takes long: every so many-th.
+        /// The inflation takes long: every so many-th.
         const EVERY: usize = 5;
         let line = Line::new(15);
         let bench = Bench {

@@ -1,7 +1,7 @@
 //! Everything between a sample and the line that is no wire and no clock: reports at the rate asked for, hellos,
 //! commands and what comes of them.
 
-use crate::device::supervisor::Start;
+use crate::device::task_monitor::Start;
 use crate::link::command::{Command, CommandKind, Outcome, Request};
 use crate::link::telemetry::{Answer, Hello, Message};
 use crate::signal::calibration::Calibration;
@@ -29,7 +29,7 @@ pub mod findings {
     pub const NO_READING: u16 = 1;
     /// The zero is not verified.
     pub const ZERO_UNVERIFIED: u16 = 2;
-    /// No stored calibration serves.
+    /// No stored calibration is in use.
     pub const NOT_STORED: u16 = 4;
     /// A leak or a bubble is suspected.
     pub const FLUID: u16 = 8;
@@ -65,7 +65,7 @@ pub struct Beginning {
     pub stored: Stored,
     /// Its number.
     pub stored_sequence: u32,
-    /// The calibration, if it serves.
+    /// The calibration, if it is in use.
     pub calibration: Option<Calibration>,
     /// The crystal does not run.
     pub clock_failed: bool,
@@ -73,7 +73,7 @@ pub struct Beginning {
     pub firmware: [u8; 3],
 }
 
-/// To be put in the flash; [`Station::stored`] wants to know what came of it.
+/// To be put in the flash; [`Device::stored`] wants to know what came of it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct ToStore(pub Option<Calibration>);
 
@@ -86,7 +86,7 @@ struct Pending {
 
 /// One fingertip and its line.
 #[derive(Clone, Debug)]
-pub struct Station<D: Design> {
+pub struct Device<D: Design> {
     /// What others count.
     pub counters: Counters,
     pipeline: Pipeline<D>,
@@ -105,8 +105,8 @@ pub struct Station<D: Design> {
     saved: Option<Microseconds>,
 }
 
-impl<D: Design> Station<D> {
-    /// A station of a design that has seen nothing yet.
+impl<D: Design> Device<D> {
+    /// A device of a design that has seen nothing yet.
     pub fn new(design: D, beginning: &Beginning) -> Self {
         let &Parameters {
             constants:
@@ -143,7 +143,7 @@ impl<D: Design> Station<D> {
                 stored,
                 last_fault: start.fault,
                 last_fault_detail: start.detail,
-                resets_in_a_row: start.crumb.resets,
+                resets_in_a_row: start.crash_record.resets,
                 stored_sequence: beginning.stored_sequence,
                 ..Hello::default()
             },
@@ -294,7 +294,7 @@ impl<D: Design> Station<D> {
         Some(to_store)
     }
 
-    /// What came of storing, and the number of the record that serves now.
+    /// What came of storing, and the number of the record in use now.
     pub fn stored(
         &mut self,
         now: Microseconds,
@@ -308,7 +308,7 @@ impl<D: Design> Station<D> {
         self.saved = Some(now);
         let outcome = match result {
             Ok(()) => {
-                self.hello.stored = calibration.map_or(Stored::None, |_| Stored::Serves);
+                self.hello.stored = calibration.map_or(Stored::None, |_| Stored::InUse);
                 self.hello.stored_sequence = sequence;
                 self.pipeline.calibrated(calibration);
                 Outcome::Done
@@ -339,7 +339,7 @@ impl<D: Design> Station<D> {
                 add(findings::SOFT, soft);
             }
         }
-        add(findings::NOT_STORED, self.hello.stored != Stored::Serves);
+        add(findings::NOT_STORED, self.hello.stored != Stored::InUse);
         add(findings::LAST_FAULT, self.hello.last_fault != LastFault::None);
         add(findings::SAMPLES_LOST, self.counters.samples_lost > 0);
         found
@@ -362,7 +362,7 @@ impl<D: Design> Station<D> {
         self.pipeline.parameters()
     }
 
-    /// The zero that serves: what a reset that nobody saw coming has to keep.
+    /// The zero in use: what a reset that nobody saw coming has to keep.
     pub fn zero(&self) -> Option<Zero> {
         self.pipeline.zero()
     }

@@ -25,20 +25,20 @@ pub(super) enum Stop {
     Failed { reached: f64, failure: Unsolved },
 }
 
-/// Where a leap begins, over the indentation at which the contact edge loses its tension: the bend there is still wide.
+/// Where a step over a gap begins, over the indentation at which the contact edge loses its tension: the bend there is still wide.
 const RUN_UP: [f64; 2] = [0.97, 0.9];
 /// How far it goes, over the height.
-const LEAPS: [f64; 4] = [0.03, 0.06, 0.1, 0.15];
+const STEPS_OVER_A_GAP: [f64; 4] = [0.03, 0.06, 0.1, 0.15];
 
 impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// Solves the state at a dimensionless indentation, from the latest one, or from rest where no way leads down from
     /// there.
     pub(super) fn reach(&mut self, indentation: f64) -> Result<(), Stop> {
-        let from = self.history.latest().map(|g| g.solution.height);
+        let from = self.predictor.latest().map(|g| g.solution.height);
         let result = self.reach_from_here(indentation);
         match from {
             Some(left) if result.is_err() && self.rest.solution.height - left > indentation => {
-                self.history.clear();
+                self.predictor.clear();
                 self.reach_from_here(indentation)
             }
             _ => result,
@@ -57,7 +57,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
             failure: Unsolved::EdgePushes { .. },
         } = stop
             && reached < indentation
-            && self.leap(reached, indentation)
+            && self.step_over_gap(reached, indentation)
         {
             stop = match self.walk(indentation) {
                 Ok(()) => return Ok(()),
@@ -68,13 +68,13 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     }
 
     /// Whether a state was found beyond a stretch of indentations, from `reached` on, that have none.
-    fn leap(&mut self, reached: f64, indentation: f64) -> bool {
+    fn step_over_gap(&mut self, reached: f64, indentation: f64) -> bool {
         let height = self.rest.solution.height;
         RUN_UP.iter().any(|part| {
             self.walk(part * reached).is_ok()
-                && LEAPS.iter().any(|leap| {
-                    let to = (reached + leap * height).min(indentation);
-                    self.history.repeat();
+                && STEPS_OVER_A_GAP.iter().any(|step| {
+                    let to = (reached + step * height).min(indentation);
+                    self.predictor.repeat();
                     self.attempt(to).is_ok()
                 })
         })
@@ -86,16 +86,16 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         if indentation >= height {
             return Err(Stop::BeyondLimit);
         }
-        if self.history.latest().is_none() {
+        if self.predictor.latest().is_none() {
             let mut first = indentation.min(FIRST_INDENTATION * height);
             loop {
-                *self.history.working() = self.first_contact(first);
+                *self.predictor.working() = self.first_contact(first);
                 let Err(stop) = self.attempt(first) else { break };
                 first *= 0.1;
                 if first < 1e-10 * height {
                     // A dome that hardly holds its volume bends sharply at first, and lets itself be pressed farther on.
                     first = FIRST_INDENTATION * height;
-                    *self.history.working() = self.first_contact(first);
+                    *self.predictor.working() = self.first_contact(first);
                     self.attempt(first).map_err(|_| stop)?;
                     break;
                 }
@@ -109,16 +109,16 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 .clamp(at / factor, at * factor)
                 .clamp(at - largest_step, at + largest_step);
             let arrives = next.to_bits() == indentation.to_bits();
-            self.history.predict(next);
+            self.predictor.predict(next);
             let mut result = self.attempt(next);
             if matches!(result, Err(Stop::Failed { .. })) {
-                self.history.repeat();
+                self.predictor.repeat();
                 result = self.attempt(next);
             }
             if matches!(result, Err(Stop::Failed { .. }))
                 && let Some(other) = self.solver.with_other_pole(self.latest())
             {
-                *self.history.working() = other;
+                *self.predictor.working() = other;
                 result = self.attempt(next);
             }
             match result {
@@ -154,11 +154,11 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     fn turns_back(&mut self) -> Option<Unsolved> {
         let latest = &self.latest().solution;
         let (height, mut parameter) = (latest.height, latest.parameters[CONTACT_PARAMETER]);
-        self.history.repeat();
+        self.predictor.repeat();
         for _ in 0..TURN_STEPS {
             parameter *= TURN_FACTOR;
             let closure = self.closure(PressControl::ContactParameter(parameter));
-            let state = self.history.working();
+            let state = self.predictor.working();
             self.solver.settle(state, &closure).ok()?;
             if state.solution.height > height {
                 return Some(Unsolved::SnapsThrough);
@@ -171,7 +171,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     fn attempt(&mut self, indentation: f64) -> Result<(), Stop> {
         let closure = self.closure(PressControl::Height(self.rest.solution.height - indentation));
         let edge = self.edge();
-        let state = self.history.working();
+        let state = self.predictor.working();
         self.solver
             .settle(state, &closure)
             .map_err(|failure| Stop::Failed {
@@ -181,7 +181,7 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
         if state.solution.parameters[CONTACT_RADIUS] > edge * (1.0 + EDGE_ROUNDING) {
             return Err(Stop::BeyondLimit);
         }
-        self.history.accept(indentation, &self.solver.equilibrium.gauss);
+        self.predictor.accept(indentation, &self.solver.equilibrium.gauss);
         Ok(())
     }
 

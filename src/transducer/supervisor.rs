@@ -20,7 +20,7 @@ pub const LONGEST_PAUSE: u32 = 8_000;
 
 /// A transducer that is started, freed and started again as it needs.
 #[derive(Debug)]
-pub struct Keeper<T, D> {
+pub struct TransducerSupervisor<T, D> {
     transducer: T,
     delay: D,
     started: bool,
@@ -28,8 +28,8 @@ pub struct Keeper<T, D> {
     faults: u32,
 }
 
-impl<T: Driver, D: DelayNs> Keeper<T, D> {
-    /// A keeper of a part that is not started yet.
+impl<T: Driver, D: DelayNs> TransducerSupervisor<T, D> {
+    /// A supervisor of a part that is not started yet.
     pub const fn new(transducer: T, delay: D) -> Self {
         Self {
             transducer,
@@ -129,36 +129,36 @@ mod tests {
     /// What was done to a part, in order.
     type Deeds = Rc<RefCell<Vec<&'static str>>>;
 
-    fn kept(absent: core::ops::Range<u64>) -> (Keeper<Fickle, Stopwatch>, Stopwatch, Deeds) {
+    fn kept(absent: core::ops::Range<u64>) -> (TransducerSupervisor<Fickle, Stopwatch>, Stopwatch, Deeds) {
         let (stopwatch, did) = (Stopwatch::default(), Rc::default());
         let part = Fickle {
             stopwatch: stopwatch.clone(),
             absent,
             did: Rc::clone(&did),
         };
-        (Keeper::new(part, stopwatch.clone()), stopwatch, did)
+        (TransducerSupervisor::new(part, stopwatch.clone()), stopwatch, did)
     }
 
     #[test]
     fn it_starts_once_and_then_samples() {
-        let (mut keeper, _, did) = kept(0..0);
+        let (mut supervisor, _, did) = kept(0..0);
         for _ in 0..3 {
-            assert!(block_on(keeper.next()).is_ok());
+            assert!(block_on(supervisor.next()).is_ok());
         }
         assert_eq!(*did.borrow(), ["start", "sample", "sample", "sample"]);
     }
 
     #[test]
     fn one_fault_is_asked_again_two_start_anew_three_free_the_bus() {
-        let (mut keeper, _, did) = kept(60_000..200_000);
-        let _ = block_on(keeper.next());
+        let (mut supervisor, _, did) = kept(60_000..200_000);
+        let _ = block_on(supervisor.next());
         did.borrow_mut().clear();
         for _ in 0..3 {
-            assert_eq!(block_on(keeper.next()), Err(Fault::SensorAbsent));
+            assert_eq!(block_on(supervisor.next()), Err(Fault::SensorAbsent));
         }
         assert_eq!(*did.borrow(), ["sample", "sample", "start"]);
         did.borrow_mut().clear();
-        assert_eq!(block_on(keeper.next()), Err(Fault::SensorAbsent));
+        assert_eq!(block_on(supervisor.next()), Err(Fault::SensorAbsent));
         assert_eq!(*did.borrow(), ["free", "start"]);
     }
 
@@ -166,11 +166,11 @@ mod tests {
     fn a_part_that_appears_late_or_again_is_read_within_a_tenth_of_a_second() {
         for back in [1_000, 50_000, 123_456, 1_000_000, 10_000_000] {
             for gone in [0, 100_000] {
-                let (mut keeper, stopwatch, _) = kept(gone..gone + back);
+                let (mut supervisor, stopwatch, _) = kept(gone..gone + back);
                 let mut faults = 0;
                 loop {
                     let before = stopwatch.microseconds();
-                    let outcome = block_on(keeper.next());
+                    let outcome = block_on(supervisor.next());
                     let now = stopwatch.microseconds();
                     // Nothing is kept back for longer than a start, a sample and a pause.
                     assert!(now - before <= 61_000);

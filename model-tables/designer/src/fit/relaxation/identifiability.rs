@@ -7,7 +7,7 @@ use crate::fit::non_negative::non_negative;
 use nalgebra::{DMatrix, DVector};
 
 /// Standard error, of a logarithm, from which on a number is not told.
-pub(super) const UNTOLD: f64 = 0.25;
+pub(super) const UNIDENTIFIABLE_FROM: f64 = 0.25;
 /// Depths within this part of each other are one.
 const SAME_DEPTH: f64 = 0.05;
 /// Times at which the depths' curves are compared.
@@ -26,7 +26,7 @@ pub(super) const LONGEST: f64 = 1e4;
 
 /// What a record tells of a term.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Told {
+pub enum Identifiability {
     /// Time and weight.
     Both,
     /// The product of time and weight alone: it relaxes faster than the record shows.
@@ -37,14 +37,14 @@ pub enum Told {
     Neither,
 }
 
-impl Told {
+impl Identifiability {
     /// In words.
-    pub fn words(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             Self::Both => "both",
             Self::Product => "g times tau only",
             Self::Weight => "g only",
-            Self::Neither => "not told",
+            Self::Neither => "neither",
         }
     }
 }
@@ -61,7 +61,7 @@ pub struct FittedTerm {
     /// Of `ln g`.
     pub weight_error: f64,
     /// What the record tells of it.
-    pub told: Told,
+    pub identifiability: Identifiability,
 }
 
 /// Standard error, of a logarithm, beyond which there is no interval.
@@ -138,26 +138,26 @@ impl Errors {
             } else {
                 libm::sqrt(self.variance(&[Varied::Time(i), Varied::Weight(i)]))
             };
-            let is_told = |error: f64| error < UNTOLD;
-            let told = if time > hold {
-                if is_told(weight_error) {
-                    Told::Weight
+            let is_identifiable = |error: f64| error < UNIDENTIFIABLE_FROM;
+            let identifiability = if time > hold {
+                if is_identifiable(weight_error) {
+                    Identifiability::Weight
                 } else {
-                    Told::Neither
+                    Identifiability::Neither
                 }
-            } else if time_error.is_some_and(is_told) && is_told(weight_error) {
-                Told::Both
-            } else if is_told(product) {
-                Told::Product
+            } else if time_error.is_some_and(is_identifiable) && is_identifiable(weight_error) {
+                Identifiability::Both
+            } else if is_identifiable(product) {
+                Identifiability::Product
             } else {
-                Told::Neither
+                Identifiability::Neither
             };
             FittedTerm {
                 time,
                 time_error,
                 weight,
                 weight_error,
-                told,
+                identifiability,
             }
         });
         terms.collect()
