@@ -71,7 +71,11 @@ fn a_replaced_word_does_not_come_back() {
                 let text = fs::read_to_string(file).expect("a text");
                 for (number, line) in text.lines().enumerate() {
                     if words(line).any(|part| part == word) {
-                        found.push(format!("{}:{}: {word}, better {instead}", file.display(), number + 1));
+                        found.push(format!(
+                            "{}:{}: {word}, better {instead}",
+                            file.display(),
+                            number + 1
+                        ));
                     }
                 }
             }
@@ -91,7 +95,9 @@ fn a_limit_is_a_minimum_or_a_maximum_of_something() {
         let text = fs::read_to_string(file).expect("a text");
         for line in text.lines() {
             for (beginning, instead) in BEGINNINGS {
-                if line.contains(&format!("const {beginning}")) || line.contains(&format!("static {beginning}")) {
+                if line.contains(&format!("const {beginning}"))
+                    || line.contains(&format!("static {beginning}"))
+                {
                     found.push(format!("{}: {line}: better {instead}", file.display()));
                 }
             }

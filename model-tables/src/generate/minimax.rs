@@ -216,7 +216,11 @@ mod tests {
     /// The best polynomial of degree 3 on `x^4` over [0, 1] errs by `2 / 4^4 / 2 = 1/128` (Chebyshev).
     #[test]
     fn finds_the_best_cubic_on_a_quartic() {
-        let found = fit(&sampled(&[0, 1, 2, 3], |x| x.powi(4)), 4, &[0.0; MAX_COEFFICIENTS]);
+        let found = fit(
+            &sampled(&[0, 1, 2, 3], |x| x.powi(4)),
+            4,
+            &[0.0; MAX_COEFFICIENTS],
+        );
         assert!((found.error * 128.0 - 1.0).abs() < 2e-3, "{found:?}");
     }
 
