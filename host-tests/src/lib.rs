@@ -10,6 +10,9 @@ pub mod world;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// The page of measured figures.
+const MEASURED: &str = "host-tests/MEASURED.md";
+
 /// The folder of the workspace.
 ///
 /// # Panics
@@ -36,6 +39,14 @@ pub fn assert_readme_says(line: &str) {
     assert_says("README.md", line);
 }
 
+/// Asserts that the page of measured figures has `line`.
+///
+/// # Panics
+/// If it does not, with the line as it should be.
+pub fn assert_measured_says(line: &str) {
+    assert_says(MEASURED, line);
+}
+
 /// Asserts that the table of faults says `line`.
 ///
 /// # Panics
@@ -53,31 +64,31 @@ fn assert_says(document: &str, line: &str) {
     );
 }
 
-/// The number beside `label` in a table of the README: the last column, its unit left out.
+/// The number beside `label` in a table of the page of measured figures: the last column, its unit left out.
 ///
 /// # Panics
 /// If there is no such row, or no number in it.
-pub fn readme_figure(label: &str) -> f64 {
-    let readme = fs::read_to_string(workspace().join("README.md")).expect("the README is there");
-    let row = readme
+pub fn measured_figure(label: &str) -> f64 {
+    let page = fs::read_to_string(workspace().join(MEASURED)).expect("the page is there");
+    let row = page
         .lines()
         .find(|line| line.starts_with(&format!("| {label} |")))
-        .unwrap_or_else(|| panic!("README.md has no row \"{label}\""));
+        .unwrap_or_else(|| panic!("{MEASURED} has no row \"{label}\""));
     let last = row.trim_end_matches('|').rsplit('|').next().unwrap_or_default();
     let number: String = last.chars().filter(|c| c.is_ascii_digit() || *c == '.').collect();
     number
         .parse()
-        .unwrap_or_else(|_| panic!("README.md: no number in the row \"{label}\""))
+        .unwrap_or_else(|_| panic!("{MEASURED}: no number in the row \"{label}\""))
 }
 
-/// Asserts that the README's figure is the measured one, to `share` of it (0: exactly).
+/// Asserts that the figure on the page is the measured one, to `share` of it (0: exactly).
 ///
 /// # Panics
 /// If it is not, with the figure as it should be.
-pub fn assert_readme_figure(label: &str, measured: f64, share: f64) {
-    let quoted = readme_figure(label);
+pub fn assert_measured_figure(label: &str, measured: f64, share: f64) {
+    let quoted = measured_figure(label);
     assert!(
         (quoted - measured).abs() <= share * measured.abs(),
-        "README.md is stale: \"{label}\" is {measured}, not {quoted}"
+        "{MEASURED} is stale: \"{label}\" is {measured}, not {quoted}"
     );
 }

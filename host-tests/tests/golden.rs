@@ -1,7 +1,7 @@
 //! The tables of the shipped designs, as reviewed: whatever changes them shows as a difference of text.
 //!
 //! After a change that is meant, `UPDATE_EXPECT=1 cargo test --package host-tests --test golden` writes
-//! `model-tables/golden` anew, and the README's rows are named by the same test without it.
+//! `model-tables/golden` anew, and the rows of MEASURED.md are named by the same test without it.
 
 use expect_test::expect_file;
 use fingertip::image::ImageDesign;
@@ -9,7 +9,7 @@ use fingertip::image::generated::TABLES;
 use fingertip::signal::uncertainty::Uncertainty;
 use host_tests::budget::{self, Budget};
 use host_tests::real_use::{self, RealUse};
-use host_tests::{assert_readme_says, design, workspace};
+use host_tests::{assert_measured_says, design, workspace};
 use model_tables::generate::{self, Generated};
 use std::fs;
 
@@ -55,7 +55,7 @@ fn tables_and_certificates_are_those_that_were_reviewed() {
 
 fn readme_says(name: &str, generated: &Generated) {
     let (tables, certificate) = (&generated.certified.tables, &generated.certified.certificate);
-    assert_readme_says(&format!(
+    assert_measured_says(&format!(
         "| {name} | {} | {} | {} | {:.3} | {:.3} |",
         tables.bytes(),
         tables.instructions(),

@@ -1,6 +1,6 @@
 //! The figures of the README that the host can compute.
 
-use host_tests::assert_readme_says;
+use host_tests::{assert_readme_says, measured_figure};
 use micromath::F32Ext;
 
 /// Largest relative error of `of` against `truth` over 1/1000 ..= 1, percent.
@@ -18,5 +18,16 @@ fn micromath_is_too_coarse() {
     let root = largest_error(F32Ext::sqrt, f64::sqrt);
     assert_readme_says(&format!(
         "its `powf` is off by up to {power:.1} % and its `sqrt` by up to {root:.1} %, where the tables keep 0.1 %"
+    ));
+}
+
+/// The README rounds figures of the page of measured ones.
+#[test]
+fn its_figures_are_the_measured_ones() {
+    let flash = measured_figure("flash, bytes") / 1000.0;
+    let ram = measured_figure("RAM without the stack, bytes") / 1000.0;
+    let report = measured_figure("instructions from averaged counts to both results");
+    assert_readme_says(&format!(
+        "{report} instructions; {flash:.0} kB flash, {ram:.0} kB RAM in all"
     ));
 }

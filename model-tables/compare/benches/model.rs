@@ -4,7 +4,7 @@
 //! milliseconds and nothing but their medians is wanted.
 
 use compare::campaign::scaling;
-use compare::methods::benchmark::{DESIGNS, STATES};
+use compare::methods::benchmark::{BenchmarkDesign, DESIGNS, STATES};
 use model_tables::design_file::{Accuracy, DesignFile};
 use model_tables::generate;
 use model_tables::material::Law;
@@ -67,12 +67,10 @@ fn solids() {
 
 fn main() {
     solids();
-    for design in &DESIGNS {
-        let design = &design.design;
+    for BenchmarkDesign { name, design, .. } in &DESIGNS {
         let rest =
             Press::new(design, TensionField::Relaxed).expect("the benchmark's designs have a rest state");
         let deepest = 0.6 * rest.clone().limit().expect("a limit").indentation;
-        let name = design.name;
         figure(&format!("{name}: rest state"), 1, || {
             Press::new(design, TensionField::Relaxed).expect("as above")
         });

@@ -65,8 +65,9 @@ const PLACEHOLDERS: [(&str, &str); 3] = [
     ("NAME", "press-hold-release"),
 ];
 
-/// The README's reader has files that a guide shows: theirs, and the guide's.
-const README_FILES: [(&str, &str); 2] = [("my.toml", "tip.toml"), ("bench.csv", "bench.csv")];
+/// The page of the tool has files that a guide shows: its reader's, and the guide's.
+const DESIGN_TOOL: &str = "model-tables/README.md";
+const DESIGN_TOOL_FILES: [(&str, &str); 2] = [("my.toml", "tip.toml"), ("bench.csv", "bench.csv")];
 const CALIBRATE: &str = "host-tests/guides/calibrate.md";
 const CALIBRATE_HAND: &str = "host-tests/guides/calibrate-a-hand.md";
 
@@ -156,8 +157,8 @@ fn follow(document: &Document) -> (PathBuf, String) {
     fs::create_dir_all(&folder).expect("the test folder");
     std::os::unix::fs::symlink(workspace().join("model-tables"), folder.join("model-tables"))
         .expect("a link");
-    if document.path == "README.md" {
-        for (name, of_guide) in README_FILES {
+    if document.path == DESIGN_TOOL {
+        for (name, of_guide) in DESIGN_TOOL_FILES {
             fs::write(folder.join(name), file_of(CALIBRATE, of_guide)).expect("the test folder");
         }
     }
@@ -291,15 +292,15 @@ fn a_hand_is_calibrated_without_a_compiler() {
 }
 
 #[test]
-fn every_command_of_the_readme_works() {
-    let (folder, _) = follow(&document("README.md"));
+fn every_command_of_the_design_tool_works() {
+    let (folder, _) = follow(&document(DESIGN_TOOL));
     assert!(folder.join("tables/tables.rs").is_file() && folder.join("report/tip.html").is_file());
 }
 
 #[test]
 fn every_command_of_every_other_document_works() {
     let told_apart = [
-        "README.md",
+        DESIGN_TOOL,
         CALIBRATE,
         CALIBRATE_HAND,
         "host-tests/guides/new-membrane.md",

@@ -1,4 +1,4 @@
-//! Linear equations of a chain of elements with a border: the step of Newton's method.
+//! Linear equations of elements in a row with a border (bordered almost block diagonal): the step of Newton's method.
 //!
 //! The unknowns are the states `y_0 .. y_E` at the nodes and the parameters `p`. Each element couples its two
 //! ends, `T_k y_k - y_(k+1) + C_k p + d_k = 0`; a few border rows couple everything. Nodes are eliminated from
@@ -41,9 +41,9 @@ impl<const MAX: usize> BorderedBlocks<MAX> {
 
     /// A chain whose first node obeys `y_0 = by_parameter p` in the changes.
     pub fn new(by_parameter: [[f64; PARAMETERS]; STATES]) -> Self {
-        let mut chain = Self::BLANK;
-        chain.restart(by_parameter);
-        chain
+        let mut system = Self::BLANK;
+        system.restart(by_parameter);
+        system
     }
 
     /// Begins anew, as [`BorderedBlocks::new`].
@@ -124,7 +124,7 @@ impl<const MAX: usize> BorderedBlocks<MAX> {
         Some(())
     }
 
-    /// The two equations that the chain leaves on the last node and the parameters.
+    /// The two equations that the system leaves on the last node and the parameters.
     pub fn link(&self) -> [BlockRow; STATES] {
         self.link
     }
@@ -211,17 +211,17 @@ mod tests {
         for _ in 0..ELEMENTS {
             let mut row = [0.0; UNKNOWNS + 1];
             row[1] = 1.0;
-            chain.add_to_border(0, &row);
-            chain.advance(&element).expect("regular");
+            system.add_to_border(0, &row);
+            system.advance(&element).expect("regular");
         }
-        let [a, b] = chain.link();
+        let [a, b] = system.link();
         let unit = |i: usize, constant: f64| {
             let mut row = [0.0; UNKNOWNS + 1];
             row[i] = 1.0;
             row[UNKNOWNS] = constant;
             row
         };
-        let mut border = chain.borders[0];
+        let mut border = system.borders[0];
         border[UNKNOWNS] -= 5.0;
         let solution = solve([
             a,
@@ -233,7 +233,7 @@ mod tests {
         ])
         .expect("regular");
         let mut nodes = [[0.0; STATES]; ELEMENTS + 1];
-        chain.back_substitute(&solution, |k, node| nodes[k] = node);
+        system.back_substitute(&solution, |k, node| nodes[k] = node);
         let p = solution[STATES + 1];
         assert!((nodes[ELEMENTS][0] - 3.0).abs() < 1e-14);
         assert!((nodes[..ELEMENTS].iter().map(|n| n[1]).sum::<f64>() - 5.0).abs() < 1e-12);

@@ -2,7 +2,7 @@
 
 use crate::{design, press_hold_release};
 use emulator::accuracy::RunAccuracy;
-use host_tests::assert_readme_figure;
+use host_tests::assert_measured_figure;
 use host_tests::budget::{Budget, PLACES};
 use model_tables::generate;
 
@@ -20,7 +20,7 @@ fn the_demo_stays_within_its_error_budget() {
         all.pressure_error,
         budget.pressure()
     );
-    assert_readme_figure(
+    assert_measured_figure(
         "RMS error of the pressure rise over the demo, pascals",
         all.pressure_error,
         0.2,

@@ -5,7 +5,7 @@ use emulator::bench::{self, RunOutcome};
 use emulator::fingertip_design::FingertipDesign;
 use emulator::record::{Recorder, Row};
 use emulator::scenario::Scenario;
-use host_tests::{assert_readme_figure, design};
+use host_tests::{assert_measured_figure, design};
 
 /// Most instructions from the averaged counts to both results. Was 500 while the zero was a value without a bound: the bound is in
 /// every sigma now.
@@ -43,7 +43,7 @@ fn a_report_costs_few_instructions() {
         readings[readings.len() - 1],
     );
     println!("instructions from averaged counts to both results: median {median}, {least} to {most}");
-    assert_readme_figure(
+    assert_measured_figure(
         "instructions from averaged counts to both results",
         median as f64,
         0.01,
@@ -57,7 +57,7 @@ fn the_core_sleeps_most_of_the_time() {
     let run = press_hold_release();
     let per_millisecond = run.instructions as f64 / (run.time * 1e3);
     println!("instructions per millisecond, all included: {per_millisecond:.0}");
-    assert_readme_figure("instructions a millisecond, everything", per_millisecond, 0.01);
+    assert_measured_figure("instructions a millisecond, everything", per_millisecond, 0.01);
     assert!(
         per_millisecond <= INSTRUCTIONS_PER_MILLISECOND,
         "{per_millisecond}"
@@ -72,7 +72,7 @@ fn a_report_is_out_two_milliseconds_after_its_instant() {
         "from the instant of a report to the end of its last byte: at most {:.3} ms",
         latest * 1e3
     );
-    assert_readme_figure(
+    assert_measured_figure(
         "from the instant of a report to its last byte on the line, at most, ms",
         latest * 1e3,
         0.01,
@@ -106,7 +106,7 @@ fn the_image_of_a_wall_that_relaxes_is_small_on_every_board() {
     for (label, image) in boards {
         let size = image.size().expect("it is an image");
         println!("{label}: {}, RAM {} bytes", size.flash, size.ram);
-        assert_readme_figure(label, size.flash as f64, 0.01);
+        assert_measured_figure(label, size.flash as f64, 0.01);
         assert!(size.flash <= FLASH && size.ram <= RAM, "{label}: {size:?}");
     }
 }
@@ -145,7 +145,7 @@ fn a_report_of_a_wall_that_relaxes_costs_few_instructions() {
             calls[0],
             calls[calls.len() - 1]
         );
-        assert_readme_figure(label, median as f64, 0.01);
+        assert_measured_figure(label, median as f64, 0.01);
         assert!(median <= most, "{median}");
     }
 }

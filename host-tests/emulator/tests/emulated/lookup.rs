@@ -5,7 +5,7 @@ use emulator::bench;
 use emulator::inlined;
 use emulator::record::{Recorder, Row};
 use emulator::scenario::Scenario;
-use host_tests::assert_readme_figure;
+use host_tests::assert_measured_figure;
 use model_tables::generate;
 
 /// The lookup of a reading, not the one that its uncertainty takes.
@@ -40,7 +40,7 @@ fn both_results_and_their_flag_take_few_instructions() {
     println!(
         "the lookup of both tables, inlined in the image: {taken:.2} instructions a reading; the certificate says {counted}"
     );
-    assert_readme_figure(
+    assert_measured_figure(
         "instructions of the lookup, from the tared pressure to both results and their flag",
         taken,
         0.01,

@@ -5,7 +5,7 @@ use emulator::bench::{self, Listener, Moment};
 use emulator::image::Image;
 use emulator::plant::Plant;
 use emulator::scenario::Scenario;
-use host_tests::assert_readme_figure;
+use host_tests::assert_measured_figure;
 use model_tables::design_file::DesignFile;
 use probes::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, SolverState};
 use std::ops::ControlFlow;
@@ -88,7 +88,7 @@ fn the_full_model_gives_the_same_bits_on_the_chip_and_has_its_price() {
         );
     }
     let further = outcome.calls[LENGTH - 1];
-    assert_readme_figure(
+    assert_measured_figure(
         "instructions of a state of the full model on the chip, millions",
         further as f64 / 1e6,
         0.02,

@@ -208,8 +208,8 @@ impl Sweep {
     ///
     /// # Errors
     /// [`MembraneError`].
-    pub fn new(design: &BenchmarkDesign) -> core::result::Result<Self, MembraneError> {
-        let design = &design.design;
+    pub fn new(of: &BenchmarkDesign) -> core::result::Result<Self, MembraneError> {
+        let design = &of.design;
         let mut press = Press::<Law, 8>::with_resolution(design, TensionField::Plain, TRUTH)?;
         let mut check = Press::<Law, 7>::with_resolution(design, TensionField::Plain, CHECK)?;
         let deepest = DEPTH * press.clone().limit()?.indentation;
@@ -222,7 +222,7 @@ impl Sweep {
             forces.push(force);
         }
         Ok(Self {
-            design: *design,
+            design: *of,
             indentations,
             forces,
             uncertainty,

@@ -68,7 +68,7 @@ impl<L: Hyperelastic, const S: usize> Workspace<L, S> {
         press.solver.set(resolution);
         press.scale = scale;
         press.compliance = compliance * scale.pressure / scale.volume();
-        press.history.clear();
+        press.predictor.clear();
         press.limit = None;
         match rest {
             RestBy::Unstretched => return Err(MembraneError::Unstretched),

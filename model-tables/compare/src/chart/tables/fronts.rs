@@ -139,7 +139,7 @@ pub(super) fn rows(fronts: &[Front]) -> Vec<String> {
     fronts
         .iter()
         .map(|front| {
-            let costs: Vec<String> = front.costs.iter().copied().map(words).collect();
+            let costs: Vec<String> = front.costs.iter().copied().map(label).collect();
             format!(
                 "| {} | {:?} | {:.1} | {:.2} .. {:.2} | {} |",
                 front.name,
