@@ -20,7 +20,7 @@ pub struct BudgetTerm {
     pub name: &'static str,
     /// Where the figure comes from.
     pub source: &'static str,
-    /// Pascals, where it is an error of the pressure.
+    /// Error of the pressure, pascals; `None` where it is not an error of the pressure.
     pub pascals: Option<f64>,
     /// A largest error; else a standard deviation.
     pub bound: bool,

@@ -54,7 +54,7 @@ impl Clock {
 pub struct Board {
     /// The time, from here on.
     pub clock: Clock,
-    /// What the transducer is on, if anything is to be measured.
+    /// What the transducer is on; `None` where nothing is measured.
     pub port: Option<Port>,
     /// The way out for frames.
     pub line: Line,

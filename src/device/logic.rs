@@ -65,7 +65,7 @@ pub struct Beginning {
     pub stored: Stored,
     /// Its number.
     pub stored_sequence: u32,
-    /// The calibration, if it is in use.
+    /// The calibration in use; `None`: the design's own values are.
     pub calibration: Option<Calibration>,
     /// The crystal does not run.
     pub clock_failed: bool,

@@ -76,7 +76,7 @@ pub struct CrashRecord {
     pub good: bool,
     /// The design the zero is of: its hash.
     pub design_hash: u64,
-    /// The zero in use.
+    /// The zero in use; `None` before one was found.
     pub zero: Option<Zero>,
 }
 
@@ -183,7 +183,7 @@ pub struct Start {
     pub fault: LastFault,
     /// Which task, line, address or stage.
     pub detail: u32,
-    /// The zero in use then, if it is of this design.
+    /// The zero in use then; `None` if there was none, or it is of another design.
     pub kept: Option<Zero>,
     /// Reset after reset: measure nothing, say so.
     pub give_up: bool,

@@ -69,7 +69,8 @@ pub struct Answer {
     pub outcome: Outcome,
     /// Of a self-test: what it found, one bit each. Of an indentation: [`doubts`](model_tables::table::known::doubts).
     pub findings: u16,
-    /// Of an indentation that tells something; its doubts are the findings.
+    /// The force and curvature at an indentation that the host gave, whose doubts are the findings; `None` in every
+    /// other answer.
     pub known: Option<KnownContact>,
 }
 

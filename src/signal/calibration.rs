@@ -13,9 +13,9 @@ pub const LARGEST_GAIN: i32 = 100_000;
 /// The calibration of one fingertip; the default is none.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Calibration {
-    /// The zero, seen untouched; in the transducer's own quantity.
+    /// The zero, seen untouched, in the transducer's own quantity; `None`: the design's.
     pub zero: Option<Millipascals>,
-    /// The transducer's temperature when that zero was stored.
+    /// The transducer's temperature when that zero was stored; `None` where the part does not measure it.
     pub temperature: Option<Centidegrees>,
     /// What temperature adds to the zero, millipascals a kelvin, at most
     /// [`LARGEST_COEFFICIENT`](temperature::LARGEST_COEFFICIENT) either way.

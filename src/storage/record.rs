@@ -45,7 +45,7 @@ pub struct Record {
     pub table_version: u32,
     /// The firmware that wrote it: major, minor, patch.
     pub firmware: [u8; 3],
-    /// What was calibrated; nothing voids what was stored before.
+    /// What was calibrated; `None` voids what was stored before.
     pub calibration: Option<Calibration>,
     /// Erasures so far, of both slots together.
     pub erasures: u32,

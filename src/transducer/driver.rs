@@ -14,10 +14,10 @@ pub struct Sample {
     pub pressure: Millipascals,
     /// From this pressure up to the end of the transducer's range; below zero: beyond it, a lower bound.
     pub headroom: Millipascals,
-    /// The part's own temperature, if it measures one.
+    /// The part's own temperature; `None` where it measures none.
     pub temperature: Option<Centidegrees>,
-    /// The word the part gave, if it is so fine that noise moves it: unchanged for long it is stuck. A converter of
-    /// 12 bits that averages has no such word.
+    /// The word the part gave, if it is so fine that noise moves it: unchanged for long it is stuck; `None` of a
+    /// 12-bit converter that averages.
     pub raw: Option<u32>,
     /// From the middle of the time it was measured over to when the driver gave it, microseconds.
     pub age: u32,

@@ -22,7 +22,7 @@ pub struct RunAccuracy {
     pub readings: usize,
     /// Median error of the force, share of reading, over the reports from 5 % of full scale up.
     pub force_median: f64,
-    /// Median error of the indentation, likewise.
+    /// Median error of the indentation, relative to its reading.
     pub indentation_median: f64,
     /// Root mean square of the pressure rise's error, pascals, over all readings.
     pub pressure_error: f64,
@@ -30,7 +30,7 @@ pub struct RunAccuracy {
     pub pressure_within: f64,
     /// Share of the readings whose force a pressure within two standard deviations and the tables' accuracy explain.
     pub force_within: f64,
-    /// The same of the indentation.
+    /// The same of the indentation, relative.
     pub indentation_within: f64,
 }
 

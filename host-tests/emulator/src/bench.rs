@@ -34,9 +34,9 @@ pub trait Listener: Send + 'static {
 /// When a byte came, in seconds of virtual time since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moment {
-    /// The end of its stop bit.
+    /// The end of its stop bit, seconds of emulated time.
     pub time: f64,
-    /// When the image's own clock read zero, since the last reset.
+    /// When the image's own clock read zero, since the last reset, seconds of emulated time.
     pub clock_zero: f64,
 }
 

@@ -29,9 +29,9 @@ pub struct Row {
     pub truth: Contact,
     /// How far the firmware believes itself.
     pub status: Status,
-    /// What it reports, unless it reports a fault.
+    /// What it reports; `None` where it reports a fault.
     pub reported: Option<Contact>,
-    /// One standard deviation of each, as it reports it.
+    /// One standard deviation of each, as it reports it; `None` where it reports a fault.
     pub sigma: Option<Contact>,
     /// Whether it feels a touch.
     pub touch: Touch,

@@ -44,7 +44,7 @@ pub struct Event {
     pub at_ms: f64,
     /// What.
     pub is: Happening,
-    /// Of what lasts: for how long, milliseconds.
+    /// How long it lasts, milliseconds; `None` of what happens at an instant.
     pub for_ms: Option<f64>,
 }
 
@@ -100,8 +100,8 @@ pub struct Phase {
     pub name: String,
     /// How long it takes, milliseconds, > 0.
     pub duration_ms: f64,
-    /// Indentation at its end, percent of the largest the design is made for, 0 .. 100. Without it the plate
-    /// stays where it is.
+    /// Indentation at its end, percent of the largest the design is made for, 0 .. 100; `None`: the plate stays where
+    /// it is.
     pub to_percent: Option<f64>,
 }
 
@@ -113,7 +113,7 @@ pub struct WireFault {
     pub is: Wiring,
     /// From when, milliseconds.
     pub from_ms: f64,
-    /// Until when, milliseconds; without it to the end.
+    /// Until when, milliseconds; `None`: to the end.
     pub until_ms: Option<f64>,
 }
 

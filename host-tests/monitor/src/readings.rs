@@ -37,11 +37,11 @@ pub struct LiveReading {
     pub measured: Duration,
     /// Frames that are missing right before it.
     pub missing_before: u64,
-    /// Hash of the design in the image, once a hello told it.
+    /// Hash of the design in the image; `None` until a hello gave it.
     pub design: Option<u64>,
     /// How far to believe it.
     pub status: Status,
-    /// Its values; a fault has none.
+    /// Its values; `None` of a fault.
     pub values: Option<LiveValues>,
     /// Whether something presses.
     pub touch: Touch,
@@ -128,7 +128,7 @@ pub struct Counts {
 pub struct HistoryPoint {
     /// The board's clock, seconds since its reset.
     pub time: f64,
-    /// Force, newtons, and pressure rise, pascals; nothing where the report was not ok, or none came.
+    /// Its values; `None` of a fault.
     pub values: Option<[f64; 2]>,
 }
 

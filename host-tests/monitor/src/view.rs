@@ -66,13 +66,13 @@ impl Plot {
 pub struct ViewContext {
     /// Where the board is.
     pub address: String,
-    /// Where rows go, if they do.
+    /// Where rows go; `None`: they are not logged.
     pub log: Option<String>,
     /// What the chart shows.
     pub plot: Plot,
     /// Whether the screen stands still.
     pub paused: bool,
-    /// What is being typed, if anything is.
+    /// What is being typed; `None`: nothing is.
     pub question: Option<String>,
     /// Whether the keys are explained.
     pub help: bool,

@@ -193,9 +193,9 @@ fn escape(words: &str) -> String {
 /// A logarithmic axis: decades, whole or not, over pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
-    /// First and last decade.
+    /// First and last decade, exponents of ten, dimensionless.
     pub decades: [f64; 2],
-    /// Where they lie.
+    /// Where they lie, pixels.
     pub pixels: [f64; 2],
 }
 

@@ -16,7 +16,7 @@ pub struct LinearAxis {
     pub end: f64,
     /// Between ticks.
     step: f64,
-    /// Where start and end lie.
+    /// Where start and end lie, pixels.
     pub pixels: [f64; 2],
 }
 

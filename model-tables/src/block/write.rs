@@ -20,11 +20,11 @@ pub struct TipData<'a> {
     pub words: &'a [i32],
     /// The design's name.
     pub name: &'a str,
-    /// What is known of this one fingertip, if anything.
+    /// Calibration of this one fingertip; `None` where it was not calibrated.
     pub calibration: Option<StoredCalibration>,
-    /// The wall in time, if it relaxes.
+    /// The wall in time; `None` of an elastic wall.
     pub relaxation: Option<WallSeries>,
-    /// Tables of other objects, if there are any.
+    /// Tables of other objects; `None` where the design has no `[object]`.
     pub object: Option<ObjectData<'a>>,
 }
 

@@ -14,11 +14,11 @@ use core::fmt::{self, Write as _};
 pub struct ActuatorSection {
     /// Free diameter, millimetres.
     pub diameter_mm: f64,
-    /// Thickness, millimetres; without it there is the paper's formula alone.
+    /// Thickness, millimetres, > 0; `None`: the paper's formula alone.
     pub thickness_mm: Option<f64>,
-    /// Distance of what is over it, millimetres; without it, and without a foundation, nothing is.
+    /// Distance of the plate over it, millimetres, >= 0; `None` without a foundation: the disc is free.
     pub gap_mm: Option<f64>,
-    /// Stiffness of a foundation over it, kilopascals per millimetre; without it what is over it is rigid.
+    /// Stiffness of a foundation over it, kilopascals per millimetre, > 0; `None`: the plate over it is rigid.
     pub foundation_kpa_per_mm: Option<f64>,
     /// Its law; `None`: the tip's.
     pub material: Option<Law>,

@@ -17,13 +17,13 @@ use std::fmt::{self, Write};
 /// `[calibration]`. Its default changes nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// Times every constant of `[material]`.
+    /// Factor on every constant of `[material]`, dimensionless.
     pub material_factor: f64,
-    /// Times `membrane.thickness_mm`.
+    /// Factor on `membrane.thickness_mm`, dimensionless.
     pub thickness_factor: f64,
-    /// Takes the place of `[rest]`.
+    /// Pole stretch that replaces `[rest]`, dimensionless; `None`: the design's rest.
     pub pole_stretch: Option<f64>,
-    /// Takes the place of `[fluid] compliance_mm3_per_kpa`, cubic millimetres per kilopascal.
+    /// Replaces `[fluid] compliance_mm3_per_kpa`, cubic millimetres per kilopascal; `None`: the design's.
     pub compliance_mm3_per_kpa: Option<f64>,
     /// What the transducer reads of a pascal.
     pub pressure_gain: f64,
@@ -31,7 +31,7 @@ pub struct Calibration {
     pub pressure_offset_kpa: f64,
     /// What the bench's indentation reads at first touch, millimetres.
     pub indentation_offset_mm: f64,
-    /// Tables from data alone, in the place of the model.
+    /// Tables from data alone, in the place of the model; `None`: tables of the model.
     pub curve: Option<DataCurve>,
 }
 

@@ -46,7 +46,7 @@ pub struct DesignFile {
     pub membrane: MembraneSection,
     /// `[material]`: constants in pascals, those of the preset if it names one.
     pub material: Law,
-    /// `[material.relaxation]`; without it the wall is elastic.
+    /// `[material.relaxation]`; `None`: the wall is elastic.
     pub relaxation: Option<Relaxation>,
     /// `[rest]`.
     pub rest: RestSection,
@@ -58,17 +58,17 @@ pub struct DesignFile {
     pub compliance_mm3_per_kpa: f64,
     /// `[object]`: what touches; `None`: a flat, frictionless plate, and only that.
     pub object: Option<ObjectSection>,
-    /// `[press] max_indentation_mm`: end of the tables, millimetres.
+    /// `[press] max_indentation_mm`: end of the tables, millimetres; `None` in a file that makes no tables.
     pub max_indentation_mm: Option<f64>,
-    /// `[transducer]`.
+    /// `[transducer]`; `None` in a file that makes no tables.
     pub transducer: Option<TransducerSection>,
     /// `[zero]`: what may move the zero beside a press.
     pub zero: ZeroSection,
     /// `[air] reference`: who measures the air around an absolute transducer.
     pub air: AirReference,
-    /// `[accuracy]`.
+    /// `[accuracy]`; `None` in a file that makes no tables.
     pub accuracy: Option<Accuracy>,
-    /// `[actuator]`: the feedback membrane.
+    /// `[actuator]`: the feedback membrane; `None`: the design has none.
     pub actuator: Option<ActuatorSection>,
     /// `[calibration]`.
     pub calibration: Calibration,
@@ -77,11 +77,11 @@ pub struct DesignFile {
 /// `[membrane]`: undeformed, millimetres. [`DesignFile::axes`] tells of which surface the semi-axes are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneSection {
-    /// Radial semi-axis.
+    /// Radial semi-axis, millimetres, > 0.
     pub radial_semi_axis_mm: f64,
-    /// Axial semi-axis.
+    /// Axial semi-axis, millimetres, > 0.
     pub axial_semi_axis_mm: f64,
-    /// Wall thickness.
+    /// Wall thickness, millimetres, > 0.
     pub thickness_mm: f64,
 }
 

@@ -9,17 +9,19 @@ use std::fmt::{self, Write};
 /// `[zero]`, in the units of its keys. What is not stated moves nothing, but for drift and bound, whose defaults are the firmware's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ZeroSection {
-    /// `drift_pa_per_hour`, > 0: of the transducer's offset at a steady temperature, without the weather.
+    /// `drift_pa_per_hour`, pascals per hour, > 0: of the transducer's offset at a steady temperature, without the
+    /// weather; `None`: the kind's default.
     pub drift_pa_per_hour: Option<f64>,
-    /// `per_kelvin_pa`: how far a kelvin moves the offset that is left after compensation.
+    /// `per_kelvin_pa`, pascals per kelvin: how far a kelvin moves the offset that is left after compensation; `None`:
+    /// the kind's default.
     pub per_kelvin_pa: Option<f64>,
-    /// `fluid_head_pa`: from one attitude of the hand to another.
+    /// `fluid_head_pa`, pascals: from one attitude of the hand to another; `None`: 0.
     pub fluid_head_pa: Option<f64>,
-    /// `hysteresis_pa`: what a press leaves for good.
+    /// `hysteresis_pa`, pascals: what a press leaves for good; `None`: 0.
     pub hysteresis_pa: Option<f64>,
-    /// `creep_pa`: what a press leaves until the wall has crept back.
+    /// `creep_pa`, pascals: what a press leaves until the wall has crept back; `None`: 0.
     pub creep_pa: Option<f64>,
-    /// `bound_pa`, > 0: largest bound of the zero of an ok reading.
+    /// `bound_pa`, pascals, > 0: largest bound of the zero of an ok reading; `None`: six noise floors.
     pub bound_pa: Option<f64>,
 }
 

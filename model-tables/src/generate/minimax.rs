@@ -13,11 +13,11 @@ const CLOSE: f64 = 1.002;
 /// What a sum should be at one input: `middle`, give or take `half`.
 #[derive(Clone, Copy, Debug)]
 pub struct FitSample {
-    /// What its coefficients are multiplied with.
+    /// Factors of its coefficients, dimensionless.
     pub factors: [f64; MAX_COEFFICIENTS],
-    /// The middle of the window.
+    /// The middle of the window, in the unit of the output.
     pub middle: f64,
-    /// Half its width, > 0.
+    /// Half the width of the window, in the unit of the output, > 0.
     pub half: f64,
 }
 
@@ -35,9 +35,9 @@ impl FitSample {
 /// A sum and its largest error over the samples, in half widths.
 #[derive(Clone, Copy, Debug)]
 pub struct MinimaxFit {
-    /// The coefficients.
+    /// The coefficients, in the unit of the output.
     pub coefficients: [f64; MAX_COEFFICIENTS],
-    /// The largest error.
+    /// The largest error over its window's half width, dimensionless.
     pub error: f64,
 }
 

@@ -58,7 +58,7 @@ pub struct Certified {
     pub tables: OwnedTables,
     /// What holds of them on every input.
     pub certificate: Certificate,
-    /// Tables of other objects, where the design has an `[object]`.
+    /// Tables of other objects; `None` where the design has no `[object]`.
     pub object: Option<ObjectTables>,
     /// Segmentations looked at before these tables were found to be the smallest.
     pub tried: usize,

@@ -60,9 +60,9 @@ pub struct BlendError {
 pub struct BlendErrors {
     /// The last pressure rise compared, pascals.
     pub last: f64,
-    /// Of the force.
+    /// Of the force, percent of reading.
     pub force_percent: f64,
-    /// Of the indentation.
+    /// Of the indentation, percent of reading.
     pub indentation_percent: f64,
 }
 

@@ -11,7 +11,7 @@ const SOUNDED: i32 = 16;
 /// Errors of one output over every input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Errors {
-    /// The output at the end of the press.
+    /// The output at the end of the press, newtons or metres.
     pub full_scale: f64,
     /// Where errors of reading begin, in units of the output.
     pub from: f64,
@@ -36,11 +36,11 @@ pub struct Errors {
 /// Largest, root-mean-square and mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Largest magnitude.
+    /// Largest magnitude, percent.
     pub max: f64,
-    /// Root mean square.
+    /// Root mean square, percent.
     pub rms: f64,
-    /// Mean, signed.
+    /// Mean, signed, percent.
     pub mean: f64,
 }
 

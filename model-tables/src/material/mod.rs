@@ -13,15 +13,15 @@ pub mod stability;
 /// First and second derivatives of the strain energy with respect to the principal stretches, in pascals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Derivatives {
-    /// `dW/dl1`.
+    /// `dW/dl1`, pascals.
     pub w1: f64,
-    /// `dW/dl2`.
+    /// `dW/dl2`, pascals.
     pub w2: f64,
-    /// `d2W/dl1^2`.
+    /// `d2W/dl1^2`, pascals.
     pub w11: f64,
-    /// `d2W/dl1 dl2`.
+    /// `d2W/dl1 dl2`, pascals.
     pub w12: f64,
-    /// `d2W/dl2^2`.
+    /// `d2W/dl2^2`, pascals.
     pub w22: f64,
 }
 
@@ -87,7 +87,7 @@ impl Law {
 pub struct Scaled<L> {
     /// The law.
     pub law: L,
-    /// What its energies are multiplied by.
+    /// Factor on its energies, dimensionless.
     pub factor: f64,
 }
 

@@ -17,13 +17,14 @@ pub struct Preset {
     pub title: &'static str,
     /// The constants, pascals.
     pub law: Law,
-    /// How it relaxes, where a published series exists. A design takes it by `[material.relaxation] preset`.
+    /// How it relaxes, which a design takes by `[material.relaxation] preset`; `None` where no published series
+    /// exists.
     pub relaxation: Option<Relaxation>,
     /// Where they come from.
     pub source: &'static str,
     /// How fast the test was.
     pub rate: &'static str,
-    /// Largest engineering strain of the uniaxial test that was fitted, if it is known.
+    /// Largest engineering strain of the uniaxial test that was fitted, dimensionless; `None` where it is not known.
     pub strain: Option<f64>,
     /// What to expect of the material beyond a static law.
     pub caution: &'static str,

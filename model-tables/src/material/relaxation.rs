@@ -19,7 +19,7 @@ pub struct Term {
 /// What a term does over a step of time in which the relaxed stress changes evenly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decay {
-    /// What is left of the term's stress: `exp(-dt / tau)`.
+    /// Share of the term's stress that is left after the step: `exp(-dt / tau)`.
     pub left: f64,
     /// The term's part of a change of the relaxed stress: `g tau / dt (1 - exp(-dt / tau))`.
     pub taken: f64,

@@ -67,7 +67,7 @@ pub struct Resolution {
     pub density: f64,
     /// Elements under the plate.
     pub contact_elements: usize,
-    /// Relative change that one more Newton iteration may still make.
+    /// Change, relative to the state, that one more Newton iteration may still make.
     pub tolerance: f64,
     /// Last term of an element's polynomial, relative to the solution, above which the element is cut; its square is about
     /// the error that remains. Infinite for a mesh that is laid by the grading alone.

@@ -46,11 +46,11 @@ pub enum Closure {
 /// pole, dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosureTangent {
-    /// Of the pressure.
+    /// Derivative of the dimensionless pressure.
     pub pressure: f64,
-    /// Of the volume.
+    /// Derivative of the dimensionless volume.
     pub volume: f64,
-    /// Of the height.
+    /// Derivative of the dimensionless height.
     pub height: f64,
 }
 

@@ -89,11 +89,11 @@ impl Zone {
 pub struct Response {
     /// Meridional stretch.
     pub l1: f64,
-    /// `W_2`, zero where hoop wrinkles stand.
+    /// `W_2`, dimensionless, zero where hoop wrinkles stand.
     pub w2: f64,
-    /// `dl1/dn`.
+    /// `dl1/dn`, dimensionless.
     pub l1_by_n: f64,
-    /// `dl1/du`.
+    /// `dl1/du`, dimensionless.
     pub l1_by_u: f64,
     /// `dW_2/dl1`.
     w2_by_l1: f64,
@@ -119,11 +119,11 @@ pub struct LocalEquations<L> {
 /// The undeformed meridian at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Meridian {
-    /// Radius `x = sin t`.
+    /// Radius `x = sin t`, over the radial semi-axis.
     pub x: f64,
-    /// `x' = cos t`.
+    /// `x' = cos t`, dimensionless.
     pub x_rate: f64,
-    /// Arc rate `g`.
+    /// Arc rate `g`, over the radial semi-axis.
     pub arc_rate: f64,
 }
 

@@ -44,9 +44,9 @@ impl Breaks {
 /// The depth function of a free zone.
 #[derive(Clone, Copy, Debug)]
 pub struct Depth {
-    /// Contact parameter, 0 for a membrane that is not pressed.
+    /// Contact parameter, radians, 0 for a membrane that is not pressed.
     pub contact_parameter: f64,
-    /// Bend length at the contact edge, in the meridian's parameter.
+    /// Bend length at the contact edge, in the meridian's parameter, radians.
     pub bend: f64,
 }
 

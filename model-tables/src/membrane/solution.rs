@@ -36,11 +36,11 @@ pub struct Solution<const S: usize> {
     pub stages: [[[f64; STATES]; S]; MAX_ELEMENTS],
     /// Meridional stretch at each Gauss point.
     pub stretches: [[f64; S]; MAX_ELEMENTS],
-    /// Pole, pressure, contact radius, contact parameter.
+    /// Pole, pressure, contact radius, contact parameter, each dimensionless.
     pub parameters: [f64; PARAMETERS],
-    /// Height of the dome.
+    /// Height of the dome, over the radial semi-axis.
     pub height: f64,
-    /// Volume of the dome.
+    /// Volume of the dome, over the cube of the radial semi-axis.
     pub volume: f64,
 }
 

@@ -80,7 +80,7 @@ pub struct PressShape {
     pub pressure: f64,
     /// Stretch of the pole; 1 in a slack core.
     pub pole_stretch: f64,
-    /// Edge of the slack core in the meridian's parameter, 0 if there is none.
+    /// Edge of the slack core in the meridian's parameter, radians, 0 if there is none.
     pub slack_edge: f64,
     /// Height of the dome over its base, metres.
     pub height: f64,
@@ -136,7 +136,7 @@ pub struct PressedState {
     pub force: f64,
     /// Deformed radius of the contact, metres.
     pub contact_radius: f64,
-    /// The contact edge in the meridian's parameter.
+    /// The contact edge in the meridian's parameter, radians.
     pub contact_parameter: f64,
     /// The rest.
     pub shape: PressShape,
@@ -152,7 +152,7 @@ impl PressedState {
 /// One point of the meridian.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeridianPoint {
-    /// Meridian's parameter, 0 = pole, pi/2 = equator.
+    /// Meridian's parameter, radians: 0 at the pole, pi/2 at the equator.
     pub parameter: f64,
     /// Deformed radius, metres.
     pub radius: f64,

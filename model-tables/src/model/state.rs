@@ -9,7 +9,7 @@ use crate::membrane::state::Wrinkling;
 pub struct RestState {
     /// Gauge pressure of the fluid, pascals.
     pub pressure: f64,
-    /// Stretch of the pole, of the middle of the wall.
+    /// Stretch of the pole, of the middle of the wall, dimensionless.
     pub pole_stretch: f64,
     /// Radius of the equator, metres: of a solid the outer one.
     pub edge_radius: f64,
@@ -30,18 +30,18 @@ pub struct Pressed {
     pub force: f64,
     /// Deformed radius of the contact, metres.
     pub contact_radius: f64,
-    /// Stretch of the pole, of the middle of the wall.
+    /// Stretch of the pole, of the middle of the wall, dimensionless.
     pub pole_stretch: f64,
-    /// Smallest tension, newtons per metre; nothing of a solid, whose wall may push.
+    /// Smallest tension, newtons per metre; `None` of a solid, whose wall may push.
     pub least_tension: Option<f64>,
-    /// The worst zone; nothing of a solid.
+    /// The worst zone; `None` of a solid.
     pub wrinkling: Option<Wrinkling>,
 }
 
 /// A point of the meridian, in the middle of the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeridianStation {
-    /// Meridian's parameter, 0 = pole, pi/2 = equator.
+    /// Meridian's parameter, radians: 0 at the pole, pi/2 at the equator.
     pub parameter: f64,
     /// Deformed radius, metres.
     pub radius: f64,
@@ -51,7 +51,7 @@ pub struct MeridianStation {
     pub angle: f64,
     /// Wall thickness over the undeformed one.
     pub thickness_stretch: f64,
-    /// Stretches along the meridian and around.
+    /// Stretches along the meridian and around, dimensionless.
     pub stretches: [f64; 2],
     /// Tensions along and around, newtons per metre of deformed length.
     pub tensions: [f64; 2],

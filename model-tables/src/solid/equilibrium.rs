@@ -52,7 +52,7 @@ enum Renewed {
 pub struct Tangent {
     /// Derivatives of the unknowns by the indentation.
     pub state: State,
-    /// Derivative of the plate's force.
+    /// Derivative of the plate's dimensionless force.
     pub force: f64,
 }
 

@@ -6,9 +6,9 @@ use core::f64::consts::PI;
 /// Volume under one inner edge, with its derivatives; unknowns are the three radii, then the three heights.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Share {
-    /// The volume.
+    /// The volume, over the cube of the radial semi-axis.
     pub volume: f64,
-    /// First derivatives.
+    /// First derivatives of the dimensionless volume.
     pub first: [f64; 6],
     /// Second derivatives.
     pub second: [[f64; 6]; 6],

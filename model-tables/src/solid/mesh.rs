@@ -68,7 +68,7 @@ pub struct Elements {
 /// A Gauss point of an element.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
-    /// Undeformed volume that it stands for.
+    /// Undeformed volume that it stands for, over the cube of the radial semi-axis.
     pub weight: f64,
     /// Whether it lies in the crease at the rim.
     pub in_crease: bool,
@@ -82,11 +82,12 @@ pub struct Point {
 pub struct Mesh {
     /// How many elements.
     pub elements: Elements,
-    /// Wall thickness.
+    /// Wall thickness, over the radial semi-axis.
     pub thickness: f64,
-    /// Height of the undeformed pole: of a dome the outer axial semi-axis, of a disc its thickness.
+    /// Height of the undeformed pole, over the radial semi-axis: of a dome the outer axial semi-axis, of a disc its
+    /// thickness.
     pub height: f64,
-    /// The meridian's parameter `t` of the stations.
+    /// The meridian's parameter `t` of the stations, radians.
     pub parameters: Vec<f64>,
     /// Radius and height of the nodes: station by station from the pole, each from inside to outside, and behind them the
     /// amplitude of its cubic function, which is zero here.

@@ -44,11 +44,11 @@ pub(super) struct Local {
 /// An object's action on one outer edge, with derivatives by its three radii, then its three heights.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Action {
-    /// Energy in the contact.
+    /// Energy in the contact, dimensionless.
     pub energy: f64,
-    /// Axial force on the object.
+    /// Axial force on the object, dimensionless.
     pub force: f64,
-    /// First derivatives of the energy.
+    /// First derivatives of the dimensionless energy.
     pub first: [f64; 6],
     /// Second derivatives of the energy.
     pub second: [[f64; 6]; 6],

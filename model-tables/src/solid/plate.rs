@@ -31,11 +31,11 @@ pub const WEIGHTS: [f64; POINTS] = [
 /// The plate's action on one outer edge, with derivatives by its three heights.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlateAction {
-    /// Energy in the contact.
+    /// Energy in the contact, dimensionless.
     pub energy: f64,
-    /// Force on the plate.
+    /// Force on the plate, dimensionless.
     pub force: f64,
-    /// First derivatives of the energy.
+    /// First derivatives of the dimensionless energy.
     pub first: [f64; 3],
     /// Second derivatives of the energy.
     pub second: [[f64; 3]; 3],

@@ -62,7 +62,7 @@ pub struct Press {
 pub struct Rest {
     /// Gauge pressure of the fluid, pascals.
     pub pressure: f64,
-    /// Stretch of the middle of the wall at the pole.
+    /// Stretch of the middle of the wall at the pole, dimensionless.
     pub pole_stretch: f64,
     /// Outer radius of the rim, metres: it is held.
     pub edge_radius: f64,
@@ -87,7 +87,7 @@ pub struct PressedState {
     pub force: f64,
     /// Radius of the contact's outer edge, deformed, metres.
     pub contact_radius: f64,
-    /// The same edge in the meridian's parameter.
+    /// The same edge in the meridian's parameter, radians.
     pub contact_parameter: f64,
     /// Volume of the fluid, cubic metres.
     pub volume: f64,
@@ -95,7 +95,7 @@ pub struct PressedState {
     pub energy: f64,
     /// The rest state's strain energy, and the work of plate and fluid along the path from there, joules: the same.
     pub work: f64,
-    /// Stretch of the middle of the wall at the pole.
+    /// Stretch of the middle of the wall at the pole, dimensionless.
     pub pole_stretch: f64,
 }
 

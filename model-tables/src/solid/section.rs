@@ -14,24 +14,24 @@ const SAMPLES: usize = 24;
 /// The outer edge of the contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactEdge {
-    /// Deformed radius.
+    /// Deformed radius, over the radial semi-axis.
     pub radius: f64,
-    /// Meridian's parameter.
+    /// Meridian's parameter, radians: 0 at the pole, pi/2 at the rim.
     pub parameter: f64,
 }
 
 /// A station of the meridian: the middle of the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallPoint {
-    /// Meridian's parameter, 0 = pole, pi/2 = rim.
+    /// Meridian's parameter, radians: 0 at the pole, pi/2 at the rim.
     pub parameter: f64,
-    /// Radius of the middle of the wall.
+    /// Deformed radius, over the radial semi-axis.
     pub radius: f64,
     /// Its height over the base.
     pub height: f64,
-    /// Stretch along the meridian.
+    /// Stretch along the meridian, dimensionless.
     pub meridional_stretch: f64,
-    /// Stretch around.
+    /// Stretch around, dimensionless.
     pub hoop_stretch: f64,
     /// Wall thickness over the undeformed one.
     pub thickness_stretch: f64,

@@ -9,7 +9,7 @@ pub struct State {
     pub nodes: Vec<[f64; 2]>,
     /// Terms of the pressure in each element.
     pub pressures: Vec<[f64; CUBIC_PRESSURES]>,
-    /// Gauge pressure of the fluid.
+    /// Gauge pressure of the fluid, dimensionless.
     pub fluid: f64,
 }
 
@@ -46,13 +46,13 @@ impl State {
 /// The equation of the fluid: `by_volume (V - volume) + by_pressure (P - pressure) = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fluid {
-    /// Weight of the volume.
+    /// Weight of the volume, dimensionless.
     pub by_volume: f64,
     /// Volume to have, `V` over `by_volume`'s unit.
     pub volume: f64,
-    /// Weight of the pressure: the compliance, where volume is kept.
+    /// Weight of the pressure, dimensionless: the compliance, where volume is kept.
     pub by_pressure: f64,
-    /// Pressure to have.
+    /// Pressure to have, dimensionless.
     pub pressure: f64,
 }
 
@@ -66,11 +66,11 @@ impl Fluid {
 /// What a converged state comes with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Balance {
-    /// Volume of the fluid.
+    /// Volume of the fluid, over the cube of the radial semi-axis.
     pub volume: f64,
-    /// Force on the plate.
+    /// Force on the plate, dimensionless.
     pub force: f64,
-    /// Energy in the contact.
+    /// Energy in the contact, dimensionless.
     pub contact_energy: f64,
     /// Largest entry of the residual, in units of the tolerance's scale.
     pub residual: f64,

@@ -7,7 +7,7 @@ use super::state::{Balance, Fluid, State};
 /// A state of the press.
 #[derive(Clone, Debug)]
 pub struct Kept {
-    /// Its indentation.
+    /// Its indentation, over the radial semi-axis.
     pub indentation: f64,
     /// Its unknowns.
     pub state: State,
@@ -15,11 +15,12 @@ pub struct Kept {
     pub balance: Balance,
     /// Where the outer surface leaves what touches it.
     pub contact: ContactEdge,
-    /// Where its points are anchored on what touches; empty without friction.
+    /// Where its points are anchored on what touches, over the radial semi-axis; empty without friction.
     pub anchors: Vec<f64>,
-    /// Energy of the wall and of the contact.
+    /// Energy of the wall and of the contact, dimensionless.
     pub energy: f64,
-    /// Work of plate and fluid since the rest state, plus the energy of that, less what friction took.
+    /// Work of plate and fluid since the rest state, plus the energy of that, less the dissipation of friction,
+    /// dimensionless.
     pub work: f64,
 }
 

@@ -23,9 +23,9 @@ pub const MAX_STAGES: usize = 8;
 /// Nodes and weights of the `S`-point Gauss collocation method on `[0, 1]`.
 #[derive(Clone, Debug)]
 pub struct Gauss<const S: usize> {
-    /// Nodes `c_j`.
+    /// Nodes `c_j`, over the element's length.
     pub nodes: [f64; S],
-    /// Weights `b_j`.
+    /// Weights `b_j`, dimensionless.
     pub weights: [f64; S],
     /// Stage matrix `a_jk`.
     pub stages: [[f64; S]; S],
@@ -156,19 +156,19 @@ fn lagrange<const S: usize>(nodes: &[f64; S], k: usize, t: f64) -> f64 {
 /// Right-hand side, integrands and all their derivatives at one point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GaussPoint {
-    /// `f`, the derivative of the state.
+    /// `f`, the derivative of the dimensionless state.
     pub rate: [f64; STATES],
     /// `df_i/dy_l`.
     pub rate_by_state: [[f64; STATES]; STATES],
-    /// `df_i/dt` at fixed state and parameters.
+    /// `df_i/dt` at fixed state and parameters, dimensionless.
     pub rate_by_position: [f64; STATES],
     /// `df_i/dp_m`, not counting what moves the mesh.
     pub rate_by_parameter: [[f64; PARAMETERS]; STATES],
-    /// Integrands.
+    /// Integrands, dimensionless.
     pub integrand: [f64; INTEGRALS],
     /// Derivatives of the integrands by state.
     pub integrand_by_state: [[f64; STATES]; INTEGRALS],
-    /// Derivatives of the integrands by position.
+    /// Derivatives of the integrands by position, dimensionless.
     pub integrand_by_position: [f64; INTEGRALS],
     /// Derivatives of the integrands by parameter.
     pub integrand_by_parameter: [[f64; PARAMETERS]; INTEGRALS],
@@ -177,13 +177,13 @@ pub struct GaussPoint {
 /// Where an element lies, and how the parameters move it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Span {
-    /// Left end.
+    /// Left end, in the dimensionless position.
     pub start: f64,
-    /// Length, > 0.
+    /// Length, in the dimensionless position, > 0.
     pub length: f64,
-    /// Derivative of `start` by each parameter.
+    /// Derivative of `start` by each parameter, dimensionless.
     pub start_by: [f64; PARAMETERS],
-    /// Derivative of `length` by each parameter.
+    /// Derivative of `length` by each parameter, dimensionless.
     pub length_by: [f64; PARAMETERS],
 }
 
@@ -196,7 +196,7 @@ pub struct Condensed<const S: usize> {
     pub end: [[f64; COLUMNS]; STATES],
     /// The integrals over the element: linear part and, in the last column, value.
     pub integrals: [[f64; COLUMNS]; INTEGRALS],
-    /// Largest residual of the stage equations.
+    /// Largest residual of the stage equations, dimensionless.
     pub residual: f64,
 }
 

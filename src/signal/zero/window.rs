@@ -75,7 +75,7 @@ pub(super) struct Seen {
 pub(super) struct Part {
     /// What its range has in common with those of the two before it, counts: from one side to the other; 0 or less for nothing.
     pub swing: i32,
-    /// The window.
+    /// The window; `None` until it is long enough.
     pub window: Option<Seen>,
 }
 

@@ -31,13 +31,13 @@ pub enum Verdict {
 pub struct Judged {
     /// Indentation over the limit.
     pub part: f64,
-    /// The state, if there is one.
+    /// The state; `None` where it was refused.
     pub state: Option<PressedState>,
     /// What became of it.
     pub verdict: Verdict,
     /// Force less that of virtual work, over the force.
     pub work_error: f64,
-    /// What of it rounding explains.
+    /// Part of that error that rounding explains, relative.
     pub work_rounding: f64,
     /// Largest relative difference of pressure, force and contact radius from the second method.
     pub second_error: f64,

@@ -47,7 +47,7 @@ pub struct Cost {
     pub elements: Elements,
     /// Time of a state, each from those before it, seconds.
     pub seconds: f64,
-    /// Newton iterations of a state.
+    /// Newton iterations per state.
     pub iterations: f64,
     /// Largest relative error of force or pressure against the refined mesh.
     pub error: f64,

@@ -68,7 +68,7 @@ pub struct JudgedSolid {
     pub verdict: SolidVerdict,
     /// Error that the second mesh states, relative.
     pub stated: f64,
-    /// Error that the third mesh finds.
+    /// Error that the third mesh finds, relative.
     pub found: f64,
     /// Word of what ends the press.
     pub ends_by: &'static str,

@@ -45,7 +45,7 @@ pub struct Evidence {
 pub struct MeasuredWall {
     /// The wall.
     pub case: RandomWall,
-    /// The closed form of the membrane's light contact, where it has all states.
+    /// The closed form of the membrane's light contact, relative error; `None` where it has not all states.
     pub closed_form: Option<f64>,
     /// The ladder, in its order; `None` where a fidelity does not apply.
     pub fidelities: [Option<Evidence>; LADDER.len()],

@@ -186,7 +186,7 @@ pub struct Result {
     pub found: usize,
     /// States asked for.
     pub asked: usize,
-    /// Why not all of them were found.
+    /// Why not all of them were found; `None` where all were.
     pub failure: Option<String>,
 }
 

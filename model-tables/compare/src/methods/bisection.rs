@@ -42,7 +42,7 @@ const MIN_INDENTATION: f64 = 30.0;
 pub struct Fineness {
     /// Steps from contact edge to equator.
     pub steps: usize,
-    /// Relative width at which a bisection ends.
+    /// Width, relative to the bracket, at which a bisection ends.
     pub tolerance: f64,
 }
 

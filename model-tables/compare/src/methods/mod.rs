@@ -36,9 +36,9 @@ pub struct MethodState {
     pub force: f64,
     /// Deformed radius of the contact, metres.
     pub contact_radius: f64,
-    /// The contact edge in the meridian's parameter.
+    /// The contact edge in the meridian's parameter, radians.
     pub contact_parameter: f64,
-    /// Stretch of the pole.
+    /// Stretch of the pole, dimensionless.
     pub pole_stretch: f64,
     /// Some tension is negative: a real membrane would be wrinkled or slack there.
     pub compressed: bool,

@@ -48,7 +48,7 @@ pub struct PlainMembrane {
     pub scale: UnitScale,
     /// Pole stretch of the rest state.
     pub pole_stretch: f64,
-    /// Compliance of tubing, actuator and bubbles.
+    /// Compliance of tubing, actuator and bubbles, dimensionless: over that of the membrane's units.
     pub compliance: f64,
     /// The law may lose its stability, so that it has to be watched: some constant of it is negative.
     pub watched: bool,
@@ -57,13 +57,13 @@ pub struct PlainMembrane {
 /// What loads the free zone, and its variation by the three parameters.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Load {
-    /// Pressure.
+    /// Pressure, dimensionless.
     pub pressure: f64,
     /// Plate force over `2 pi`.
     pub load: f64,
-    /// Variations of the pressure.
+    /// Variations of the dimensionless pressure.
     pub pressure_by: [f64; VARIED],
-    /// Variations of the load.
+    /// Variations of the dimensionless load.
     pub load_by: [f64; VARIED],
 }
 
@@ -79,7 +79,7 @@ pub struct LastStretches {
 /// What an integration met on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
-    /// Least of `W_1` and `W_2`: below zero some tension is negative.
+    /// Least of `W_1` and `W_2`, dimensionless: below zero some tension is negative.
     pub least: f64,
     /// The law was not stable somewhere.
     pub unstable: bool,

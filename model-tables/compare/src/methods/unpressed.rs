@@ -15,13 +15,13 @@ pub(super) const MAX_STEPS: usize = 30;
 /// The rest state, dimensionless.
 #[derive(Clone, Copy, Debug)]
 pub struct ShootingRest {
-    /// Pressure.
+    /// Pressure, dimensionless.
     pub pressure: f64,
-    /// Radius of the equator.
+    /// Radius of the equator, dimensionless.
     pub edge: f64,
-    /// Height.
+    /// Height, dimensionless.
     pub height: f64,
-    /// Volume.
+    /// Volume, dimensionless.
     pub volume: f64,
     /// State at the equator, varied by pole stretch, pressure and a point force over `2 pi` at the pole.
     pub varied: Free,

@@ -15,11 +15,11 @@ use std::sync::Arc;
 pub struct Misfit {
     /// Numbers compared.
     pub count: usize,
-    /// Root mean square.
+    /// Root mean square, in the unit of its quantity (newtons or pascals).
     pub rms: f64,
-    /// Largest magnitude.
+    /// Largest magnitude, in the unit of its quantity (newtons or pascals).
     pub largest: f64,
-    /// Largest measured magnitude.
+    /// Largest measured magnitude, in the unit of its quantity (newtons or pascals).
     pub full_scale: f64,
 }
 
@@ -81,9 +81,9 @@ pub(super) fn one_sided(residuals: &[&Residual]) -> Option<f64> {
 pub struct Hysteresis {
     /// Mean difference, in the unit of the quantity.
     pub mean: f64,
-    /// Largest difference of a bin, signed.
+    /// Largest magnitude, in the unit of its quantity (newtons or pascals).
     pub largest: f64,
-    /// Largest measured magnitude.
+    /// Largest measured magnitude, in the unit of its quantity (newtons or pascals).
     pub full_scale: f64,
     /// Bins of depth that have both.
     pub bins: usize,
@@ -153,9 +153,9 @@ pub struct Validation {
     pub parts: usize,
     /// Whether a part is a trial.
     pub by_trial: bool,
-    /// Force.
+    /// Of the force; `None` where no force was measured.
     pub force: Option<Misfit>,
-    /// Pressure rise.
+    /// Of the pressure rise; `None` where none was measured.
     pub rise: Option<Misfit>,
 }
 

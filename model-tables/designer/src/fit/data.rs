@@ -15,7 +15,7 @@ pub struct DataChoice {
     pub columns: Vec<(String, String)>,
     /// Only rows whose column has this value.
     pub only: Vec<(String, String)>,
-    /// Only rows of this direction.
+    /// Only rows of this direction; `None`: all rows.
     pub direction: Option<Direction>,
 }
 

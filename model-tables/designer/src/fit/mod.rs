@@ -60,13 +60,14 @@ const OTHER_UNITS: f64 = 40.0;
 pub struct Estimate {
     /// Which.
     pub parameter: Parameter,
-    /// The design's value.
+    /// The design's value, in the parameter's unit.
     pub start: f64,
-    /// The fitted value, or the one it was held at.
+    /// The fitted value, or the one it was held at, in the parameter's unit.
     pub value: f64,
-    /// Its standard error; `None` where it was held, or where there are as many parameters as data.
+    /// Its standard error, in the parameter's unit; `None` where it was held, or where there are as many parameters as
+    /// data.
     pub standard_error: Option<f64>,
-    /// Why it was held.
+    /// Why it was held; `None` where it was fitted.
     pub held: Option<Held>,
 }
 
@@ -88,11 +89,11 @@ pub struct Residual {
     pub row: usize,
     /// What was measured.
     pub quantity: DataQuantity,
-    /// Measured, SI.
+    /// Measured, newtons or pascals.
     pub measured: f64,
-    /// What the design says.
+    /// The design's prediction, newtons or pascals.
     pub before: f64,
-    /// What the fit says.
+    /// The fit's prediction, newtons or pascals.
     pub fitted: f64,
     /// Measured less fitted, in standard deviations.
     pub standardised: f64,
@@ -129,9 +130,10 @@ pub struct Fit {
     pub biases: Vec<Bias>,
     /// Loading against unloading, force and rise.
     pub hysteresis: [Option<Hysteresis>; 2],
-    /// What the fit predicts of data it was not fitted to.
+    /// What the fit predicts of data it was not fitted to; `None` where the data are too few.
     pub validation: Option<Validation>,
-    /// The deepest indentation that the press of the fitted device reaches, metres, if the data go beyond it.
+    /// The deepest indentation that the press of the fitted device reaches, metres; `None` where the data end before
+    /// it.
     pub press_ends: Option<f64>,
     /// Data less parameters.
     pub freedom: usize,

@@ -25,7 +25,7 @@ const MIN_RESIDUALS: usize = 12;
 pub struct NoiseModel {
     /// Standard deviation of a reading of zero.
     pub floor: f64,
-    /// Largest reading of the data, by magnitude.
+    /// Largest reading of the data, by magnitude, newtons or pascals.
     pub largest: f64,
     ratio: f64,
 }

@@ -22,11 +22,11 @@ pub struct DataRow {
     pub trial: usize,
     /// Which way the plate moved.
     pub direction: Direction,
-    /// Indentation as the stage reads it, metres.
+    /// Indentation as the stage reads it, metres; `None` where the cell is empty.
     pub indentation: Option<f64>,
-    /// Force, newtons.
+    /// Force, newtons; `None` where the cell is empty.
     pub force: Option<f64>,
-    /// Pressure rise over rest as the transducer reads it, pascals.
+    /// Pressure rise over rest as the transducer reads it, pascals; `None` where the cell is empty.
     pub rise: Option<f64>,
 }
 

@@ -134,7 +134,7 @@ pub struct DataBranch {
     pub refused: usize,
     /// Parts of the cross-validation, and whether a part is a trial.
     pub cross_validation: (usize, bool),
-    /// Unloading less loading at equal pressure.
+    /// Unloading less loading at equal pressure; `None` where the data have one direction.
     pub hysteresis: Option<Hysteresis>,
 }
 
@@ -147,7 +147,7 @@ pub struct Saturation {
     pub force: f64,
     /// Largest slope, newtons per pascal.
     pub slope: f64,
-    /// Over the median slope.
+    /// Slope over the median slope, dimensionless.
     pub ratio: f64,
 }
 
@@ -156,15 +156,15 @@ pub struct Saturation {
 pub struct FromData {
     /// Force, newtons.
     pub force: DataBranch,
-    /// Indentation, metres, where it was measured.
+    /// Indentation, metres; `None` where it was not measured.
     pub indentation: Option<DataBranch>,
     /// Largest pressure rise of the data, pascals: what is beyond is refused.
     pub end: f64,
-    /// Least positive one: below, the curve goes straight to the origin.
+    /// Least positive pressure rise, pascals: below it the curve goes straight to the origin.
     pub start: f64,
-    /// Where the pressure saturates.
+    /// Where the pressure saturates; `None` where it does not.
     pub saturation: Option<Saturation>,
-    /// Steps to a deeper row at which the pressure falls, and all such steps.
+    /// Steps to a deeper row at which the pressure falls, and all such steps; `None` where the rows have no depth.
     pub falls: Option<[usize; 2]>,
 }
 

@@ -22,7 +22,7 @@ pub struct Target {
     pub axial: [f64; 2],
     /// Thickness of the wall, metres.
     pub wall: [f64; 2],
-    /// Stretch of the pole at rest.
+    /// Stretch of the pole at rest, dimensionless.
     pub stretch: [f64; 2],
     /// Materials to choose from.
     pub materials: Vec<&'static Preset>,

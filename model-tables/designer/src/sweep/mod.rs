@@ -40,7 +40,7 @@ pub struct Swept {
     pub computed: u64,
     /// Of those, refused: rows with a reason.
     pub refused: u64,
-    /// The line that refused the first of them.
+    /// The line that refused the first of them; `None` where none was refused.
     pub first_reason: Option<String>,
     /// Files of this shard.
     pub parts: u64,

@@ -42,7 +42,7 @@ pub struct SamplePoints {
     pub method: Sampling,
     /// How many.
     pub count: u64,
-    /// What chance starts from.
+    /// Seed of the random points; `None` of grids and Sobol points, which have none.
     pub seed: Option<u64>,
     /// Coordinates of a point.
     pub dimensions: usize,

@@ -45,7 +45,7 @@ pub struct Solved {
     pub curve: Curve,
     /// The end that the tables cover.
     pub end: Contact,
-    /// The model that solved it; nothing where the curve is of data.
+    /// The model that solved it; `None` where the curve is of data.
     pub fingertip: Option<Fingertip>,
 }
 
@@ -62,16 +62,17 @@ pub struct Generated {
     pub end: Contact,
     /// Tables and certificate.
     pub certified: Certified,
-    /// The curve against states of the same model on a finer mesh, half way between those that it was made from; nothing where it
+    /// The curve against states of the same model on a finer mesh, half way between those that it was made from; `None` where it
     /// is of data.
     pub model_error: Option<Comparison>,
     /// The model that the curve is of; `None` where it was measured.
     pub kind: Option<Kind>,
-    /// Settled pressure rise at which the fluid bears half of the contact's force, pascals; nothing where the wall does not relax.
+    /// Settled pressure rise at which the fluid bears half of the contact's force, pascals; `None` where the wall does
+    /// not relax.
     pub fluid_half: Option<f64>,
-    /// The membrane against the solid of the same wall; nothing where the model is a solid, or there is none.
+    /// The membrane against the solid of the same wall; `None` where the model is a solid, or there is none.
     pub membrane_error: Option<OwnError>,
-    /// What an object that the chip is not told leaves open; nothing where the curve is of data, the object a punch, or a ball has no
+    /// What an object that the chip is not told leaves open; `None` where the curve is of data, the object a punch, or a ball has no
     /// press.
     pub band: Option<Band>,
 }

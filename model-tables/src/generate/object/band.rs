@@ -39,7 +39,7 @@ pub struct Band {
     pub tables_of: Touched,
     /// Smallest ball of the set, millimetres.
     pub smallest_ball_mm: f64,
-    /// Smallest cup of the set, millimetres, where the design states one.
+    /// Smallest cup of the set, millimetres; `None` where the design states none.
     pub cup_mm: Option<f64>,
     /// By pressure rise, one row beside the other.
     pub rows: Vec<BandRow>,
@@ -52,9 +52,9 @@ pub struct BandRow {
     pub from: f64,
     /// To this one, pascals.
     pub to: f64,
-    /// Of the force.
+    /// Of the force, percent of reading.
     pub force_percent: [f64; 2],
-    /// Of the indentation.
+    /// Of the indentation, percent of reading.
     pub indentation_percent: [f64; 2],
 }
 

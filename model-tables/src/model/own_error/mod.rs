@@ -33,7 +33,7 @@ pub struct Comparison {
     pub states: usize,
     /// Largest error of the force at a pressure rise, percent of reading, as the tables' errors are.
     pub force_percent: f64,
-    /// The same of the indentation.
+    /// The same of the indentation, percent of reading.
     pub indentation_percent: f64,
 }
 

@@ -81,7 +81,7 @@ pub struct DiscState {
     pub compliance: f64,
     /// How far the outer face has moved at the centre, metres.
     pub travel: f64,
-    /// Stretch of the middle of the disc at the centre.
+    /// Stretch of the middle of the disc at the centre, dimensionless.
     pub centre_stretch: f64,
     /// Strain energy of the disc, and energy in the contact or the foundation, joules.
     pub energy: f64,

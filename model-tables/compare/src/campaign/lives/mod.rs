@@ -15,9 +15,9 @@ use world::{LifeWorld, Motions};
 /// A reading with status ok that is further off than is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrong {
-    /// When, since the life began.
+    /// When, seconds since the life began.
     pub seconds: f64,
-    /// Pascals.
+    /// Error of the pressure rise, pascals.
     pub error: f64,
     /// Of the zero, pascals.
     pub bound: f64,
@@ -46,11 +46,11 @@ pub struct LivesTally {
     pub replaced: u64,
     /// By how much at most, pascals.
     pub worst: f64,
-    /// The first of them.
+    /// The first of them; `None` where none is wrong.
     pub first_wrong: Option<Wrong>,
     /// Sum of the squares of error over deviation, of readings with status ok.
     squares: f64,
-    /// The largest.
+    /// Largest error over its stated deviation, dimensionless.
     pub most_deviations: f64,
 }
 
@@ -119,7 +119,7 @@ pub struct Life {
     pub transducer: usize,
     /// What its design states of its zero.
     pub zero: ZeroAssumptions,
-    /// Seconds.
+    /// Length of a life, seconds.
     pub length: f64,
     /// An absolute part is lifted while it is pressed, which the zero assumes it is not.
     pub lifted_while_pressed: bool,

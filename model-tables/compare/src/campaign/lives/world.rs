@@ -26,17 +26,17 @@ pub struct Motions {
     pub weather: f64,
     /// How far a kelvin moves the offset.
     pub per_kelvin: f64,
-    /// From one attitude of the hand to another.
+    /// Change of pressure from one attitude of the hand to another, pascals.
     pub head: f64,
-    /// What the largest press leaves for good.
+    /// Pressure that the largest press leaves for good, pascals.
     pub hysteresis: f64,
-    /// What it leaves for a while, and for how long.
+    /// Pressure that it leaves for a while, pascals.
     pub creep: f64,
-    /// Seconds in which creep falls to a third.
+    /// Time in which creep falls to a third, seconds.
     pub creep_time: f64,
     /// Amplitude of the hum, and its frequency in hertz.
     pub hum: f64,
-    /// Hertz.
+    /// Frequency of the hum, hertz.
     pub hum_hertz: f64,
 }
 
@@ -49,11 +49,11 @@ pub struct LifeWorld<'a> {
     pub motions: Motions,
     /// The air around, pascals, but for a lift.
     pub air: f64,
-    /// What a lift has added to the air.
+    /// Pressure that a lift has added to the air, pascals.
     pub height: f64,
     /// Where the attitude of the hand has put the fluid, from 0 to 1 of the head.
     pub attitude: f64,
-    /// Degrees Celsius of the air and of what the fingertip holds.
+    /// Temperature of the air and of what the fingertip holds, degrees Celsius.
     pub surrounding: f64,
     tip: Tip,
     pipeline: Pipeline<Tip>,

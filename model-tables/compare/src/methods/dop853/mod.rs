@@ -24,9 +24,9 @@ const MAX_STEPS: usize = 20_000;
 /// What a step may err.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
-    /// Relative to a component.
+    /// Tolerance relative to a component, dimensionless.
     pub relative: f64,
-    /// Whatever a component.
+    /// Tolerance whatever a component, in that component's dimensionless unit.
     pub absolute: f64,
     /// Only so many components, from the first on, control the step.
     pub controlled: usize,

@@ -26,15 +26,15 @@ const UNTOUCHED: f64 = 0.01;
 pub struct HoldRow {
     /// Line of the file, counted from 1: of the first of the rows that it stands for.
     pub line: u64,
-    /// Seconds.
+    /// Time since the trial began, seconds.
     pub time: f64,
-    /// Metres from first touch, as the stage reads it.
+    /// Indentation from first touch, as the stage reads it, metres.
     pub indentation: f64,
-    /// Pascals over rest, as the transducer reads it.
+    /// Pressure over rest, as the transducer reads it, pascals; `None` where it was not measured.
     pub rise: Option<f64>,
-    /// Newtons.
+    /// Force, newtons; `None` where it was not measured.
     pub force: Option<f64>,
-    /// How many rows of the file it is the mean of.
+    /// Number of rows of the file it is the mean of, dimensionless.
     pub count: f64,
 }
 
@@ -43,7 +43,7 @@ pub struct HoldRow {
 pub struct HoldTrial {
     /// As the file has it; empty where there is no such column.
     pub name: String,
-    /// Mean over the rows, degrees Celsius, where the file has the column.
+    /// Mean over the rows, degrees Celsius; `None` where the file has no such column.
     pub temperature: Option<f64>,
     /// The first is the untouched tip.
     pub rows: Vec<HoldRow>,

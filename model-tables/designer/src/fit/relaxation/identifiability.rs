@@ -54,11 +54,11 @@ impl Identifiability {
 pub struct FittedTerm {
     /// `tau`, seconds.
     pub time: f64,
-    /// Of `ln tau`.
+    /// Standard error of `ln tau`, dimensionless; `None` of a time that is held.
     pub time_error: Option<f64>,
-    /// `g`.
+    /// `g`, over the relaxed modulus.
     pub weight: f64,
-    /// Of `ln g`.
+    /// Standard error of `ln g`, dimensionless.
     pub weight_error: f64,
     /// What the record tells of it.
     pub identifiability: Identifiability,
@@ -191,7 +191,7 @@ pub struct DepthComparison {
     pub depths: [f64; 2],
     /// Largest difference of a depth's `g(t)` from that of all, over it.
     pub difference: f64,
-    /// Standard error of that difference.
+    /// Standard error of that difference, dimensionless.
     pub error: f64,
     /// Whether the depths differ by more than their noise (by chance once in a thousand) and than the solid's own error.
     pub differs: bool,

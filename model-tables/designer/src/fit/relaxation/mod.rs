@@ -54,9 +54,9 @@ const MIN_ROWS: usize = 20;
 /// What the solid in time reads over the reduced model, largest difference from 1: pressing and held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidDifference {
-    /// While the plate moves.
+    /// Residual while the plate moves, relative.
     pub pressing: f64,
-    /// In the hold.
+    /// Residual in the hold, relative.
     pub held: f64,
 }
 
@@ -69,11 +69,11 @@ pub struct HoldResidual {
     pub row: usize,
     /// What was measured.
     pub quantity: Measured,
-    /// SI, without the design's calibration of the transducer.
+    /// Measured, newtons or pascals, without the design's calibration of the transducer.
     pub measured: f64,
-    /// The settled wall's reading.
+    /// The settled wall's reading, newtons or pascals.
     pub settled: f64,
-    /// The fit's.
+    /// The fit's prediction, newtons or pascals.
     pub fitted: f64,
     /// Measured less fitted, in standard deviations of the noise.
     pub standardised: f64,
@@ -88,13 +88,14 @@ pub struct RelaxationFit {
     pub terms: Vec<FittedTerm>,
     /// Relaxed modulus over the design's; 1 where it was held.
     pub modulus: f64,
-    /// Standard error of its logarithm where it was fitted.
+    /// Standard error of the modulus's logarithm, dimensionless; `None` where it was not fitted.
     pub modulus_error: Option<f64>,
-    /// Relaxed moduli over the design's that fit as well, with a series for each.
+    /// Relaxed moduli over the design's that fit as well, with a series for each; `None` where the modulus is
+    /// determined.
     pub open_moduli: Option<[f64; 2]>,
-    /// Standard error of the shift where it was fitted.
+    /// Standard error of the shift, per kelvin; `None` where it was not fitted.
     pub shift_error: Option<f64>,
-    /// Depths compared.
+    /// Depths compared; `None` where the record has one depth.
     pub depths: Option<DepthComparison>,
     /// The solid beside the reduced model, or why it was not solved.
     pub solid: Result<SolidDifference, String>,
@@ -102,7 +103,7 @@ pub struct RelaxationFit {
     pub noise: [f64; GROUPS],
     /// What is left: force and pressure, each relative to its largest reading.
     pub misfit: [Option<Misfit>; 2],
-    /// Order in what is left, in standard deviations: negative where signs cluster.
+    /// Order in the residuals, in standard deviations: negative where signs cluster; `None` where they are too few.
     pub order: Option<f64>,
     /// Every reading.
     pub residuals: Vec<HoldResidual>,
