@@ -10,6 +10,7 @@ use embedded_storage_async::nor_flash::{
 };
 use fingertip::signal::calibration::Calibration;
 use fingertip::storage::store::{Identity, Store};
+use model_tables::random::Random;
 
 /// Steps that one erasure is divided into: power may fail between and within them.
 pub const ERASE_STEPS: u64 = 16;
@@ -86,7 +87,7 @@ pub struct SimulatedFlash<const SLOT: usize, const UNIT: usize = 4> {
     steps: u64,
     operations: u64,
     defect: Defect,
-    random: u64,
+    random: Random,
 }
 
 /// The memory has no power, or a defect.
@@ -111,7 +112,7 @@ impl<const SLOT: usize, const UNIT: usize> SimulatedFlash<SLOT, UNIT> {
             steps: 0,
             operations: 0,
             defect: Defect::None,
-            random: seed.wrapping_mul(2).wrapping_add(1),
+            random: Random(seed),
         }
     }
 
@@ -143,7 +144,7 @@ impl<const SLOT: usize, const UNIT: usize> SimulatedFlash<SLOT, UNIT> {
     #[must_use]
     pub fn leaving(mut self, half_done: HalfDone, seed: u64) -> Self {
         self.half_done = half_done;
-        self.random = seed.wrapping_mul(2).wrapping_add(1);
+        self.random = Random(seed);
         self
     }
 
@@ -254,12 +255,9 @@ impl<const SLOT: usize, const UNIT: usize> SimulatedFlash<SLOT, UNIT> {
         }
     }
 
-    /// One byte of noise (xorshift64*).
+    /// One byte of noise.
     fn noise(&mut self) -> u8 {
-        self.random ^= self.random >> 12;
-        self.random ^= self.random << 25;
-        self.random ^= self.random >> 27;
-        (self.random.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 56) as u8
+        (self.random.bits() >> 56) as u8
     }
 
     /// Whether power lasts for the whole of the next step.

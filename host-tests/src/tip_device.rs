@@ -1,7 +1,6 @@
 //! A board that takes a tip's data, on the host: the firmware's own frames, commands, loader, slots and signal path over a simulated
 //! flash, in virtual time. Around them is what the tasks of the image do, and a line that is as bad as it is told.
 
-use crate::world::Xorshift;
 use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::NorFlash;
 use fingertip::device::logic::{Beginning, Device};
@@ -23,6 +22,7 @@ use fingertip::units::{Microseconds, Millipascals};
 use model_tables::block::StoredCalibration;
 use model_tables::block::write::TipData;
 use model_tables::constants::DesignConstants;
+use model_tables::random::Random;
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::sync::Arc;
@@ -179,7 +179,7 @@ impl<F: NorFlash> TipDevice<F> {
 /// A line that loses, doubles and breaks frames, one in so many each; 0: never.
 #[derive(Clone, Debug)]
 pub struct BadLine {
-    random: Xorshift,
+    random: Random,
     one_in: u64,
 }
 
@@ -187,7 +187,7 @@ impl BadLine {
     /// A line; `seed` decides which frames.
     pub fn new(seed: u64, one_in: u64) -> Self {
         Self {
-            random: Xorshift::new(seed),
+            random: Random(seed),
             one_in,
         }
     }

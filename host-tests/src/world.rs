@@ -44,40 +44,6 @@ impl Design for WithAbsolutePart {
     }
 }
 
-/// Numbers that look random and are the same on every host (xorshift64*).
-#[derive(Clone, Debug)]
-pub struct Xorshift(u64);
-
-impl Xorshift {
-    /// The sequence of `seed`.
-    pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(2).wrapping_add(1))
-    }
-
-    /// 64 bits.
-    pub fn bits(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
-    }
-
-    /// Below `end`, which is above 0.
-    pub fn below(&mut self, end: u64) -> u64 {
-        (self.bits() >> 11) % end
-    }
-
-    /// Uniform in [0, 1).
-    pub fn share(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Close to a normal deviate: the sum of twelve uniform ones.
-    pub fn deviate(&mut self) -> f64 {
-        (0..12).map(|_| self.share()).sum::<f64>() - 6.0
-    }
-}
-
 /// One fingertip and the firmware that reads it.
 #[derive(Debug)]
 pub struct World<D: Design> {

@@ -15,10 +15,11 @@ use fingertip::status::{Fault, Warnings};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::Millipascals;
 use host_tests::design;
-use host_tests::world::{World, Xorshift, full_scale, rest, sample};
+use host_tests::world::{World, full_scale, rest, sample};
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{self, Generated};
 use model_tables::material::series::WallSeries;
+use model_tables::random::Random;
 use model_tables::table::Reading;
 use model_tables::table::law::Touched;
 use model_tables::units::PressureRise;
@@ -89,7 +90,7 @@ fn a_loaded_design_is_that_of_the_image() {
 
 /// The reports, and what else goes on the line, of presses, pauses, faults, outliers, commands and drift, drawn from a seed.
 fn life<D: Design + Copy>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
-    let mut random = Xorshift::new(seed);
+    let mut random = Random(seed);
     let (rest, full) = (rest(&design), full_scale(&design));
     let mut world = World::zeroed(design, rest);
     let (mut from, mut to) = (0.0, 0.0);
@@ -98,10 +99,10 @@ fn life<D: Design + Copy>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
         let share = f64::from(millisecond % 250) / 250.0;
         if millisecond % 250 == 0 {
             from = to;
-            to = [0.0, full * 1.1 * random.share()][random.below(2) as usize];
+            to = [0.0, full * 1.1 * random.unit()][random.below(2) as usize];
         }
         let drift = 1e-4 * f64::from(millisecond);
-        let pascals = rest + drift + from + (to - from) * share + 5.0 * random.deviate();
+        let pascals = rest + drift + from + (to - from) * share + 5.0 * random.normal();
         let mut next = Ok(sample(&design, pascals));
         let mut later = 1000;
         match random.below(400) {

@@ -8,7 +8,8 @@ use fingertip::status::{Fault, ResetCause, Status};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::Millipascals;
 use host_tests::assert_faults_says;
-use host_tests::world::{World, Xorshift, beginning, full_scale, rest, rise, sample};
+use host_tests::world::{World, beginning, full_scale, rest, rise, sample};
+use model_tables::random::Random;
 
 /// A reading that is off by more than this is wrong, pascals: 7 noise floors of the transducer. 6 a commanded tare may take
 /// away when a host says that nothing presses; an outlier smaller than 4 passes for noise, and the filter takes a
@@ -41,18 +42,18 @@ const VERBS: [Verb; 6] = [
 struct Grasp(Vec<(f64, f64)>);
 
 impl Grasp {
-    fn random(random: &mut Xorshift) -> Self {
+    fn random(random: &mut Random) -> Self {
         let (mut time, mut corners) = (0.0, vec![(0.0, 0.0)]);
         let mut at = 0.0;
         while time < 5_000.0 {
             let to = if at > 0.0 && random.below(2) == 0 {
                 0.0
             } else {
-                random.share() * 0.95
+                random.unit() * 0.95
             };
-            time += 300.0 + 500.0 * random.share();
+            time += 300.0 + 500.0 * random.unit();
             corners.push((time, to));
-            time += 900.0 * random.share();
+            time += 900.0 * random.unit();
             corners.push((time, to));
             at = to;
         }
@@ -86,7 +87,7 @@ struct Tally {
 }
 
 /// One sample of a faulty transducer.
-fn disturbed(verb: Verb, pascals: f64, i: u64, random: &mut Xorshift) -> Result<Sample, Fault> {
+fn disturbed(verb: Verb, pascals: f64, i: u64, random: &mut Random) -> Result<Sample, Fault> {
     let sound = sample(&ImageDesign, pascals);
     match verb {
         Verb::Off => Err(Fault::SensorAbsent),
@@ -106,8 +107,8 @@ fn disturbed(verb: Verb, pascals: f64, i: u64, random: &mut Xorshift) -> Result<
 
 /// One life of five seconds.
 fn live(seed: u64, tally: &mut Tally) {
-    let mut random = Xorshift::new(seed);
-    let base = rest(&ImageDesign) + 200.0 * (random.share() - 0.5);
+    let mut random = Random(seed);
+    let base = rest(&ImageDesign) + 200.0 * (random.unit() - 0.5);
     let mut world = World::zeroed(ImageDesign, base);
     let grasp = Grasp::random(&mut random);
     let started = world.now;
@@ -131,7 +132,7 @@ fn live(seed: u64, tally: &mut Tally) {
             world.ask(Command::Tare);
             tally.tares += 1;
         }
-        let noise = 1.0 * random.deviate();
+        let noise = 1.0 * random.normal();
         let delayed = matches!(fault, Some((Verb::Delayed, _)));
         // Late samples are the same ones, later: the first comes after a pause.
         let paused = delayed && !std::mem::replace(&mut late, delayed);

@@ -9,13 +9,13 @@ use fingertip::status::Fault;
 use fingertip::storage::record::{self, Record};
 use fingertip::units::Microseconds;
 use host_tests::assert_faults_says;
-use host_tests::world::Xorshift;
+use model_tables::random::Random;
 
 /// Executions of each reader.
 const EXECUTIONS: u64 = 250_000;
 
 /// A whole frame of either direction, changed in up to three places, cut or lengthened; now and then random bytes.
-fn nearly_a_frame(random: &mut Xorshift) -> Vec<u8> {
+fn nearly_a_frame(random: &mut Random) -> Vec<u8> {
     let number = random.bits();
     let mut bytes = match number % 4 {
         0 => (0..random.below(100)).map(|_| random.bits() as u8).collect(),
@@ -59,7 +59,7 @@ fn nearly_a_frame(random: &mut Xorshift) -> Vec<u8> {
 
 #[test]
 fn readers_of_the_line_take_anything() {
-    let mut random = Xorshift::new(1);
+    let mut random = Random(1);
     let mut deframer = Deframer::default();
     let (mut commands, mut frames) = (0_u64, 0_u64);
     for _ in 0..EXECUTIONS {
@@ -89,7 +89,7 @@ fn readers_of_the_line_take_anything() {
 
 #[test]
 fn readers_of_the_memory_take_anything() {
-    let mut random = Xorshift::new(2);
+    let mut random = Random(2);
     let (mut records, mut crash_records) = (0_u64, 0_u64);
     for _ in 0..EXECUTIONS {
         let mut bytes = record::encode(&Record {

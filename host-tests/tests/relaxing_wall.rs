@@ -10,11 +10,12 @@ use fingertip::signal::relaxation::Relaxing;
 use fingertip::signal::report::{Measurement, Report};
 use fingertip::status::{Status, Touch, Warnings};
 use host_tests::design;
-use host_tests::world::{World, Xorshift, sample};
+use host_tests::world::{World, sample};
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{self, Generated};
 use model_tables::material::relaxation::MAX_TERMS;
 use model_tables::material::series::{SeriesStep, WallSeries};
+use model_tables::random::Random;
 use model_tables::solid::history::{Drive, History, Instant};
 use model_tables::solid::mesh::Elements;
 use model_tables::units::PressureRise;
@@ -76,14 +77,14 @@ fn between(seconds: f64) -> [f64; 3] {
 
 /// The reports of the grasp with the transducer's noise, each with its time in seconds since the press began.
 fn played<D: Design + Copy>(design: D) -> (Vec<(f64, Report)>, World<D>) {
-    let mut random = Xorshift::new(5);
+    let mut random = Random(5);
     let mut world = World::zeroed(design, 0.0);
     let begin = world.now;
     let mut reports = Vec::new();
     for millisecond in 1..=18_000 {
         let [pascals, ..] = between(1e-3 * f64::from(millisecond));
         // 10 Pa a conversion, a hundred of them.
-        let report = world.step(1000, Ok(sample(&design, pascals + random.deviate())));
+        let report = world.step(1000, Ok(sample(&design, pascals + random.normal())));
         // A sample of half a millisecond before.
         let seconds = 1e-6 * (report.time.0 as f64 - begin as f64) + 0.5e-3;
         reports.push((seconds, report));

@@ -7,9 +7,9 @@ use fingertip::signal::contact::contact;
 use fingertip::signal::design::Design;
 use fingertip::signal::loaded_design::LoadedDesign;
 use fingertip::status::Warnings;
-use host_tests::world::Xorshift;
 use model_tables::block::write::{TipData, sign};
 use model_tables::block::{BlockError, ENTRY, HEAD, StoredCalibration};
+use model_tables::random::Random;
 use model_tables::units::PressureRise;
 use std::collections::BTreeMap;
 
@@ -63,7 +63,7 @@ fn shipped() -> Vec<Vec<u8>> {
 }
 
 /// A block that nobody wrote.
-fn drawn(shipped: &[Vec<u8>], random: &mut Xorshift) -> Vec<u8> {
+fn drawn(shipped: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
     let mut block = shipped[random.below(shipped.len() as u64) as usize].clone();
     match random.below(8) {
         0 => block = (0..random.below(400)).map(|_| random.bits() as u8).collect(),
@@ -107,11 +107,11 @@ fn drawn(shipped: &[Vec<u8>], random: &mut Xorshift) -> Vec<u8> {
 }
 
 /// What a loaded design reads at rising inputs, everywhere in the word and next to each other.
-fn never_falls(design: &LoadedDesign, random: &mut Xorshift) {
+fn never_falls(design: &LoadedDesign, random: &mut Random) {
     let end = design.parameters().last_rise.0;
     let mut counts: Vec<i32> = (0..32)
         .flat_map(|_| {
-            let count = (random.share() * f64::from(end)) as i32;
+            let count = (random.unit() * f64::from(end)) as i32;
             [count, count + 1, random.bits() as i32]
         })
         .chain([i32::MIN, -1, 0, 1, end, i32::MAX])
@@ -133,7 +133,7 @@ fn what_nobody_wrote_is_refused_or_never_falls() {
     for block in &shipped {
         LoadedDesign::read(block).expect("the shipped designs can be loaded");
     }
-    let mut random = Xorshift::new(13);
+    let mut random = Random(13);
     let mut outcomes: BTreeMap<&str, u64> = BTreeMap::new();
     for _ in 0..blocks {
         let block = drawn(&shipped, &mut random);

@@ -11,9 +11,9 @@ use fingertip::signal::design::Design as _;
 use fingertip::units::Microseconds;
 use host_tests::nor_flash::{Defect, SimulatedFlash};
 use host_tests::tip_device::{loader, tip};
-use host_tests::world::Xorshift;
 use model_tables::block::read::stated;
 use model_tables::block::write::sign;
+use model_tables::random::Random;
 
 /// Room for a block of some hundred bytes.
 const SLOT: usize = 2048;
@@ -391,7 +391,7 @@ fn power_cuts_at_every_step_lose_and_mix_nothing() {
 #[test]
 fn lives_full_of_cuts_and_failures_never_show_another_tip() {
     for seed in 0..40 {
-        let mut random = Xorshift::new(seed);
+        let mut random = Random(seed);
         let mut flash = SimulatedFlash::<SLOT, DOUBLE_WORD>::erased(seed);
         let mut known = vec![(IMAGE, 0)];
         for number in 1..20_u64 {

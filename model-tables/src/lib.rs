@@ -78,7 +78,6 @@ pub mod model;
 #[cfg(feature = "std")]
 pub mod monotone;
 pub mod object;
-#[cfg(feature = "std")]
 pub mod random;
 pub mod solid;
 pub mod solver;

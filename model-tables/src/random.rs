@@ -14,6 +14,11 @@ impl Random {
         z ^ (z >> 31)
     }
 
+    /// Uniform from 0 to below `end`, which is above 0; off by less than `end / 2^64`.
+    pub fn below(&mut self, end: u64) -> u64 {
+        self.bits() % end
+    }
+
     /// Uniform in 0 .. 1.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
@@ -47,5 +52,19 @@ mod tests {
         let mut random = Random(1_234_567);
         assert_eq!(random.bits(), 6_457_827_717_110_365_317);
         assert_eq!(random.bits(), 3_203_168_211_198_807_973);
+    }
+
+    #[test]
+    fn deviates_have_the_moments_of_the_normal_distribution() {
+        let mut random = Random(7);
+        let n = 200_000;
+        let deviates: Vec<f64> = (0..n).map(|_| random.normal()).collect();
+        let moment = |power: i32| deviates.iter().map(|d| d.powi(power)).sum::<f64>() / f64::from(n);
+        // Five standard errors of each moment: sqrt(1/n), sqrt(2/n), sqrt(96/n).
+        assert!(moment(1).abs() < 5.0 * libm::sqrt(1.0 / f64::from(n)));
+        assert!((moment(2) - 1.0).abs() < 5.0 * libm::sqrt(2.0 / f64::from(n)));
+        assert!((moment(4) - 3.0).abs() < 5.0 * libm::sqrt(96.0 / f64::from(n)));
+        let inside = deviates.iter().filter(|d| d.abs() <= 2.0).count() as f64 / f64::from(n);
+        assert!((inside - 0.9545).abs() < 0.0025, "{inside}");
     }
 }

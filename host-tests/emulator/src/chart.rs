@@ -353,17 +353,17 @@ fn thinned(rows: &[Row]) -> impl Iterator<Item = &Row> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::Noise;
     use crate::plant::tests::{press, ramp};
     use fingertip::status::{Fault, Touch, Warnings};
+    use model_tables::random::Random;
 
     fn rows() -> (Vec<Row>, Contact) {
         let plant = press(8e3, ramp());
-        let mut noise = Noise::new(1);
+        let mut noise = Random(1);
         let rows = (0..600).map(|ms| {
             let time = f64::from(ms) * 1e-3;
             let truth = plant.truth(time);
-            let rise = truth.pressure_rise + 3.0 * noise.deviate();
+            let rise = truth.pressure_rise + 3.0 * noise.normal();
             let status = match ms {
                 0..80 => Status::Fault(Fault::Zeroing),
                 300..340 => Status::Warning(Warnings::SATURATED),

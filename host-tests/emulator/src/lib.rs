@@ -16,7 +16,6 @@ pub mod fingertip_design;
 pub mod image;
 pub mod inlined;
 mod ms5837;
-pub mod noise;
 pub mod output;
 pub mod plant;
 pub mod record;

@@ -1,9 +1,9 @@
 //! The fingertip, the plate that presses it and the transducer in its fluid: time to a voltage.
 
-use crate::noise::Noise;
 use crate::scenario::Scenario;
 use crate::transducer::{ElectricalOutput, EmulatedTransducer, Part, Wiring};
 use model_tables::curve::{Contact, Curve};
+use model_tables::random::Random;
 
 /// A report is made of samples up to one period before and after its time, and a part takes up to a period to measure one.
 const REACH: f64 = 1.5;
@@ -18,7 +18,7 @@ pub struct Plant {
     max_indentation: f64,
     transducer: EmulatedTransducer,
     scenario: Scenario,
-    noise: Noise,
+    noise: Random,
     /// Shares of reading of force and indentation that the tables may be off.
     tables_allowed: [f64; 2],
     /// A share of the largest indentation and its pressure rise: most of the time the plate stands still.
@@ -34,7 +34,7 @@ impl Plant {
         transducer: EmulatedTransducer,
         scenario: Scenario,
     ) -> Self {
-        let noise = Noise::new(scenario.seed);
+        let noise = Random(scenario.seed);
         Self {
             curve,
             rest_pressure,
@@ -60,7 +60,7 @@ impl Plant {
     #[must_use]
     pub fn through(&self, scenario: Scenario) -> Self {
         Self {
-            noise: Noise::new(scenario.seed),
+            noise: Random(scenario.seed),
             scenario,
             last: (0.0, 0.0),
             ..self.clone()
@@ -128,7 +128,7 @@ impl Plant {
     /// What the transducer does to the board at a time in seconds. Each call draws new noise.
     pub fn output(&mut self, time: f64) -> ElectricalOutput {
         // Drawn in every case, so that a fault leaves the noise after it as it would have been.
-        let noise = self.transducer.noise * self.noise.deviate();
+        let noise = self.transducer.noise * self.noise.normal();
         let share = self.scenario.indentation_share(time);
         if share.to_bits() != self.last.0.to_bits() {
             self.last = (share, self.truth(time).pressure_rise);

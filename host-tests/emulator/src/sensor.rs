@@ -4,8 +4,7 @@
 use crate::abp2::Abp2Chip;
 use crate::ms5837::{self, Ms5837Chip};
 use crate::transducer::{EmulatedTransducer, Part, Wiring};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
+use model_tables::random::Random;
 use rigless::chip::Timeline;
 use rigless::chip::dps310::{Dps310, Sdo};
 use rigless::chip::i2c::Peer;
@@ -50,7 +49,7 @@ pub(crate) struct Sensor {
     /// Looks at the flags that will find none.
     hidden: u8,
     starts: u64,
-    garbage: ChaCha8Rng,
+    garbage: Random,
 }
 
 impl Sensor {
@@ -83,7 +82,7 @@ impl Sensor {
             register: 0,
             hidden: 0,
             starts: 0,
-            garbage: ChaCha8Rng::seed_from_u64(0),
+            garbage: Random(0),
         })
     }
 
@@ -183,7 +182,7 @@ impl Peer for Sensor {
         };
         let byte = if self.lacks == Some(register) { 0 } else { byte };
         match self.wiring {
-            Wiring::Garbage => self.garbage.next_u32() as u8,
+            Wiring::Garbage => (self.garbage.bits() >> 56) as u8,
             // A line that nobody drives.
             Wiring::Wrong => 0xFF,
             Wiring::Slow if flags => byte & !READY,

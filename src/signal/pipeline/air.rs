@@ -4,6 +4,7 @@ use super::*;
 use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::{Status, Warnings};
 use model_tables::constants::{AIR, Quantity};
+use model_tables::random::Random;
 use proptest::prelude::*;
 
 const THINNEST: f64 = AIR[0] as f64;
@@ -18,7 +19,7 @@ struct Life {
     now: u64,
     /// Pascals.
     air: f64,
-    random: u64,
+    random: Random,
 }
 
 impl Life {
@@ -29,7 +30,7 @@ impl Life {
             pipeline: Pipeline::new(design, start_up, calibration, Warnings::NONE),
             now: 0,
             air,
-            random: 0x9E37_79B9_7F4A_7C15,
+            random: Random(1),
         }
     }
 
@@ -60,10 +61,7 @@ impl Life {
             constants, period, ..
         } = *self.pipeline.parameters();
         self.now += u64::from(period);
-        self.random ^= self.random << 13;
-        self.random ^= self.random >> 7;
-        self.random ^= self.random << 17;
-        let noise = (self.random % 4_000) as f64 / 1_000.0 - 2.0;
+        let noise = self.random.uniform(-2.0, 2.0);
         let air = if self.is_absolute() { self.air } else { 0.0 };
         let pascals = f64::from(constants.rest_pressure) + air + rise + noise;
         let millipascals = (pascals * 1000.0).round() as i32;

@@ -6,6 +6,7 @@ use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::{Status, Warnings};
 use crate::units::Millipascals;
 use model_tables::constants::Quantity;
+use model_tables::random::Random;
 
 /// Off by more with status ok is wrong, pascals.
 const WRONG: f64 = 70.0;
@@ -28,7 +29,7 @@ struct World {
     air: f64,
     /// Degrees Celsius, where the part measures it.
     celsius: Option<f64>,
-    random: u64,
+    random: Random,
     /// True rises of the last samples, newest first.
     truth: [f64; 4],
     /// The largest error of a steady reading with status ok, pascals.
@@ -49,7 +50,7 @@ impl World {
             now: 0,
             air: 80_000.0,
             celsius: None,
-            random: 0x9E37_79B9_7F4A_7C15,
+            random: Random(1),
             truth: [0.0; 4],
             worst_ok: 0.0,
             readings: 0,
@@ -76,10 +77,7 @@ impl World {
             constants, period, ..
         } = *self.pipeline.parameters();
         self.now += self.spacing;
-        self.random ^= self.random << 13;
-        self.random ^= self.random >> 7;
-        self.random ^= self.random << 17;
-        let noise = (self.random % 4_000) as f64 / 1_000.0 - 2.0;
+        let noise = self.random.uniform(-2.0, 2.0);
         let absolute = constants.transducer.quantity == Quantity::Absolute;
         let air = if absolute { self.air } else { 0.0 };
         let pascals = f64::from(constants.rest_pressure) + air + rise + shift + noise;

@@ -5,6 +5,7 @@ use super::*;
 use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::Status;
 use model_tables::constants::Quantity;
+use model_tables::random::Random;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
@@ -14,7 +15,7 @@ struct World {
     /// Microseconds.
     now: u64,
     spacing: u64,
-    random: u64,
+    random: Random,
     /// Pressure at rest without drift, pascals, as the part reads it.
     rest: f64,
     /// What the zero has drifted by, pascals, and how fast it does, pascals an hour.
@@ -39,7 +40,7 @@ impl World {
             spacing: u64::from(design.parameters().period),
             pipeline: Pipeline::new(design, StartUp::Measured, Calibration::default(), Warnings::NONE),
             now: 0,
-            random: random | 1,
+            random: Random(random),
             rest: f64::from(constants.rest_pressure) + if absolute { air } else { 0.0 },
             drifted: 0.0,
             drift: 0.0,
@@ -56,10 +57,7 @@ impl World {
     }
 
     fn share(&mut self) -> f64 {
-        self.random ^= self.random << 13;
-        self.random ^= self.random >> 7;
-        self.random ^= self.random << 17;
-        (self.random >> 11) as f64 / (1_u64 << 53) as f64
+        self.random.unit()
     }
 
     /// One sample at a true rise. The noise is white, and is let go of in the judgement.

@@ -2,16 +2,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Least squares with no negative unknown.
+/// The unknowns, none negative, for which `matrix * x` is nearest to `target`. Each set of free unknowns is solved by a QR
+/// decomposition of its columns, whose condition is the root of that of the normal equations. `None` where columns in use
+/// depend on each other.
 pub(super) fn non_negative(matrix: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f64>> {
-    let normal = matrix.transpose() * matrix;
-    let right = matrix.transpose() * target;
-    let n = normal.nrows();
-    let tolerance = 1e-10 * right.amax().max(f64::MIN_POSITIVE);
+    let n = matrix.ncols();
+    let tolerance = 1e-10 * matrix.tr_mul(target).amax().max(f64::MIN_POSITIVE);
     let mut passive: Vec<usize> = Vec::new();
     let mut x = DVector::zeros(n);
     for _ in 0..10 * n {
-        let gradient = &right - &normal * &x;
+        let gradient = matrix.tr_mul(&(target - matrix * &x));
         let Some(next) = (0..n)
             .filter(|k| !passive.contains(k) && gradient[*k] > tolerance)
             .max_by(|&a, &b| gradient[a].total_cmp(&gradient[b]))
@@ -20,10 +20,11 @@ pub(super) fn non_negative(matrix: &DMatrix<f64>, target: &DVector<f64>) -> Opti
         };
         passive.push(next);
         loop {
-            let size = passive.len();
-            let part = DMatrix::from_fn(size, size, |i, j| normal[(passive[i], passive[j])]);
-            let side = DVector::from_fn(size, |i, _| right[passive[i]]);
-            let solved = part.cholesky()?.solve(&side);
+            if passive.len() > matrix.nrows() {
+                return None;
+            }
+            let (q, r) = matrix.select_columns(&passive).qr().unpack();
+            let solved = r.solve_upper_triangular(&q.tr_mul(target))?;
             if solved.iter().all(|&value| value > 0.0) {
                 x.fill(0.0);
                 for (i, &k) in passive.iter().enumerate() {
