@@ -14,8 +14,8 @@ use fingertip::signal::zero::surroundings::Surroundings;
 use fingertip::status::{Fault, Warnings};
 use fingertip::transducer::driver::Sample;
 use fingertip::units::Millipascals;
-use host_tests::design;
 use host_tests::world::{World, full_scale, rest, sample};
+use host_tests::{design, workspace};
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{self, Generated};
 use model_tables::material::series::WallSeries;
@@ -24,11 +24,19 @@ use model_tables::table::Reading;
 use model_tables::table::law::Touched;
 use model_tables::units::PressureRise;
 
-/// The default design, unless the image was built for another one.
-fn generated() -> Option<Generated> {
-    let generated =
-        generate::from_design_file(&design("index-fingertip-elastic")).expect("the default design");
-    (ImageDesign::CONSTANTS.hash == generated.hash()).then_some(generated)
+/// The design of the image, solved anew.
+fn generated() -> Generated {
+    let path = std::env::var_os("FINGERTIP_DESIGN").map_or_else(
+        || design("index-fingertip-elastic"),
+        |path| workspace().join(path),
+    );
+    let generated = generate::from_design_file(&path).expect("the image was built from it");
+    assert_eq!(
+        ImageDesign::CONSTANTS.hash,
+        generated.hash(),
+        "the image is of another design"
+    );
+    generated
 }
 
 /// The reviewed tables and wall of the design that relaxes, as they fold into an image.
@@ -71,9 +79,7 @@ fn loaded(block: &[u8]) -> LoadedDesign<'_> {
 
 #[test]
 fn a_loaded_design_is_that_of_the_image() {
-    let Some(generated) = generated() else {
-        return;
-    };
+    let generated = generated();
     let block = generated.binary();
     let loaded = loaded(&block);
     assert_eq!(loaded.parameters(), ImageDesign.parameters());
@@ -126,18 +132,14 @@ fn life<D: Design + Copy>(design: D, seed: u64) -> (Vec<Report>, Vec<Message>) {
 
 #[test]
 fn reports_of_a_loaded_design_are_those_of_the_image() {
-    let Some(generated) = generated() else {
-        return;
-    };
+    let generated = generated();
     same_lives(&generated.binary(), ImageDesign);
 }
 
 /// The design of a board that a tip can be loaded onto, with its own tables and with the same ones loaded.
 #[test]
 fn reports_of_a_board_that_takes_a_tip_are_those_of_the_image() {
-    let Some(generated) = generated() else {
-        return;
-    };
+    let generated = generated();
     let block = generated.binary();
     for design in [TipDesign::Image(ImageDesign), TipDesign::Loaded(loaded(&block))] {
         assert_eq!(life(design, 7), life(ImageDesign, 7));

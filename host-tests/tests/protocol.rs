@@ -148,16 +148,32 @@ fn the_page_names_every_code() {
     }
 }
 
+/// What came of Python, or nothing where there is none: these tests need nothing but Rust. With `FINGERTIP_REQUIRE_PYTHON`, as in
+/// `.ci/run`, that is a failure.
+fn python<T>(run: std::io::Result<T>) -> Option<T> {
+    match run {
+        Ok(run) => Some(run),
+        Err(error) => {
+            assert!(
+                std::env::var_os("FINGERTIP_REQUIRE_PYTHON").is_none(),
+                "python3: {error}"
+            );
+            eprintln!("no python3: not tested");
+            None
+        }
+    }
+}
+
 /// Runs the reader, or nothing where there is no Python.
 fn reader(arguments: &[&str], input: &[u8]) -> Option<Vec<u8>> {
     let script = workspace().join("host-tests/scripts/read_frames.py");
-    let mut child = Process::new("python3")
+    let child = Process::new("python3")
         .arg(script)
         .args(arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
-        .spawn()
-        .ok()?;
+        .spawn();
+    let mut child = python(child)?;
     let mut stdin = child.stdin.take().expect("it is piped");
     stdin.write_all(input).expect("the reader reads");
     drop(stdin);
@@ -174,7 +190,6 @@ fn the_reader_in_python_reads_what_the_firmware_sends() {
         stream.extend(example(what));
     }
     let Some(output) = reader(&[], &stream) else {
-        eprintln!("no python3: not tested");
         return;
     };
     let text = String::from_utf8(output).expect("it is text");
@@ -241,8 +256,7 @@ fn the_reader_in_python_refuses_on_one_line_what_the_board_would_refuse() {
         (&["--encode"], "needs KIND SEQUENCE"),
         (&["no/such/port"], "No such file"),
     ] {
-        let Ok(output) = Process::new("python3").arg(&script).args(arguments).output() else {
-            eprintln!("no python3: not tested");
+        let Some(output) = python(Process::new("python3").arg(&script).args(arguments).output()) else {
             return;
         };
         let error = String::from_utf8_lossy(&output.stderr);
@@ -339,7 +353,6 @@ fn the_reader_in_python_has_a_word_for_every_code() {
     }
     let stream: Vec<u8> = lines_wanted.iter().flat_map(|(bytes, _)| bytes.clone()).collect();
     let Some(lines) = reader(&[], &stream) else {
-        eprintln!("no python3: not tested");
         return;
     };
     let lines = String::from_utf8(lines).expect("it is text");
@@ -368,8 +381,7 @@ fn the_program_of_the_guide_prints_forces_and_reasons() {
         .current_dir(workspace())
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .output();
-    let Ok(output) = output else {
-        eprintln!("no python3: not tested");
+    let Some(output) = python(output) else {
         return;
     };
     assert!(

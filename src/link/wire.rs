@@ -262,6 +262,15 @@ mod tests {
         assert_eq!(unstuff(&[4, 1, 2, 3]), Err(DecodeError::Crc));
     }
 
+    /// A reader that ends at the first zero would take the frame and lose what follows.
+    #[test]
+    fn a_frame_with_a_zero_and_more_behind_it_is_no_frame() {
+        let frame = [1, 1, 3, 0x0F, 0x1D];
+        assert_eq!(unstuff(&frame).expect("it is one").as_slice(), [0, 0]);
+        let longer = [frame.as_slice(), &[0, 9, 7]].concat();
+        assert_eq!(unstuff(&longer), Err(DecodeError::Stuffing));
+    }
+
     proptest! {
         #[test]
         fn stuffing_is_what_the_cobs_crate_gives(body in prop::collection::vec(prop_oneof![Just(0_u8), any::<u8>()], 0..=MAXIMUM_BODY)) {

@@ -356,7 +356,7 @@ fn the_truth_of_the_contest_is_known_to_ten_digits_and_agrees_with_shooting() {
 }
 
 #[test]
-fn the_contest_times_what_it_solves() {
+fn the_benchmark_times_what_it_solves() {
     let sweep = Sweep::new(&DESIGNS[0]).expect("every state");
     let methods = [
         benchmark::Method::Collocation {
@@ -370,7 +370,7 @@ fn the_contest_times_what_it_solves() {
     };
     assert!(ours.failure.is_none() && ours.found == benchmark::STATES && ours.worst < 1e-4);
     assert!(ours.seconds > 0.0 && ours.median <= ours.worst);
-    assert!(light.failure.is_some() && light.found < benchmark::STATES && light.seconds < ours.seconds);
+    assert!(light.failure.is_some() && light.found < benchmark::STATES);
 }
 
 #[test]

@@ -181,6 +181,8 @@ fn check(run: &Run, fault: &WireFault) {
     let (must, may) = reasons(run.kind, fault.is);
     let about = format!("{}, {:?}: {reported:?}", run.kind, fault.is);
     assert!(must.iter().all(|fault| reported.contains(fault)), "{about}");
+    // Bytes of chance have one reason or another, and one at least.
+    assert!(fault.is != Wiring::Garbage || !reported.is_empty(), "{about}");
     // A start of the part that was broken off may leave another reason once, at the edges.
     assert!(reported.iter().all(|fault| may.contains(fault)), "{about}");
     assert!(back < run.recovery(), "{about}: {back} s");
