@@ -93,7 +93,7 @@ def describe(body):
         if cause >= len(CAUSES) or stored >= len(STORED) or last >= len(LAST):
             raise ValueError("field")
         return head + (f"hello, firmware {firmware}, reset by {CAUSES[cause]}, design {design:016x}, tables {tables}, a report "
-                       f"each {period} us, stored {STORED[stored]} ({saved}), before: {LAST[last]} {where:#x}, {resets} "
+                       f"each {period} us, stored: {STORED[stored]} ({saved}), before: {LAST[last]} {where:#x}, {resets} "
                        f"resets in a row; {lost} samples lost, {outliers} outliers, {frames} frames dropped, {refused} refused")
     if kind == 7:
         command_sequence, offset = struct.unpack_from("<HI", body, 14)

@@ -167,7 +167,7 @@ def sweep(membrane, indentations, tolerance):
 
 
 def chart(design):
-    """Ours: rows of the contest, and the sweep's indentations and forces."""
+    """Ours: rows of the benchmark, and the sweep's indentations and forces."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(["cargo", "designer", "chart", design, "--out", folder], cwd=ROOT, check=True,
                        stdout=subprocess.DEVNULL)
@@ -185,8 +185,8 @@ def main():
     arguments = words.parse_args()
     tolerances = [float(text) for text in arguments.tolerances.split(",")]
 
-    contest, states = chart(arguments.design)
-    contests = [contest]
+    benchmark, states = chart(arguments.design)
+    contests = [benchmark]
     indentations = [float(row["indentation_mm"]) * 1e-3 for row in states]
     truth = np.array([float(row["force_n"]) for row in states])
     membrane = Membrane(**DESIGNS[arguments.design])

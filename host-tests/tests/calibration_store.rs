@@ -195,7 +195,7 @@ fn spoilt(saves: i32, number: usize, unit: usize) -> SimulatedFlash<SLOT, DOUBLE
 }
 
 #[test]
-fn a_record_that_cannot_be_read_leaves_the_one_before_and_is_said() {
+fn a_record_that_cannot_be_read_leaves_the_one_before_and_is_reported() {
     for saves in [1, 5, 8, 9, 16, 17] {
         for unit in 0..LENGTH / DOUBLE_WORD {
             let flash = spoilt(saves, saves as usize - 1, unit);
@@ -238,7 +238,7 @@ fn a_later_save_stays_the_last_when_a_lost_record_comes_back() {
 }
 
 #[test]
-fn one_rotten_bit_of_the_last_record_is_said_too() {
+fn one_rotten_bit_of_the_last_record_is_reported_too() {
     let flashes = histories::<SLOT, WORD>(5);
     for bit in 0..8 * LENGTH {
         let mut flash = flashes[5].clone();
@@ -284,7 +284,7 @@ fn a_rotten_bit_of_the_last_record_never_brings_back_an_older_one_unsaid() {
 }
 
 #[test]
-fn nothing_but_places_that_cannot_be_read_is_said_and_written_over() {
+fn nothing_but_places_that_cannot_be_read_is_reported_and_written_over() {
     let mut flash = histories::<SLOT, DOUBLE_WORD>(16)[16].clone();
     for place in 0..16 {
         flash = flash.spoilt_at(place * LENGTH);
@@ -376,7 +376,7 @@ fn what_was_stored_can_be_made_void() {
 }
 
 #[test]
-fn both_slots_damaged_are_said_so_and_written_again() {
+fn both_slots_damaged_are_reported_so_and_written_again() {
     let flashes: Vec<Flash> = histories(10);
     let mut flash = flashes[10].clone();
     for (i, byte) in flash.bytes_mut().iter_mut().enumerate() {

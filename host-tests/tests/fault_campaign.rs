@@ -197,7 +197,7 @@ fn random_lives_with_random_faults() {
 }
 
 #[test]
-fn a_still_press_at_power_up_is_said_or_small() {
+fn a_still_press_at_power_up_is_reported_or_small() {
     let mut largest = 0.0_f64;
     let mut presses = 0;
     for pascals in (0..3_000).step_by(10) {

@@ -334,7 +334,7 @@ fn approximations_are_measured_over_the_press_that_is_asked_about() {
 }
 
 #[test]
-fn the_truth_of_the_contest_is_known_to_ten_digits_and_agrees_with_shooting() {
+fn the_truth_of_the_benchmark_is_known_to_ten_digits_and_agrees_with_shooting() {
     for design in &DESIGNS {
         let sweep = Sweep::new(design).expect("every state");
         assert!(

@@ -254,7 +254,7 @@ fn what_cannot_be_is_refused() {
 }
 
 #[test]
-fn what_the_model_does_not_explain_is_said_to_have_an_order() {
+fn what_the_model_does_not_explain_is_reported_to_have_an_order() {
     let rows: Vec<[f64; 3]> = press(&design(TRUTH), &depths(24))
         .into_iter()
         .map(|[h, f, p]| [h, f * (1.0 + 0.3 * (3.0 * h).sin()), p])

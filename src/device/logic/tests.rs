@@ -115,7 +115,7 @@ fn a_report_each_period_and_a_hello_each_second() {
 }
 
 #[test]
-fn at_a_lower_rate_a_change_of_status_is_still_said_at_once() {
+fn at_a_lower_rate_a_change_of_status_is_still_reported_at_once() {
     let mut bench = Bench::zeroed();
     bench.ask(Command::Rate { every: 100 });
     assert_eq!(bench.answers(), [(CommandKind::Rate, Outcome::Done, 0)]);

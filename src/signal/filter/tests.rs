@@ -44,7 +44,7 @@ fn what_noise_makes_comes_out_as_one_two_one() {
 }
 
 #[test]
-fn one_wild_sample_leaves_no_trace_whatever_its_size() {
+fn one_outlier_sample_leaves_no_trace_whatever_its_size() {
     for outlier in [100, 400, 5_000, 1 << 30, i32::MIN, i32::MAX] {
         let mut filter = Filter::new(STEP_LIMITS);
         let outcomes: Vec<_> = [8, 8, 8, outlier, 8, 8, 8]
@@ -68,7 +68,7 @@ fn one_wild_sample_leaves_no_trace_whatever_its_size() {
 }
 
 #[test]
-fn a_press_that_starts_at_once_is_not_wild() {
+fn a_press_that_starts_at_once_is_not_outlier() {
     assert_eq!(
         filtered(&[0, 0, 0, 500, 500, 500])[2..],
         [Ok(0), Ok(0), Ok(500), Ok(500)]
@@ -97,7 +97,7 @@ fn a_ramp_that_begins_anywhere_within_a_block_is_read_throughout() {
 }
 
 #[test]
-fn the_turn_of_a_fast_tap_is_not_wild() {
+fn the_turn_of_a_fast_tap_is_not_outlier() {
     assert_eq!(
         filtered(&[0, 300, 600, 300, 0, 0])[2..],
         [Ok(300), Ok(600), Ok(300), Ok(0)]
@@ -105,7 +105,7 @@ fn the_turn_of_a_fast_tap_is_not_wild() {
 }
 
 #[test]
-fn a_wild_sample_on_a_ramp_leaves_no_trace() {
+fn an_outlying_sample_on_a_ramp_leaves_no_trace() {
     for outlier in [85, 100, -85, -100, 5_000, -5_000] {
         let mut ramp: Vec<i32> = (0..8).map(|i| i * 90).collect();
         ramp[4] += outlier;
@@ -115,7 +115,7 @@ fn a_wild_sample_on_a_ramp_leaves_no_trace() {
 }
 
 #[test]
-fn a_leap_no_press_makes_has_no_number_until_it_has_stood_for_eight_blocks() {
+fn a_step_no_press_makes_has_no_number_until_it_has_stood_for_eight_blocks() {
     let mut rises = vec![0; 4];
     rises.extend([2_000; 12]);
     let outcomes = filtered(&rises);

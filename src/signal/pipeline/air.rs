@@ -250,7 +250,7 @@ fn an_unverified_zero_of_an_absolute_transducer_may_be_off_by_most_of_the_air() 
 }
 
 #[test]
-fn a_climb_is_no_leak_and_is_said_until_a_tare() {
+fn a_climb_is_no_leak_and_is_reported_until_a_tare() {
     // From the coast to 4200 m in ten minutes.
     let seconds = 600.0;
     let mut life = Life::zeroed(4, DENSEST);
@@ -289,7 +289,7 @@ fn lower_than_the_thinnest_air_allows_is_a_leak() {
 }
 
 #[test]
-fn a_zero_that_the_air_has_left_behind_is_said_and_gives_way_to_a_tare() {
+fn a_zero_that_the_air_has_left_behind_is_reported_and_gives_way_to_a_tare() {
     let mut life = Life::zeroed(4, 90_000.0);
     // Down a hill within a minute: denser air, which is no press.
     life.run(60.0, |since| 50.0 * since);

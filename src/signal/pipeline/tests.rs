@@ -113,7 +113,7 @@ fn beyond_the_tables_and_beyond_the_transducer_read_as_lower_bounds() {
 }
 
 #[test]
-fn powered_up_while_pressed_is_said_so() {
+fn powered_up_while_pressed_is_reported_so() {
     let mut bench = Bench::new(StartUp::Measured);
     let report = bench.steps(2_100, Ok(at(30_000.0)));
     assert_eq!(report.status().to_string(), "warning: zero unverified");
@@ -126,7 +126,7 @@ fn powered_up_while_pressed_is_said_so() {
 }
 
 #[test]
-fn a_pressure_below_the_zero_is_said_so() {
+fn a_pressure_below_the_zero_is_reported_so() {
     let mut bench = Bench::zeroed();
     let report = bench.steps(5, Ok(at(19_000.0)));
     assert_eq!(report.status().to_string(), "warning: below zero; zero aged");
@@ -249,7 +249,7 @@ fn temperature_is_compensated_untouched_and_held_in_contact() {
 }
 
 #[test]
-fn what_is_stored_is_the_zero_that_serves_and_serves_at_the_next_start() {
+fn what_is_stored_is_the_zero_that_is_in_use_and_is_in_use_at_the_next_start() {
     let mut bench = Bench::zeroed();
     bench.steps(50, Ok(at(20_100.0)));
     let calibration = bench.pipeline.calibration_to_store().expect("it is verified");
@@ -310,7 +310,7 @@ fn what_stands_since_start_up_qualifies_every_reading_until_it_is_seen_to() {
 }
 
 #[test]
-fn softer_than_the_model_at_a_known_indentation_is_said_so() {
+fn softer_than_the_model_at_a_known_indentation_is_reported_so() {
     let mut bench = Bench::zeroed();
     let read = bench
         .steps(12, Ok(at(21_100.0)))

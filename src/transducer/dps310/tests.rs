@@ -126,7 +126,7 @@ fn every_transaction_that_fails_is_a_fault_and_passes() {
 }
 
 #[test]
-fn another_part_at_the_address_is_said_so() {
+fn another_part_at_the_address_is_reported_so() {
     // A BMP280 says 0x58 at another register; here it reads 0. An undriven line reads ones.
     for identity in [0x00, 0x58, 0x11, 0xFF] {
         let steps = [read(&[0x0D], [identity])];

@@ -66,7 +66,7 @@ fn held(record: &Recording) -> (f64, Vec<Status>) {
 }
 
 #[test]
-fn a_stored_calibration_serves() {
+fn a_stored_calibration_is_in_use() {
     let record = run(design().hash());
     let hello = record.hellos.last().expect("it greets");
     assert_eq!((hello.stored, hello.stored_sequence), (Stored::InUse, 1));
@@ -82,7 +82,7 @@ fn a_stored_calibration_serves() {
 }
 
 #[test]
-fn another_designs_calibration_is_refused_and_said() {
+fn another_designs_calibration_is_refused_and_reported() {
     let record = run(!design().hash());
     let hello = record.hellos.last().expect("it greets");
     assert_eq!(hello.stored, Stored::OtherDesign);

@@ -22,8 +22,8 @@ pub(super) struct TimedPress {
     pressure_rise: f64,
     force: f64,
     indentation: f64,
-    said_force: f64,
-    said_indentation: f64,
+    stated_force: f64,
+    stated_indentation: f64,
 }
 
 /// The presses of a design whose wall relaxes; none where it has no press in time.
@@ -49,8 +49,8 @@ pub(super) fn presses(file: &DesignFile, generated: &Generated) -> Vec<TimedPres
             pressure_rise,
             force: instant.force,
             indentation: instant.indentation,
-            said_force: reading.force.newtons(),
-            said_indentation: reading.indentation.metres(),
+            stated_force: reading.force.newtons(),
+            stated_indentation: reading.indentation.metres(),
         })
     };
     TIMES.into_iter().map_while(press).collect()
@@ -80,11 +80,11 @@ pub(super) fn section(presses: &[TimedPress]) -> Markup {
                                 td { (SECONDS.say(press.seconds)) }
                                 td.value { (KPA.say(press.pressure_rise)) }
                                 td.value { (NEWTON.say(press.force)) }
-                                td.value { (NEWTON.say(press.said_force)) }
-                                td.value { (error(press.said_force, press.force)) }
+                                td.value { (NEWTON.say(press.stated_force)) }
+                                td.value { (error(press.stated_force, press.force)) }
                                 td.value { (MM.say(press.indentation)) }
-                                td.value { (MM.say(press.said_indentation)) }
-                                td.value { (error(press.said_indentation, press.indentation)) }
+                                td.value { (MM.say(press.stated_indentation)) }
+                                td.value { (error(press.stated_indentation, press.indentation)) }
                             }
                         }
                     }
