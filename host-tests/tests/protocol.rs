@@ -337,7 +337,7 @@ fn the_reader_in_python_has_a_word_for_every_code() {
         };
         lines_wanted.push((
             framed(Message::Hello(hello)),
-            format!("stored {word}").replace("other", "another"),
+            format!("stored: {word}").replace("other", "another"),
         ));
     }
     for ((last_fault, _), word) in

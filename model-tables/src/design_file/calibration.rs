@@ -25,7 +25,7 @@ pub struct Calibration {
     pub pole_stretch: Option<f64>,
     /// Replaces `[fluid] compliance_mm3_per_kpa`, cubic millimetres per kilopascal; `None`: the design's.
     pub compliance_mm3_per_kpa: Option<f64>,
-    /// What the transducer reads of a pascal.
+    /// Pascals that the transducer reads per pascal, dimensionless.
     pub pressure_gain: f64,
     /// What the bench's pressure rise reads at rest, kilopascals.
     pub pressure_offset_kpa: f64,

@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 pub struct Motions {
     /// One standard deviation of a sample's white noise.
     pub noise: f64,
-    /// Steps of the part's word.
+    /// Steps of the part's word, pascals.
     pub step: f64,
     /// Largest drift of the part, pascals an hour.
     pub drift: f64,
