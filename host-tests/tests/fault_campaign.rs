@@ -169,9 +169,13 @@ fn live(seed: u64, tally: &mut Tally) {
                 "seed {seed}: off by {off} at {} ({fault:?})",
                 world.now
             );
-            if let (None, Some(ended)) = (fault, ended.take()) {
-                tally.slowest_recovery = tally.slowest_recovery.max(world.now - ended);
-            }
+        }
+        // A reading, be it qualified for another reason: a zero that has aged stays so.
+        if fault.is_none()
+            && report.outcome.is_ok()
+            && let Some(ended) = ended.take()
+        {
+            tally.slowest_recovery = tally.slowest_recovery.max(world.now - ended);
         }
         if let (Some((Verb::Off, _)), Err(fault)) = (fault, report.outcome) {
             assert_eq!(fault, Fault::SensorAbsent);
