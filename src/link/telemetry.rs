@@ -1,7 +1,7 @@
 //! What the board says: a report each period, a hello once a second, an answer to each command. `PROTOCOL.md` beside
 //! this file has the layout of every body.
 //!
-//! A frame of another version, an unknown kind, code or length is refused as a whole: none of it is a number.
+//! A frame of another version, an unknown kind, code or length is discarded as a whole.
 
 use crate::link::command::{CommandKind, Outcome};
 #[cfg(feature = "load-tip")]

@@ -290,7 +290,7 @@ impl<D: Design> Pipeline<D> {
         self.wall = D::Wall::NEW;
     }
 
-    /// Someone says that nothing presses: takes a new zero if it may be one. What came of it is asked with
+    /// The host asserts that the fingertip is unloaded: takes a new zero if it may be one. What came of it is asked with
     /// [`Pipeline::take_tare_answer`].
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 /// Every key with its meaning, for the help.
 pub(crate) const HELP: [(&str, &str); 17] = [
-    ("t", "tare: nothing presses, take a new zero"),
+    ("t", "tare: the fingertip is unloaded, take a new zero"),
     ("u", "undo the last tare"),
     ("s", "save zero and gain in the board"),
     ("g", "save another gain, parts in a million"),

@@ -34,7 +34,7 @@ impl Life {
         }
     }
 
-    /// Switched on with nothing stored and told that nothing presses.
+    /// Switched on with nothing stored, and tared unloaded.
     fn zeroed(transducer: usize, air: f64) -> Self {
         let mut life = Self::new(transducer, StartUp::Measured, Calibration::default(), air);
         life.run(3.0, |_| 0.0);
@@ -47,7 +47,7 @@ impl Life {
         self.pipeline.parameters().constants.transducer.quantity == Quantity::Absolute
     }
 
-    /// What a start says until someone says that nothing presses.
+    /// The status of a start until a tare.
     fn unverified(&self) -> Status {
         if self.is_absolute() {
             Status::Warning(Warnings::ZERO_UNVERIFIED)

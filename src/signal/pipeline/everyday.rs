@@ -58,7 +58,7 @@ impl World {
         }
     }
 
-    /// Switched on untouched, nothing stored, and told that nothing presses.
+    /// Switched on untouched, nothing stored, and tared.
     fn tared(transducer: usize) -> Self {
         Self::tared_of(Linear::with(TRANSDUCERS[transducer]))
     }

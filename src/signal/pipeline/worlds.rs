@@ -206,7 +206,7 @@ proptest! {
     }
 }
 
-/// A day of use: told once that nothing presses, then twenty-four hours of grasps of all sizes, light touches and rests.
+/// A day of use: tared once, then twenty-four hours of grasps of all sizes, light touches and rests.
 #[test]
 fn a_gauge_part_is_ok_for_most_of_a_day() {
     let mut world = World::new(0, 0.0, 3);

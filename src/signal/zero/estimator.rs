@@ -176,7 +176,7 @@ impl Estimator {
         }
     }
 
-    /// Someone says that nothing presses: takes a new zero if the limits let it. The answer comes through
+    /// The host asserts that the fingertip is unloaded: takes a new zero if the limits let it. The answer comes through
     /// [`Estimator::take_answer`] within [`PATIENCE`] of the next sample.
     ///
     /// # Errors

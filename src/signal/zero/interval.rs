@@ -177,7 +177,7 @@ impl Interval {
         }
     }
 
-    /// The zero that this level makes when someone says that nothing presses. What lies over all that is known stays in the
+    /// The zero that this level makes when the host asserts that the fingertip is unloaded. What lies over all that is known stays in the
     /// bound.
     pub(super) fn taken(&self, limits: &Limits, pressure: Pressure) -> Self {
         let (seen, margin) = (level(pressure.0), level(limits.margin));

@@ -26,7 +26,7 @@ pub enum TareRefusal {
 /// A zero that is being measured.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measuring {
-    /// Someone says that nothing presses, and waits for an answer.
+    /// The host asserts that the fingertip is unloaded, and waits for an answer.
     pub(super) commanded: bool,
     /// Over a zero that was ok then: it is not given up for one that is not.
     pub(super) over_ok: bool,

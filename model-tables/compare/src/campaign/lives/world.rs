@@ -303,7 +303,7 @@ impl<'a> LifeWorld<'a> {
         }
     }
 
-    /// Someone says that nothing presses, and is right.
+    /// The host tares, and the fingertip is unloaded.
     pub fn tare(&mut self) {
         if self.pipeline.tare().is_err() {
             return;
