@@ -27,8 +27,12 @@ const LARGEST_TRAVEL: f64 = 2.5e-3;
 /// Largest distance of a node from where a step is expected to lead it, over the height. Its way within the step bends by less than a quarter of
 /// this.
 const LARGEST_BEND: f64 = 6e-4;
-/// Travel of the first step after the plate's speed has changed, over the largest.
+/// Travel of the first step that leads to the wall, over the largest: the contact is then smaller than an element, and smaller still it is lost
+/// in the energy's tolerance.
 const FIRST_TRAVEL: f64 = 1.0 / 16.0;
+/// The first step after the plate's speed has changed in contact: its travel over the largest, its length in time over the step before. The fast
+/// terms of the series follow a turn at once, also where the plate then stands still.
+const AFTER_TURN: f64 = 1.0 / 64.0;
 /// Most growth of a step from one to the next.
 const LARGEST_GROWTH: f64 = 2.0;
 /// Change of speed, over the greater of both, from which on the motion begins anew.
@@ -261,7 +265,13 @@ impl History {
         };
         let speed = (to - from) / whole;
         if (speed - self.speed).abs() > TURN * speed.abs().max(self.speed.abs()) {
-            self.next.travel = FIRST_TRAVEL * LARGEST_TRAVEL * self.height;
+            let largest = LARGEST_TRAVEL * self.height;
+            if self.force > 0.0 {
+                self.next.travel = AFTER_TURN * largest;
+                self.next.seconds = self.next.seconds.min(AFTER_TURN * self.seconds);
+            } else {
+                self.next.travel = FIRST_TRAVEL * largest;
+            }
         }
         self.speed = speed;
         let mut done = 0.0;
