@@ -91,6 +91,14 @@ fn nearest<'a>(key: &str, allowed: &'a str) -> Option<&'a str> {
         .map(|(_, name)| name)
 }
 
+/// Shortest name of which one letter more, less or other is a slip: `c1_pa` and `c2_pa` are two names.
+const MIN_LENGTH: usize = 8;
+
+/// Whether a key of a file is a slip of the one that is missing.
+pub(super) fn is_slip(found: &str, missing: &str) -> bool {
+    missing.len() >= MIN_LENGTH && strsim::damerau_levenshtein(found, missing) == 1
+}
+
 /// Line breaks and runs of spaces become single spaces.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")

@@ -1,7 +1,7 @@
 //! Reading one table of a design file: typed values, and the keys that nobody asked for.
 
 use super::bounds::Bounds;
-use super::error::Problem;
+use super::error::{Problem, is_slip};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -292,6 +292,17 @@ impl<'a> Section<'a> {
 
     /// `key` is missing here.
     pub fn missing(&self, key: &str, allowed: &str) -> KeyFault {
+        let slip = self.table.keys().find(|found| {
+            let found = found.get_ref().as_ref();
+            !self.known.contains(&found) && is_slip(found, key)
+        });
+        if let Some(slip) = slip {
+            let problem = Problem::Unknown {
+                key: self.full(slip.get_ref()),
+                allowed: key.to_owned(),
+            };
+            return (Some(self.line_at(slip.span().start)), problem);
+        }
         let problem = Problem::Missing {
             key: self.full(key),
             allowed: allowed.to_owned(),

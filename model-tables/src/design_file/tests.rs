@@ -413,6 +413,7 @@ const IMPOSSIBLE: &[(&str, &str, &str)] = &[
     ("\"ratiometric\"", "\"dps310\"", "transducer.range_kpa"),
     ("\"ratiometric\"", "\"ms5837-02ba\"", "transducer.range_kpa"),
     ("[0, 400.0]", "[0, 2500.0]", "transducer.range_kpa"),
+    ("[0, 400.0]", "[-20, 1999.0]", "transducer.range_kpa"),
     (
         "resolution_pa",
         "quantity = \"differential\"\nresolution_pa",

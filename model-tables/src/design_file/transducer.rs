@@ -9,6 +9,7 @@ pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, 
     const KINDS: &str = "\"ratiometric\", \"abp2\", \"ms5837-02ba\" or \"dps310\"";
     // No gauge pressure lies below a vacuum; the firmware counts millipascals in 31 bits.
     const RANGE: Bounds = Bounds::within(-101.325, 2_000.0, "kPa");
+    const WIDEST_KPA: f64 = 2_000.0;
     const FINENESS: Bounds = Bounds::above(0.0, 1e6, "Pa");
     let kind = match section.needed_text("kind", KINDS)? {
         "ratiometric" => TransducerKindSection::Ratiometric {
@@ -42,6 +43,9 @@ pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, 
     let range_kpa = section.needed_pair("range_kpa", RANGE)?;
     if quantity == Quantity::Absolute {
         fits_the_air(&section, &kind, range_kpa)?;
+    }
+    if range_kpa[1] - range_kpa[0] > WIDEST_KPA {
+        return Err(section.refuse("range_kpa", "two increasing numbers at most 2000 kPa apart"));
     }
     let resolution_pa = section.needed_number("resolution_pa", FINENESS)?;
     if resolution_pa >= 1e3 * (range_kpa[1] - range_kpa[0]) {

@@ -40,6 +40,7 @@ use std::fmt::Display;
 use std::io::{IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 
 /// Solves fingertip designs and makes their tables.
 #[derive(Debug, Parser)]
@@ -179,6 +180,9 @@ pub fn main() -> ExitCode {
     });
     match run(&arguments.command, format) {
         Ok(notes) => {
+            for remark in REMARKS.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+                eprintln!("{remark}");
+            }
             for note in notes {
                 eprintln!("note: {note}");
             }
@@ -235,9 +239,16 @@ fn print(text: &str) -> Result<(), Refusal> {
         .map_err(|error| Refusal(format!("standard output took only a part of the answer: {error}")))
 }
 
+/// Lines about an answer, printed once it is given: a refusal is one line alone.
+static REMARKS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+fn remark(line: String) {
+    REMARKS.lock().unwrap_or_else(PoisonError::into_inner).push(line);
+}
+
 /// One line of warning on standard error, about an answer that is given.
 fn warn(file: &Path, warning: &dyn Display) {
-    eprintln!("warning: {}: {warning}", file.display());
+    remark(format!("warning: {}: {warning}", file.display()));
 }
 
 /// Warns where the law is not stable over a state, `which` of them in words.
@@ -300,13 +311,13 @@ fn read(design: &Path) -> Result<DesignFile, Refusal> {
     let file = DesignFile::read(design).map_err(Refusal::of)?;
     let axes = &file.membrane;
     if axes.axial_semi_axis_mm > axes.radial_semi_axis_mm {
-        eprintln!(
+        remark(format!(
             "note: {}: membrane.axial_semi_axis_mm, {}, is more than radial_semi_axis_mm, {}: a dome that is higher than it is \
              wide; are the two swapped?",
             design.display(),
             axes.axial_semi_axis_mm,
             axes.radial_semi_axis_mm
-        );
+        ));
     }
     Ok(file)
 }

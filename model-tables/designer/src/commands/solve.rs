@@ -148,15 +148,20 @@ fn solid(
     Ok(CommandAnswer { rows, notes })
 }
 
+/// Pressure rise of another state from which on it is one, pascals.
+const MIN_OTHER_RISE: f64 = 1e-2;
+
 /// A note on the first of the states beside which another is in balance.
 fn other_state(
     press: &mut solid::press::Press,
     contacts: &[Contact],
     calibration: &Calibration,
 ) -> Option<String> {
+    // At first touch every shape of the wall is in balance, with no pressure.
     let other = contacts
         .iter()
-        .find_map(|contact| press.other_state(contact.indentation).ok().flatten())?;
+        .filter_map(|contact| press.other_state(contact.indentation).ok().flatten())
+        .find(|other| other.contact.pressure_rise.abs() > MIN_OTHER_RISE)?;
     let stays = if other.is_stable {
         ""
     } else {
