@@ -9,6 +9,7 @@ pub mod world;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// The page of measured figures.
 const MEASURED: &str = "host-tests/MEASURED.md";
@@ -29,6 +30,25 @@ pub fn design(name: &str) -> PathBuf {
         .join("model-tables/designs")
         .join(name)
         .with_extension("toml")
+}
+
+/// Python of 3.11 or newer; `None` where there is none, as these tests need nothing but Rust.
+///
+/// # Panics
+/// If there is none and `FINGERTIP_REQUIRE_PYTHON` is set, as in `.ci/run`.
+pub fn python3() -> Option<Command> {
+    let new = Command::new("python3")
+        .args(["-c", "import sys; sys.exit(sys.version_info < (3, 11))"])
+        .status();
+    if new.is_ok_and(|status| status.success()) {
+        return Some(Command::new("python3"));
+    }
+    assert!(
+        std::env::var_os("FINGERTIP_REQUIRE_PYTHON").is_none(),
+        "there is no python3 of 3.11 or newer"
+    );
+    eprintln!("no python3 of 3.11 or newer: not tested");
+    None
 }
 
 /// Asserts that the README says `line`.

@@ -6,12 +6,12 @@ use fingertip::link::telemetry::{self, Frame, Hello, Message};
 use fingertip::signal::report::{Measurement, Report};
 use fingertip::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings};
 use fingertip::units::Microseconds;
-use host_tests::workspace;
+use host_tests::{python3, workspace};
 use model_tables::table::law::Touched;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
-use std::process::{Command as Process, Stdio};
+use std::process::Stdio;
 
 /// The bytes of the page's example.
 fn example(what: &str) -> Vec<u8> {
@@ -148,32 +148,16 @@ fn the_page_names_every_code() {
     }
 }
 
-/// What came of Python, or nothing where there is none: these tests need nothing but Rust. With `FINGERTIP_REQUIRE_PYTHON`, as in
-/// `.ci/run`, that is a failure.
-fn python<T>(run: std::io::Result<T>) -> Option<T> {
-    match run {
-        Ok(run) => Some(run),
-        Err(error) => {
-            assert!(
-                std::env::var_os("FINGERTIP_REQUIRE_PYTHON").is_none(),
-                "python3: {error}"
-            );
-            eprintln!("no python3: not tested");
-            None
-        }
-    }
-}
-
 /// Runs the reader, or nothing where there is no Python.
 fn reader(arguments: &[&str], input: &[u8]) -> Option<Vec<u8>> {
     let script = workspace().join("host-tests/scripts/read_frames.py");
-    let child = Process::new("python3")
+    let mut child = python3()?
         .arg(script)
         .args(arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
-        .spawn();
-    let mut child = python(child)?;
+        .spawn()
+        .expect("Python runs");
     let mut stdin = child.stdin.take().expect("it is piped");
     stdin.write_all(input).expect("the reader reads");
     drop(stdin);
@@ -256,9 +240,10 @@ fn the_reader_in_python_refuses_on_one_line_what_the_board_would_refuse() {
         (&["--encode"], "needs KIND SEQUENCE"),
         (&["no/such/port"], "No such file"),
     ] {
-        let Some(output) = python(Process::new("python3").arg(&script).args(arguments).output()) else {
+        let Some(mut python) = python3() else {
             return;
         };
+        let output = python.arg(&script).args(arguments).output().expect("Python runs");
         let error = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{arguments:?}: {error}");
         assert!(
@@ -375,15 +360,16 @@ fn the_program_of_the_guide_prints_forces_and_reasons() {
         stream.extend(example(what));
     }
     fs::write(&frames, stream).expect("the test folder");
-    let output = Process::new("python3")
+    let Some(mut python) = python3() else {
+        return;
+    };
+    let output = python
         .args(["-c", program])
         .arg(&frames)
         .current_dir(workspace())
         .env("PYTHONDONTWRITEBYTECODE", "1")
-        .output();
-    let Some(output) = python(output) else {
-        return;
-    };
+        .output()
+        .expect("Python runs");
     assert!(
         output.status.success(),
         "{}",

@@ -11,30 +11,9 @@ use model_tables::design_file::DesignFile;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-pyo3::create_exception!(
-    _fingertip,
-    FingertipError,
-    pyo3::exceptions::PyException,
-    "What was asked cannot be given."
-);
-pyo3::create_exception!(
-    _fingertip,
-    DesignError,
-    FingertipError,
-    "A design that cannot be: the key, what was found, what is allowed."
-);
-pyo3::create_exception!(
-    _fingertip,
-    ModelError,
-    FingertipError,
-    "No such state: what was asked, and the limit."
-);
-pyo3::create_exception!(
-    _fingertip,
-    TableError,
-    FingertipError,
-    "No such tables, with the numbers."
-);
+pyo3::import_exception!(fingertip.errors, DesignError);
+pyo3::import_exception!(fingertip.errors, ModelError);
+pyo3::import_exception!(fingertip.errors, TableError);
 
 /// Reads a design; `name` is what its errors call it.
 fn design(text: &str, name: &str) -> PyResult<DesignFile> {
@@ -65,5 +44,5 @@ mod _fingertip {
     #[pymodule_export]
     use super::time::history;
     #[pymodule_export]
-    use super::{DesignError, FingertipError, ModelError, TableError, canonical};
+    use super::canonical;
 }

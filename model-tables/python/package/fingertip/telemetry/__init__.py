@@ -1,0 +1,63 @@
+"""The telemetry of a board (src/link/PROTOCOL.md): readings as dataclasses and numpy batches, commands, and tips onto a board.
+
+::
+
+    from fingertip.telemetry import Client, Reading
+
+    with Client("/dev/ttyACM0") as board:
+        board.tare()
+        for frame in board:
+            if isinstance(frame, Reading) and frame.is_ok:
+                print(frame.tip, frame.force_n)
+
+Frames, commands and the client need the standard library alone, a serial port pyserial, and a :class:`Batch` numpy.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from ..errors import TelemetryError
+from .aio import AsyncClient
+from .client import Client, Counts
+from .codes import CommandKind, Fault, LastRun, Outcome, ResetCause, Stored, Touch, Warnings
+from .frames import Answer, FaultReport, Frame, Hello, Reading, TipData
+from .load import Loaded, TipFile, load, read_back, roll_back
+
+if TYPE_CHECKING:
+    from .batch import Batch
+
+__all__ = [
+    "Answer",
+    "AsyncClient",
+    "Batch",
+    "Client",
+    "CommandKind",
+    "Counts",
+    "Fault",
+    "FaultReport",
+    "Frame",
+    "Hello",
+    "LastRun",
+    "Loaded",
+    "Outcome",
+    "Reading",
+    "ResetCause",
+    "Stored",
+    "TelemetryError",
+    "TipData",
+    "TipFile",
+    "Touch",
+    "Warnings",
+    "load",
+    "read_back",
+    "roll_back",
+]
+
+
+def __getattr__(name: str) -> Any:
+    # It needs numpy.
+    if name == "Batch":
+        return importlib.import_module(".batch", __name__).Batch
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
