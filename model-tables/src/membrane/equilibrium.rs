@@ -5,6 +5,8 @@
 //! parameter is an unknown, the mesh moves with it; its derivatives are exact, so the convergence is quadratic
 //! whatever controls the press.
 
+mod convergence;
+
 use crate::material::Hyperelastic;
 use crate::membrane::closure::{Closure, ClosureTangent, NewtonOutcome, PressControl, RestControl};
 use crate::membrane::equations::{
@@ -13,14 +15,11 @@ use crate::membrane::equations::{
 use crate::membrane::solution::{MAX_ELEMENTS, Pole, Solution};
 use crate::solver::bordered_block::{self, BORDERS, BlockRow, BorderedBlocks, UNKNOWNS};
 use crate::solver::collocation::{self, Condensed, Gauss, GaussPoint, PARAMETERS, STATES, Span};
+use convergence::{Convergence, Step};
 use core::f64::consts::FRAC_PI_2;
 
 /// Iterations before Newton's method gives up.
 const MAX_ITERATIONS: u32 = 30;
-/// A step this small is rounding.
-const NEGLIGIBLE_STEP: f64 = 3e-13;
-/// Steps this small that no longer shrink are rounding, amplified by the condition of the problem.
-const LARGEST_ROUNDING: f64 = 2e-9;
 /// Largest relative change of a quantity in one damped step.
 const LARGEST_CHANGE: f64 = 0.3;
 
@@ -33,8 +32,7 @@ pub struct Equilibrium<L, const S: usize> {
     pub gauss: Gauss<S>,
     condensed: [Condensed<S>; MAX_ELEMENTS],
     linear_system: BorderedBlocks<MAX_ELEMENTS>,
-    /// Relative size that the next step must be sure to stay below for the present one to be the last.
-    tolerance: f64,
+    convergence: Convergence,
 }
 
 /// `row . x + constant = 0` with one coefficient 1.
@@ -55,14 +53,14 @@ impl<L, const S: usize> Equilibrium<L, S> {
             gauss: Gauss::BLANK,
             condensed: [Condensed::BLANK; MAX_ELEMENTS],
             linear_system: BorderedBlocks::BLANK,
-            tolerance: 0.0,
+            convergence: Convergence::new(0.0),
         }
     }
 
     /// Makes it ready to solve, as [`Equilibrium::new`].
     pub(crate) fn set(&mut self, tolerance: f64) {
         self.gauss = Gauss::new();
-        self.tolerance = tolerance;
+        self.convergence = Convergence::new(tolerance);
     }
 }
 
@@ -250,7 +248,7 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
 
     /// Newton's method from the values in `solution`, which it replaces.
     pub fn solve(&mut self, solution: &mut Solution<S>, closure: &Closure) -> NewtonOutcome {
-        let mut step_before = f64::INFINITY;
+        self.convergence.start(matches!(closure, Closure::Press { .. }));
         for iterations in 1..=MAX_ITERATIONS {
             let residual = match self.linearise(solution) {
                 Ok(residual) => residual,
@@ -262,36 +260,21 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             let Some(change) = self.step(solution, closure) else {
                 return NewtonOutcome::Singular { iterations };
             };
-            let Step { size, pole, damping } = self.apply(solution, &change);
-            if !size.is_finite() {
+            let step = self.apply(solution, &change);
+            if !step.size.is_finite() {
                 return NewtonOutcome::Singular { iterations };
             }
-            if damping >= 1.0 {
-                // Quadratic convergence: the next step is at most this.
-                let contraction = size / step_before;
-                let next = if contraction < 1.0 {
-                    size * contraction * contraction
-                } else {
-                    f64::INFINITY
+            if self.convergence.is_last(&step) {
+                return NewtonOutcome::Converged {
+                    iterations,
+                    residual,
+                    step: step.size,
                 };
-                // Rounding: small, and no longer shrinking.
-                let rounding = size < LARGEST_ROUNDING && size > 0.3 * step_before;
-                if size < NEGLIGIBLE_STEP
-                    || rounding
-                    || (step_before.is_finite() && next < self.tolerance && pole < libm::sqrt(self.tolerance))
-                {
-                    return NewtonOutcome::Converged {
-                        iterations,
-                        residual,
-                        step: size,
-                    };
-                }
-                step_before = size;
-            } else {
-                step_before = f64::INFINITY;
             }
         }
-        NewtonOutcome::Stalled { step: step_before }
+        NewtonOutcome::Stalled {
+            step: self.convergence.before(),
+        }
     }
 
     /// Adds a damped step to the solution.
@@ -420,17 +403,6 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             }
         }
     }
-}
-
-/// A step of Newton's method, relative to the solution.
-struct Step {
-    /// Largest change of the states at the nodes and of pressure and contact.
-    size: f64,
-    /// Change of the pole. It is a singular point: nothing else depends on it strongly, and it settles an iteration
-    /// later.
-    pole: f64,
-    /// What the step was multiplied by, 1 for a full step.
-    damping: f64,
 }
 
 enum LineariseError {
