@@ -3,7 +3,7 @@
 use super::batch::{Batch, Forces, Stiffness};
 use super::element::Material;
 use super::frontal::FrontalMatrix;
-use super::lanes::Lanes;
+use super::lanes::{Lanes, vectorised};
 use super::memory::Memory;
 use super::mesh::{CUBIC_PRESSURES, FUNCTIONS, Mesh, NODES, PRESSURES};
 use super::state::State;
@@ -46,6 +46,7 @@ impl<const N: usize, const T: usize> Elements<N, T> {
         }
     }
 
+    #[inline(always)]
     fn forces(
         &mut self,
         material: &Material,
@@ -78,6 +79,7 @@ impl<const N: usize, const T: usize> Elements<N, T> {
         largest
     }
 
+    #[inline(always)]
     fn stiffness(
         &mut self,
         material: &Material,
@@ -116,6 +118,7 @@ impl<const N: usize, const T: usize> Elements<N, T> {
         }
     }
 
+    #[inline(always)]
     fn answer(&self, right_side: &mut [[f64; 2]]) {
         for ((batch, excess), volume) in self.batches.iter().zip(&self.excess).zip(&self.volume) {
             let pressures = batch.answer(self.stiffening, excess);
@@ -133,6 +136,7 @@ impl<const N: usize, const T: usize> Elements<N, T> {
         }
     }
 
+    #[inline(always)]
     fn pressures(&self, step: &mut State, excess: bool) {
         let pressures = step.pressures.chunks_mut(super::lanes::LANES);
         for (((batch, kept), volume), pressures) in self
@@ -157,6 +161,7 @@ impl<const N: usize, const T: usize> Elements<N, T> {
         }
     }
 
+    #[inline(always)]
     fn energy(&self, material: &Material, state: &State) -> f64 {
         let energies = self.batches.iter();
         energies.map(|batch| batch.energy(material, &state.nodes)).sum()
@@ -185,12 +190,18 @@ enum Kind {
     Cubic(Elements<FUNCTIONS, CUBIC_PRESSURES>),
 }
 
-/// Calls a method of the elements, of whichever kind.
+/// Calls a method of the elements, of whichever kind, with the processor's vector instructions.
 macro_rules! of_either {
     ($assembly:expr, $elements:ident => $call:expr) => {
         match $assembly {
-            Kind::Quadratic($elements) => $call,
-            Kind::Cubic($elements) => $call,
+            Kind::Quadratic($elements) => vectorised(
+                #[inline(always)]
+                || $call,
+            ),
+            Kind::Cubic($elements) => vectorised(
+                #[inline(always)]
+                || $call,
+            ),
         }
     };
 }

@@ -160,6 +160,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
     }
 
     /// Forces in a state.
+    #[inline(always)]
     pub fn forces(
         &self,
         material: &Material,
@@ -196,6 +197,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
     }
 
     /// Stiffness in a state.
+    #[inline(always)]
     pub fn stiffness(
         &self,
         material: &Material,
@@ -220,6 +222,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
     }
 
     /// Eliminates the pressures: what the radii and heights feel of them, in the stiffness. The wall is `stiffening` times as stiff as relaxed.
+    #[inline(always)]
     pub fn condense(&self, stiffening: f64, stiffness: &mut Stiffness<N, T>) {
         let Stiffness {
             radial,
@@ -265,6 +268,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
     }
 
     /// Strain energy.
+    #[inline(always)]
     pub fn energy(&self, material: &Material, nodes: &[[f64; 2]]) -> f64 {
         let positions = self.gather(nodes);
         let mut sum = Lanes::ZERO;

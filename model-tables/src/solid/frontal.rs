@@ -5,6 +5,8 @@
 //! station goes into the next column. The last right station is the rim, which does not move. As many entries of `D` are negative
 //! as `K` has negative eigenvalues (Sylvester's law of inertia).
 
+use super::lanes::vectorised;
+
 /// Rows that are eliminated together; a column's own are a multiple of it, four for each node through the wall.
 const BLOCK: usize = 4;
 
@@ -74,6 +76,14 @@ impl FrontalMatrix {
     /// Factors the matrix, of which only columns from one on have changed since the last time; adds to `negative` how many entries of `D`
     /// are that in each of those columns. `None` if it is singular.
     pub fn eliminate(&mut self, from: usize, negative: &mut Vec<usize>) -> Option<()> {
+        vectorised(
+            #[inline(always)]
+            || self.factor(from, negative),
+        )
+    }
+
+    #[inline(always)]
+    fn factor(&mut self, from: usize, negative: &mut Vec<usize>) -> Option<()> {
         let station = self.station;
         let (own, width) = (2 * station, 3 * station);
         for column in from..self.columns {
@@ -125,6 +135,14 @@ impl FrontalMatrix {
 
     /// Solves with the factors, in place: unknowns column by column. Those of the rim are zero.
     pub fn solve(&self, x: &mut [f64]) {
+        vectorised(
+            #[inline(always)]
+            || self.substitute(x),
+        );
+    }
+
+    #[inline(always)]
+    fn substitute(&self, x: &mut [f64]) {
         let (own, width) = (2 * self.station, 3 * self.station);
         let rows = self.columns * own;
         for first in (0..rows).step_by(BLOCK) {

@@ -5,6 +5,13 @@ use core::ops::{Add, AddAssign, Mul, Sub};
 /// Elements side by side.
 pub const LANES: usize = 4;
 
+/// Runs a calculation with the vector instructions that the processor has. They round as scalar ones do, and none joins a product and a sum:
+/// every host gets the same bits. Only what is inlined into the calculation gains.
+#[inline(always)]
+pub fn vectorised<R>(calculation: impl FnOnce() -> R) -> R {
+    pulp::Arch::new().dispatch(calculation)
+}
+
 /// What the mechanics of a point is written in: one number, or one of each of several elements.
 pub trait Real:
     Copy
