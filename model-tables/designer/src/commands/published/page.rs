@@ -46,11 +46,12 @@ pub(super) fn markdown(paper: &Paper, solid: &Solid) -> String {
          Written by `{COMMAND}`; a test fails when it is stale. Columns named *here* are computed by this crate when the \
          page is written; *published* and *solid* are quoted.\n\
          \n\
-         {}\n{}\n{}\n{}\n{}\n{}\n{}",
+         {}\n{}\n{}\n{}\n{}\n{}\n{}\n{}",
         numbers(paper),
         forces(paper),
         readings(paper),
         misprints(),
+        others(),
         distance(solid),
         mistaken(solid),
         consequences(solid),
@@ -181,6 +182,25 @@ fn misprints() -> String {
      about 2.1 kPa when it starts at 1e-16. That is a plausible origin of the published 2.1 kPa, and not a \
      reproduction of it. This crate solves the equations without the misprints. They are checked against closed forms, \
      independent solutions and the work of the plate (`tests/`).\n"
+        .to_owned()
+}
+
+/// Where numbers of others were looked for; none of it is computed here.
+fn others() -> String {
+    "### Presses that others published\n\
+     \n\
+     Found by reading, not computed by this page. No published press of a fluid-filled dome whose rim is held, with \
+     numbers of force or pressure against the travel of the plate, was found. Published problems that look alike do \
+     not map onto this one:\n\
+     \n\
+     - A spherical membrane between two plates (W. W. Feng, W. H. Yang, J. Appl. Mech. 40 (1973) 209; T. J. \
+     Lardner, P. Pujara, Mechanics Today 5 (1980) 161): its equator widens as it is pressed, while the rim of a \
+     fingertip is held.\n\
+     - A flat circular membrane, clamped and inflated against a plate (R. Long, K. R. Shull, C.-Y. Hui, J. Mech. \
+     Phys. Solids 58 (2010) 1225): the pressure is given and the plate stands still, while a fingertip keeps its \
+     volume and the plate moves; and it is flat where nothing stretches it.\n\
+     - Elastic spherical shells between rigid plates (D. P. Updike, A. Kalnins, J. Appl. Mech. 39 (1972) 172): \
+     small strains of a thin shell, without a fluid.\n"
         .to_owned()
 }
 
