@@ -46,9 +46,9 @@ def mesh_of(height, thickness, through, along):
             # The first coordinate runs along the meridian.
             for i in range(3):
                 for j in range(3):
-                    station = 2 * column + j
+                    line = 2 * column + j
                     inset = thickness * (1.0 - (2 * layer + i) / (2 * through))
-                    points.append([(1.0 - inset) * sin[station], (height - inset) * cos[station]])
+                    points.append([(1.0 - inset) * sin[line], (height - inset) * cos[line]])
             mesh.add_convex(transformation, np.array(points).T)
     return mesh
 

@@ -3,7 +3,7 @@
 
     apt-get install --no-install-recommends python3-getfem
     pip install casadi numpy scipy
-    python3 host-tests/scripts/peers.py --against 42600e0 --against 876c056 --out model-tables/PEERS.md
+    python3 host-tests/scripts/peers.py --against 876c056 --against 42600e0 --commands --out model-tables/PEERS.md
 
 The harness `peers.rs` is built against each checkout (earlier ones from `git archive`), under `target/peers`. Everything is timed in CPU
 time of one thread, the least of several sweeps; the harness runs in turns with the peers, before and after them. Without `--out` the page
@@ -13,10 +13,14 @@ goes to the standard output. A peer that is not installed is left out, with a wo
 import argparse
 import csv
 import io
+import os
 import pathlib
 import platform
+import re
+import resource
 import subprocess
 import sys
+import tempfile
 
 import numpy as np
 
@@ -182,6 +186,51 @@ def solid_tables(ours, others, getfem):
     return page
 
 
+def designer(name, checkout):
+    """The command line, built from a checkout."""
+    target = FOLDER / name / "designer"
+    command = ["cargo", "build", "--quiet", "--release", "--package", "designer"]
+    subprocess.run(command, cwd=checkout, check=True, env={**os.environ, "CARGO_TARGET_DIR": str(target)})
+    return target / "release/designer"
+
+
+def seconds(program, checkout):
+    """CPU seconds of the commands that take longest, the least of three runs."""
+    designs = checkout / "model-tables/designs"
+    elastic = designs / "index-fingertip-elastic.toml"
+    design = elastic if elastic.exists() else designs / "index-fingertip.toml"
+    spent = {}
+    with tempfile.TemporaryDirectory() as folder:
+        guide = (ROOT / "host-tests/guides/calibrate.md").read_text()
+        for name, text in re.findall(r"```\w+ (bench\.csv|tip\.toml)\n(.*?)```", guide, re.DOTALL):
+            (pathlib.Path(folder) / name).write_text(re.sub(r"^   ", "", text, flags=re.MULTILINE))
+        commands = {
+            "table": ["table", design, "--out", "tables"],
+            "report": ["report", design, "--out", "page"],
+            "fit": ["fit", "tip.toml", "bench.csv", "--fit", "material,pole-stretch", "--out", "calibrated"],
+            "size": ["size", checkout / "model-tables/targets/human-fingertip.toml"],
+        }
+        for name, arguments in commands.items():
+            least = float("inf")
+            for _ in range(3):
+                before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+                done = subprocess.run([program, *arguments], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                least = min(least, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+                if done.returncode:
+                    least = float("nan")
+                    break
+            spent[name] = least
+    return spent
+
+
+def seconds_table(times):
+    """By command and build."""
+    page = [f"| command | {' | '.join(times)} |", "|---" * (len(times) + 1) + "|"]
+    for command in next(iter(times.values())):
+        page.append(f"| {command} | " + " | ".join(f"{spent[command]:.2f}" for spent in times.values()) + " |")
+    return page
+
+
 def machine():
     names = [line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
     return f"{names[0]}, {len(names)} threads, {platform.system()} {platform.machine()}"
@@ -193,6 +242,7 @@ def main():
     words.add_argument("--getfem-python", default="/usr/bin/python3", help="the interpreter that has GetFEM")
     words.add_argument("--repeats", type=int, default=3, help="runs of the harness, in turns")
     words.add_argument("--out", type=pathlib.Path, help="the page")
+    words.add_argument("--commands", action="store_true", help="also the seconds of whole commands; builds each designer")
     words.add_argument("--without", action="append", default=[], choices=["casadi", "solve_bvp", "getfem"])
     arguments = words.parse_args()
 
@@ -213,7 +263,7 @@ def main():
         writer = csv.writer(file)
         writer.writerow(["indentation_mm", "force_n", "pressure_pa"])
         for k in range(count):
-            writer.writerow([2.5 * (k + 1) / count, repr(truth["force_n"][k]), repr(truth["pressure_pa"][k])])
+            writer.writerow([2.5 * (k + 1) / count, float(truth["force_n"][k]), float(truth["pressure_pa"][k])])
     peers, getfem, notes = {}, [], []
     if "casadi" not in arguments.without:
         found = list(casadi(sys.executable, sweep))
@@ -236,10 +286,16 @@ def main():
     ours = fastest(runs.pop("this build"))
     others = {name: fastest(found) for name, found in runs.items()}
 
+    times = {}
+    if arguments.commands:
+        times["this build"] = seconds(designer("this", ROOT), ROOT)
+        for commit in arguments.against:
+            times[commit] = seconds(designer(commit, archive(commit)), archive(commit))
     page = (SCRIPTS / "peers.md").read_text().replace("{machine}", machine())
     page = page.replace("{command}", " ".join(["python3 host-tests/scripts/peers.py", *sys.argv[1:]]))
     page = page.replace("{membrane}", "\n".join(membrane_tables(ours, others, peers, truth)))
     page = page.replace("{solid}", "\n".join(solid_tables(ours, others, getfem))).replace("{notes}", "\n".join(notes))
+    page = page.replace("{commands}", "\n".join(seconds_table(times)) if times else "Not measured in this run: `--commands`.")
     if arguments.out:
         arguments.out.write_text(page)
     else:
