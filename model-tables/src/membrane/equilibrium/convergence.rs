@@ -15,9 +15,9 @@ const CONSTANT_GROWTH: f64 = 1.5;
 /// A step of Newton's method, relative to the solution.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
-    /// Largest change of the states at the nodes and of pressure and contact.
+    /// Largest relative change of the states at the nodes and of pressure and contact.
     pub size: f64,
-    /// Change of the pole. It is a singular point: nothing else depends on it strongly, and it settles an iteration
+    /// Change of the pole, relative. It is a singular point: nothing else depends on it strongly, and it settles an iteration
     /// later.
     pub pole: f64,
     /// What the step was multiplied by, 1 for a full step.
