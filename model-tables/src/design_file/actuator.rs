@@ -3,8 +3,11 @@
 use super::DesignFile;
 use super::bounds::{Bounds, LENGTH};
 use super::material::material;
+use super::relaxation;
 use super::section::{KeyFault, Section};
+use crate::gas::TrappedGas;
 use crate::material::Law;
+use crate::material::relaxation::Relaxation;
 use crate::object::Friction;
 use crate::solid::disc::{DiscDesign, FarSide};
 use core::fmt::{self, Write as _};
@@ -20,8 +23,10 @@ pub struct ActuatorSection {
     pub gap_mm: Option<f64>,
     /// Stiffness of a foundation over it, kilopascals per millimetre, > 0; `None`: the plate over it is rigid.
     pub foundation_kpa_per_mm: Option<f64>,
-    /// Its law; `None`: the tip's.
-    pub material: Option<Law>,
+    /// Air trapped in the line to it, cubic millimetres at ambient pressure.
+    pub trapped_air_mm3: Option<f64>,
+    /// Its law, and its series if it relaxes; `None`: the tip's, both.
+    pub material: Option<(Law, Option<Relaxation>)>,
 }
 
 impl ActuatorSection {
@@ -31,6 +36,7 @@ impl ActuatorSection {
         let gap_mm = section.number("gap_mm", Bounds::within(0.0, 1000.0, "mm"))?;
         let foundation_kpa_per_mm =
             section.number("foundation_kpa_per_mm", Bounds::above(0.0, 1e6, "kPa/mm"))?;
+        let trapped_air_mm3 = section.number("trapped_air_mm3", Bounds::within(0.0, 1e6, "mm^3"))?;
         match thickness_mm {
             Some(thickness) if thickness >= diameter_mm => {
                 let allowed = format!("less than diameter_mm, {diameter_mm} mm");
@@ -38,18 +44,18 @@ impl ActuatorSection {
             }
             Some(_) => {}
             None => {
-                for key in ["gap_mm", "foundation_kpa_per_mm"] {
+                for key in ["gap_mm", "foundation_kpa_per_mm", "trapped_air_mm3"] {
                     if section.has(key) {
                         return Err(section.refuse(key, "left out, or given with thickness_mm"));
                     }
                 }
             }
         }
-        let law = section.sub("material")?.map(material).transpose()?;
-        if let Some((_, Some(_))) = law {
+        let material = section.sub("material")?.map(material).transpose()?;
+        if thickness_mm.is_none() && matches!(material, Some((_, Some(_)))) {
             return Err(section.refuse(
                 "material",
-                "without relaxation: the disc is solved as a settled wall",
+                "without relaxation, or given with thickness_mm: the formula is of a settled disc",
             ));
         }
         section.finish()?;
@@ -58,7 +64,8 @@ impl ActuatorSection {
             thickness_mm,
             gap_mm,
             foundation_kpa_per_mm,
-            material: law.map(|(law, _)| law),
+            trapped_air_mm3,
+            material,
         })
     }
 
@@ -68,15 +75,19 @@ impl ActuatorSection {
             ("thickness_mm", self.thickness_mm),
             ("gap_mm", self.gap_mm),
             ("foundation_kpa_per_mm", self.foundation_kpa_per_mm),
+            ("trapped_air_mm3", self.trapped_air_mm3),
         ];
         for (key, value) in rows {
             if let Some(value) = value {
                 writeln!(out, "{key} = {value:?}")?;
             }
         }
-        if let Some(law) = &self.material {
+        if let Some((law, series)) = &self.material {
             writeln!(out, "\n[actuator.material]")?;
             super::print::law(law, out)?;
+            if let Some(series) = series {
+                relaxation::print("actuator.material.relaxation", series, out)?;
+            }
         }
         Ok(())
     }
@@ -104,10 +115,36 @@ impl DesignFile {
         })
     }
 
+    /// The same design with an actuator of another diameter, millimetres. Nothing changes without `[actuator]`.
+    #[must_use]
+    pub fn with_actuator_diameter(&self, diameter_mm: f64) -> Self {
+        let mut file = self.clone();
+        if let Some(actuator) = &mut file.actuator {
+            actuator.diameter_mm = diameter_mm;
+        }
+        file
+    }
+
     /// The law of the actuator: its own, or the tip's as it is calibrated.
     pub fn actuator_law(&self) -> Law {
         self.actuator
             .and_then(|actuator| actuator.material)
-            .unwrap_or_else(|| self.design().law)
+            .map_or_else(|| self.design().law, |(law, _)| law)
+    }
+
+    /// The actuator in time: its own series, or the tip's where it is of the tip's material; `None` where it is elastic.
+    pub fn actuator_relaxation(&self) -> Option<Relaxation> {
+        self.actuator
+            .and_then(|actuator| actuator.material)
+            .map_or(self.relaxation, |(_, series)| series)
+    }
+
+    /// Gas trapped in the line to the actuator, under a standard atmosphere.
+    pub fn trapped_gas(&self) -> TrappedGas {
+        let volume = self.actuator.and_then(|actuator| actuator.trapped_air_mm3);
+        TrappedGas {
+            volume: volume.unwrap_or(0.0) * 1e-9,
+            ..TrappedGas::NONE
+        }
     }
 }

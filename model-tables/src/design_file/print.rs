@@ -25,7 +25,7 @@ fn print(file: &DesignFile, out: &mut String) -> fmt::Result {
     writeln!(out, "\n[material]")?;
     law(&file.material, out)?;
     if let Some(relaxation) = &file.relaxation {
-        relaxation::print(relaxation, out)?;
+        relaxation::print("material.relaxation", relaxation, out)?;
     }
     if file.rest != RestSection::Unstretched {
         writeln!(out, "\n[rest]")?;

@@ -51,10 +51,10 @@ pub(super) fn parse(mut section: Section<'_>) -> Result<Relaxation, KeyFault> {
     Ok(Relaxation::new(&terms, temperature, shift))
 }
 
-/// The section in a design's canonical text.
-pub(super) fn print(relaxation: &Relaxation, out: &mut String) -> fmt::Result {
+/// The section of this name in a design's canonical text.
+pub(super) fn print(name: &str, relaxation: &Relaxation, out: &mut String) -> fmt::Result {
     let column = |of: fn(&Term) -> f64| relaxation.terms().iter().map(of).collect::<Vec<_>>();
-    writeln!(out, "\n[material.relaxation]")?;
+    writeln!(out, "\n[{name}]")?;
     writeln!(out, "tau_s = {:?}", column(|term| term.time))?;
     writeln!(out, "g = {:?}", column(|term| term.weight))?;
     writeln!(out, "temperature_c = {:?}", relaxation.temperature)?;

@@ -29,6 +29,8 @@ pub enum PressControl {
 pub enum Closure {
     /// Not pressed: the equator's tangent is vertical.
     Rest(RestControl),
+    /// Not pressed, of a flat membrane: the equator clamped where it is undeformed.
+    Clamped(RestControl),
     /// Pressed, the equator clamped at its rest radius.
     Press {
         /// What selects the state.

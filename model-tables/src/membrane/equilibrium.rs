@@ -182,10 +182,13 @@ impl<L: Hyperelastic, const S: usize> Equilibrium<L, S> {
             row
         };
         let rows = match *closure {
-            Closure::Rest(control) => [
+            Closure::Rest(control) | Closure::Clamped(control) => [
                 link_0,
                 link_1,
-                unit_row(1, last[1]),
+                match *closure {
+                    Closure::Clamped(_) => unit_row(0, last[0] - 1.0),
+                    _ => unit_row(1, last[1]),
+                },
                 match control {
                     RestControl::PoleStretch(stretch) => unit_row(STATES + POLE, pole - stretch),
                     RestControl::Pressure(target) => unit_row(STATES + PRESSURE, pressure - target),

@@ -73,7 +73,7 @@ const STEP_GROWTH: f64 = 1.15;
 
 impl<L: Hyperelastic, const S: usize> Adaptive<L, S> {
     /// Makes `state` a guess: uniformly stretched, the tangent of the undeformed membrane.
-    fn guess_inflated(&self, pole_stretch: f64, state: &mut Graded<S>) {
+    pub(crate) fn guess_inflated(&self, pole_stretch: f64, state: &mut Graded<S>) {
         let membrane = &self.equilibrium.membrane;
         state.depth = Depth {
             contact_parameter: 0.0,

@@ -1,15 +1,17 @@
-//! The haptic loop: fingertip and feedback actuator share one fluid, `V_tip(P, H) + V_actuator(P) + c P = const`.
+//! The haptic loop: fingertip and feedback actuator share one fluid, `V_tip(P, H) + V_actuator(P) + V_gas(P) + c P = const`.
 //!
-//! At one indentation the actuator is to the fingertip a compliance, its volume over its pressure since rest: the state of the loop is that of a
+//! At one indentation the actuator is to the fingertip a compliance, its volume over its pressure since rest, and so is trapped gas: the state of the loop is that of a
 //! fingertip with the compliance for which both have one pressure. What is looked for is this compliance.
 
 use super::{Fingertip, Kind, ModelError};
 use crate::curve::Contact;
 use crate::design::Design;
+use crate::gas::TrappedGas;
 use crate::membrane::TensionField;
 use crate::membrane::press;
 use crate::solid;
 use crate::solid::disc::{Disc, DiscError, DiscState};
+use crate::solid::section::WallPoint;
 use std::fmt;
 
 /// Accuracy of the compliance, relative: a solid has its pressure to some 1e-8.
@@ -70,6 +72,8 @@ pub struct LoopState {
     pub actuator: DiscState,
     /// Fluid that the actuator has taken since rest, cubic metres.
     pub volume_moved: f64,
+    /// By how much trapped gas has become smaller since rest, cubic metres.
+    pub gas_compressed: f64,
     /// The compliance of a fingertip alone that has the same state, cubic metres per pascal.
     pub compliance: f64,
 }
@@ -89,6 +93,7 @@ pub struct Loop {
     rest_pressure: f64,
     actuator: Disc,
     actuator_at_rest: DiscState,
+    gas: TrappedGas,
     /// The compliance of the latest state.
     compliance: f64,
 }
@@ -110,7 +115,28 @@ impl Loop {
             actuator,
             compliance: design.compliance + actuator_at_rest.compliance,
             actuator_at_rest,
+            gas: TrappedGas::NONE,
         })
+    }
+
+    /// The same with gas in the line.
+    #[must_use]
+    pub fn with_gas(mut self, gas: TrappedGas) -> Self {
+        self.gas = gas;
+        self.compliance = self.constant_compliance();
+        self
+    }
+
+    /// Gauge pressure at rest, pascals.
+    pub fn rest_pressure(&self) -> f64 {
+        self.rest_pressure
+    }
+
+    /// The compliance at rest of all that the fluid goes to, cubic metres per pascal.
+    pub fn constant_compliance(&self) -> f64 {
+        self.design.compliance
+            + self.actuator_at_rest.compliance
+            + self.gas.compliance(self.rest_pressure.max(0.0))
     }
 
     /// The actuator at rest.
@@ -118,15 +144,36 @@ impl Loop {
         &self.actuator_at_rest
     }
 
-    /// The touch of a fingertip with a constant compliance in the loop's place: the actuator's at rest, and that of the fluid.
+    /// The touch of a fingertip with a constant compliance in the loop's place: [`Loop::constant_compliance`].
     ///
     /// # Errors
     /// [`ModelError`] of the fingertip.
     pub fn with_constant_compliance(&self, indentation: f64) -> Result<Contact, ModelError> {
-        self.touch(
-            indentation,
-            self.design.compliance + self.actuator_at_rest.compliance,
-        )
+        self.touch(indentation, self.constant_compliance())
+    }
+
+    /// The fingertip alone that has the same state: its compliance stands for all that the fluid goes to.
+    ///
+    /// # Errors
+    /// [`ModelError`] of the fingertip.
+    pub fn fingertip_of(&self, state: &LoopState) -> Result<Fingertip, ModelError> {
+        let design = Design {
+            compliance: state.compliance,
+            ..self.design
+        };
+        fingertip(self.kind, &design)
+    }
+
+    /// The meridian of the actuator in a state, as [`Disc::profile`].
+    ///
+    /// # Errors
+    /// [`DiscError`].
+    pub fn actuator_profile(
+        &mut self,
+        state: &LoopState,
+        points: usize,
+    ) -> Result<Vec<WallPoint>, DiscError> {
+        self.actuator.profile(state.actuator.pressure, points)
     }
 
     fn touch(&self, indentation: f64, compliance: f64) -> Result<Contact, ModelError> {
@@ -145,6 +192,7 @@ impl Loop {
             touch,
             actuator,
             volume_moved: actuator.volume - self.actuator_at_rest.volume,
+            gas_compressed: self.gas.compressed(pressure) - self.gas.compressed(self.rest_pressure.max(0.0)),
             compliance,
         })
     }
@@ -167,7 +215,8 @@ impl Loop {
             let mut next = None;
             match self.state(touch, compliance) {
                 Ok(state) => {
-                    let needed = self.design.compliance + state.volume_moved / touch.pressure_rise;
+                    let taken = state.volume_moved + state.gas_compressed;
+                    let needed = self.design.compliance + taken / touch.pressure_rise;
                     let excess = needed - compliance;
                     if excess.abs() <= TOLERANCE * needed {
                         self.compliance = compliance;

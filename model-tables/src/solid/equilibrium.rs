@@ -70,6 +70,8 @@ pub struct SolidWall {
     tolerance: f64,
     /// Contact pressure over penetration.
     contact_stiffness: f64,
+    /// Whether that is a foundation's own, which a step of time leaves as it is; a rigid plate's penalty goes with the wall's stiffness.
+    on_foundation: bool,
     /// What touches the outer surface.
     surface: Surface,
     /// Its friction, if it has any.
@@ -115,6 +117,7 @@ impl SolidWall {
         Self {
             tolerance: TOLERANCE,
             contact_stiffness: CONTACT_STIFFNESS / mesh.thickness,
+            on_foundation: false,
             outer,
             fronts: FrontalMatrix::new(2 * mesh.stride(), elements.along),
             assembly: Assembly::new(&mesh, &material),

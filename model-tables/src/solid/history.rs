@@ -2,25 +2,30 @@
 //!
 //! The plate's travel, or its force, is given at instants and changes evenly between them. Each interval is cut into steps short enough that
 //! every point of the wall moves nearly evenly in each, as `memory` takes it to; nothing else is approximated in time.
+//! With an actuator the fluid goes from one to the other, and both are solved in each step.
 //! A plate does not pull: where the wall recovers more slowly than the plate leaves, contact is lost, and the wall goes on alone around its fluid
 //! until the plate is back.
 
 mod error;
+mod outlet;
 mod step;
 
 pub use error::HistoryError;
 
 use super::Failure;
+use super::disc::{DiscEnd, DiscInTime, DiscState, StepWork};
 use super::equilibrium::SolidWall;
 use super::memory::Memory;
 use super::mesh::Elements;
 use super::press;
 use super::state::{Balance, Fluid, State};
 use crate::design::{Design, RestBy};
+use crate::gas::TrappedGas;
 use crate::limit::EndsBy;
 use crate::material::Hyperelastic as _;
 use crate::material::relaxation::Relaxation;
 use crate::object::Friction;
+use outlet::Outlet;
 
 /// Largest travel of a plate near the wall in a step, over the height.
 const LARGEST_TRAVEL: f64 = 2.5e-3;
@@ -84,6 +89,8 @@ impl Instant {
 enum Rejected {
     Failed(Failure),
     Touches(EndsBy),
+    /// The actuator has no state.
+    Actuator(DiscEnd),
     /// Too long: by so much.
     TooLong(f64),
 }
@@ -96,8 +103,10 @@ struct Solved {
     share: f64,
     /// Strain energy of the wall at its end.
     energy: f64,
-    /// Work of the wall's stresses in it.
+    /// Work of the wall's stresses in it, and what the fluid carried out.
     work: f64,
+    /// Of the actuator.
+    of_actuator: Option<StepWork>,
 }
 
 /// A press in time, at its latest instant. Lengths in outer radial semi-axes, stresses in relaxed shear moduli.
@@ -105,6 +114,10 @@ struct Solved {
 pub struct History {
     wall: SolidWall,
     fluid: Fluid,
+    /// Volume of all the fluid.
+    whole: f64,
+    /// Where it goes, if it goes anywhere.
+    outlet: Option<Box<Outlet>>,
     /// Outer radial semi-axis, metres.
     length: f64,
     /// Relaxed shear modulus, pascals.
@@ -126,11 +139,13 @@ pub struct History {
     speed: f64,
     /// Relaxed strain energy of the wall.
     energy: f64,
-    /// Work of the wall's stresses so far, and the most that it was.
+    /// Work of the wall's stresses and of what the fluid carried out so far, and the most that it was.
     work: f64,
     most_work: f64,
     /// Work of the plate so far.
     supplied: f64,
+    /// Volume of the fluid inside.
+    volume: f64,
     steps: u64,
     trial: State,
     guess: State,
@@ -157,11 +172,40 @@ impl History {
         time: f64,
         indentation: f64,
     ) -> Result<Self, HistoryError> {
-        if design.rest != RestBy::Unstretched {
-            return Err(HistoryError::Inflated);
-        }
         if design.compliance > 0.0 {
             return Err(HistoryError::Compliant);
+        }
+        Self::closed(design, relaxation, elements, time, indentation)
+    }
+
+    /// The same with an undeformed actuator, gas in the line, and the design's compliance.
+    ///
+    /// # Errors
+    /// As [`History::new`], but for the compliance.
+    pub fn with_actuator(
+        design: &Design,
+        relaxation: &Relaxation,
+        elements: Elements,
+        [time, indentation]: [f64; 2],
+        actuator: DiscInTime,
+        gas: TrappedGas,
+    ) -> Result<Self, HistoryError> {
+        let mut history = Self::closed(design, relaxation, elements, time, indentation)?;
+        let (length, modulus) = (history.length, history.modulus);
+        let outlet = Outlet::new(actuator, gas, design.compliance, length, modulus);
+        history.outlet = Some(Box::new(outlet));
+        Ok(history)
+    }
+
+    fn closed(
+        design: &Design,
+        relaxation: &Relaxation,
+        elements: Elements,
+        time: f64,
+        indentation: f64,
+    ) -> Result<Self, HistoryError> {
+        if design.rest != RestBy::Unstretched {
+            return Err(HistoryError::Inflated);
         }
         if design.object.friction != Friction::NONE {
             return Err(HistoryError::Friction);
@@ -184,13 +228,17 @@ impl History {
         let mut onward = state.clone();
         onward.clear();
         let height = state.nodes[wall.mesh.layers() - 1][1];
+        let volume = wall.volume(&state);
         Ok(Self {
             fluid: Fluid {
                 by_volume: 1.0,
-                volume: wall.volume(&state),
+                volume,
                 by_pressure: 0.0,
                 pressure: 0.0,
             },
+            whole: volume,
+            volume,
+            outlet: None,
             energy: wall.energy(&state),
             wall,
             length,
@@ -221,7 +269,18 @@ impl History {
         self.steps
     }
 
-    /// Work so far, joules: of the plate, and of the stresses in the wall, elastic and lost. Their difference is the error in time.
+    /// The actuator at the latest instant, if there is one.
+    pub fn actuator(&self) -> Option<DiscState> {
+        Some(self.outlet.as_ref()?.disc.now())
+    }
+
+    /// Work at the actuator so far, joules, as [`DiscInTime::works`].
+    pub fn actuator_works(&self) -> Option<[f64; 2]> {
+        Some(self.outlet.as_ref()?.disc.works())
+    }
+
+    /// Work so far, joules: of the plate, and of the stresses in the wall, elastic and lost, with what the fluid carried out. Their difference is the
+    /// error in time.
     pub fn works(&self) -> [f64; 2] {
         let unit = self.modulus * self.length * self.length * self.length;
         [self.supplied, self.work].map(|work| work * unit)
@@ -288,7 +347,8 @@ impl History {
                 let target = if end < 1.0 { from + end * (to - from) } else { to };
                 match self.step((end - done) * whole, drive, target) {
                     Ok(solved) => {
-                        self.take(&solved, (end - done) * whole);
+                        self.take(&solved, (end - done) * whole)
+                            .ok_or_else(|| self.ends(Rejected::Failed(Failure::Singular)))?;
                         done = end;
                         self.time = begin + done * whole;
                         break;
@@ -319,6 +379,11 @@ impl History {
             Rejected::Touches(by) => HistoryError::Ends {
                 time,
                 indentation,
+                by,
+            },
+            Rejected::Actuator(by) => HistoryError::Actuator {
+                time,
+                pressure: self.state.fluid * self.modulus,
                 by,
             },
             Rejected::Failed(failure) => HistoryError::Unsolved {

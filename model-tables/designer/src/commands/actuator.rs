@@ -3,7 +3,8 @@
 use super::{finite, read};
 use model_tables::actuator::{Actuator, FREE_DIAMETER};
 use model_tables::design_file::DesignFile;
-use model_tables::solid::disc::{DISC, Disc, DiscDesign};
+use model_tables::membrane::disc::FlatMembrane;
+use model_tables::solid::disc::{DISC, Disc, DiscDesign, FarSide};
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
 use std::path::PathBuf;
@@ -53,6 +54,16 @@ fn of_disc(arguments: &Arguments, design: &DiscDesign) -> Result<CommandAnswer, 
             state.travel * 1e3,
             state.centre_stretch
         ));
+        if design.far_side == FarSide::Free
+            && let Ok(mut membrane) = FlatMembrane::new(design.diameter, design.thickness, design.law)
+            && let Ok(shape) = membrane.at_pressure(pressure * 1e3)
+        {
+            notes.push(format!(
+                "a membrane of its size, which does not bend, would move by {:.6} mm there and take {:.6} mm^3",
+                shape.height * 1e3,
+                shape.volume * 1e9
+            ));
+        }
     }
     Ok(CommandAnswer { rows, notes })
 }

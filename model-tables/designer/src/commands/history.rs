@@ -2,7 +2,7 @@
 
 use super::time_rows::{self, TimeRow, TimeRows};
 use super::{read, warn};
-use model_tables::design_file::{DesignFile, ModelSection};
+use model_tables::design_file::{Calibration, DesignFile, ModelSection};
 use model_tables::material::relaxation::Relaxation;
 use model_tables::model::choice::elements_in_time;
 use model_tables::solid::history::{Drive, History};
@@ -20,8 +20,8 @@ const COLUMNS: &[&str] = &[
     "contact",
     "apex_depression_mm",
 ];
-const INDENTATION: &str = "indentation_mm";
-const FORCE: &str = "force_n";
+pub(super) const INDENTATION: &str = "indentation_mm";
+pub(super) const FORCE: &str = "force_n";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -34,7 +34,7 @@ pub(super) struct Arguments {
 }
 
 /// The elements of a wall in time: a design's own, or those that are enough for a few tenths of a percent.
-fn elements(file: &Path, design: &DesignFile) -> Result<Elements, Refusal> {
+pub(super) fn elements(file: &Path, design: &DesignFile) -> Result<Elements, Refusal> {
     elements_in_time(design.model).ok_or_else(|| {
         Refusal::about(
             file,
@@ -42,6 +42,15 @@ fn elements(file: &Path, design: &DesignFile) -> Result<Elements, Refusal> {
               semi-axes of the outer surface and no [rest]",
         )
     })
+}
+
+/// What a row drives, of a column [`INDENTATION`] or [`FORCE`].
+pub(super) fn drive(calibration: &Calibration, column: &str, row: &TimeRow) -> Drive {
+    if column == INDENTATION {
+        Drive::Indentation(calibration.indentation_of(1e-3 * row.value))
+    } else {
+        Drive::Force(row.value)
+    }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
@@ -58,13 +67,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     // Without a series the wall is elastic.
     let relaxation = design.relaxation.unwrap_or(Relaxation::new(&[], 20.0, 0.0));
     let elements = elements(file, &design)?;
-    let drive = |row: &TimeRow| {
-        if column == INDENTATION {
-            Drive::Indentation(calibration.indentation_of(1e-3 * row.value))
-        } else {
-            Drive::Force(row.value)
-        }
-    };
+    let drive = |row: &TimeRow| drive(calibration, column, row);
     let begin = check(&arguments.history, &rows, drive)?;
     let mut history = History::new(&design.design(), &relaxation, elements, rows[0].time, begin)
         .map_err(|error| Refusal::about(file, &error))?;
@@ -107,7 +110,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
 const TOUCH: f64 = 1e-12;
 
 /// The first row is the untouched fingertip, and no force pulls. Where the plate is in it, metres.
-fn check(file: &Path, rows: &[TimeRow], drive: impl Fn(&TimeRow) -> Drive) -> Result<f64, Refusal> {
+pub(super) fn check(
+    file: &Path,
+    rows: &[TimeRow],
+    drive: impl Fn(&TimeRow) -> Drive,
+) -> Result<f64, Refusal> {
     let begin = match drive(&rows[0]) {
         Drive::Indentation(metres) => metres,
         Drive::Force(_) => 0.0,

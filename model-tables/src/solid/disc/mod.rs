@@ -6,14 +6,18 @@
 //! The path goes by pressure from zero. A held pressure has no state beyond the greatest that the disc stands.
 
 mod error;
+mod in_time;
 mod path;
 
 pub use error::{DiscEnd, DiscError, DiscLimit};
+pub use in_time::DiscInTime;
+pub(super) use in_time::StepWork;
 
 use super::equilibrium::SolidWall;
 use super::mesh::{Elements, Mesh};
 use super::object::Surface;
 use super::section::{self, WallPoint};
+use super::state::{Balance, State};
 use crate::material::{Hyperelastic as _, Law};
 use crate::object::Friction;
 use core::f64::consts::PI;
@@ -96,23 +100,47 @@ impl DiscState {
     }
 }
 
-/// A clamped disc, and the states found so far.
-#[derive(Clone, Debug)]
-pub struct Disc {
+/// A state as it was solved.
+struct Found<'a> {
+    state: &'a State,
+    balance: &'a Balance,
+    compliance: f64,
+    energy: f64,
+    work: f64,
+}
+
+impl Found<'_> {
+    /// In SI units, of a disc of this radius and shear modulus with what is over it at a height.
+    fn in_units(&self, wall: &SolidWall, plate: f64, length: f64, modulus: f64) -> DiscState {
+        let unit = length * length * length;
+        let outer = wall.mesh.layers() - 1;
+        DiscState {
+            pressure: self.state.fluid * modulus,
+            force: self.balance.force * modulus * length * length,
+            contact_radius: section::contact_edge(wall, self.state, plate).radius * length,
+            volume: self.balance.volume * unit,
+            compliance: self.compliance * unit / modulus,
+            travel: (self.state.nodes[outer][1] - wall.mesh.thickness) * length,
+            centre_stretch: section::pole_stretch(wall, self.state),
+            energy: self.energy * modulus * unit,
+            work: self.work * modulus * unit,
+        }
+    }
+}
+
+/// A disc in its clamp, undeformed. Lengths in its radius, stresses in its shear modulus.
+struct Clamped {
     wall: SolidWall,
+    /// Height of what is over it.
+    plate: f64,
     /// Its radius, metres.
     length: f64,
     /// Its shear modulus, pascals.
     modulus: f64,
-    path: Path,
 }
 
-impl Disc {
-    /// The undeformed disc.
-    ///
-    /// # Errors
-    /// [`DiscError::NoStiffness`], [`DiscError::NotADisc`] for lengths or a stiffness out of their ranges.
-    pub fn new(design: &DiscDesign, elements: Elements) -> Result<Self, DiscError> {
+impl Clamped {
+    fn new(design: &DiscDesign, elements: Elements) -> Result<Self, DiscError> {
         let modulus = design.law.shear_modulus();
         if modulus.is_nan() || modulus <= 0.0 {
             return Err(DiscError::NoStiffness {
@@ -136,8 +164,41 @@ impl Disc {
             Mesh::disc(thickness, elements),
             design.law.stiffened(1.0 / modulus),
         );
-        wall.resist(stiffness, TOLERANCE / thickness);
+        let on_foundation = matches!(design.far_side, FarSide::Foundation { .. });
+        wall.resist(stiffness, on_foundation, TOLERANCE / thickness);
         wall.touch(Surface::Plate, design.friction);
+        Ok(Self {
+            wall,
+            plate,
+            length,
+            modulus,
+        })
+    }
+}
+
+/// A clamped disc, and the states found so far.
+#[derive(Clone, Debug)]
+pub struct Disc {
+    wall: SolidWall,
+    /// Its radius, metres.
+    length: f64,
+    /// Its shear modulus, pascals.
+    modulus: f64,
+    path: Path,
+}
+
+impl Disc {
+    /// The undeformed disc.
+    ///
+    /// # Errors
+    /// [`DiscError::NoStiffness`], [`DiscError::NotADisc`] for lengths or a stiffness out of their ranges.
+    pub fn new(design: &DiscDesign, elements: Elements) -> Result<Self, DiscError> {
+        let Clamped {
+            mut wall,
+            plate,
+            length,
+            modulus,
+        } = Clamped::new(design, elements)?;
         let path = Path::new(&mut wall, plate).ok_or(DiscError::Unsolved {
             asked: 0.0,
             failure: super::Failure::Singular,
@@ -156,19 +217,16 @@ impl Disc {
     /// [`DiscError::NotAPressure`], [`DiscError::BeyondLimit`], [`DiscError::Unsolved`].
     pub fn at_pressure(&mut self, pressure: f64) -> Result<DiscState, DiscError> {
         let kept = self.solve(pressure)?;
-        let unit = self.length * self.length * self.length;
-        let outer = self.wall.mesh.layers() - 1;
+        let found = Found {
+            state: &kept.state,
+            balance: &kept.balance,
+            compliance: kept.compliance,
+            energy: kept.energy,
+            work: kept.work,
+        };
         Ok(DiscState {
             pressure,
-            force: kept.balance.force * self.modulus * self.length * self.length,
-            contact_radius: section::contact_edge(&self.wall, &kept.state, self.path.plate()).radius
-                * self.length,
-            volume: kept.balance.volume * unit,
-            compliance: kept.compliance * unit / self.modulus,
-            travel: (kept.state.nodes[outer][1] - self.wall.mesh.thickness) * self.length,
-            centre_stretch: section::pole_stretch(&self.wall, &kept.state),
-            energy: kept.energy * self.modulus * unit,
-            work: kept.work * self.modulus * unit,
+            ..found.in_units(&self.wall, self.path.plate(), self.length, self.modulus)
         })
     }
 

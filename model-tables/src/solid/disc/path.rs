@@ -75,7 +75,7 @@ pub(super) enum Stop {
 }
 
 /// The equation of a held pressure.
-fn held(pressure: f64) -> Fluid {
+pub(super) fn held(pressure: f64) -> Fluid {
     Fluid {
         by_volume: 0.0,
         volume: 0.0,
@@ -298,7 +298,7 @@ fn between(below: &Kept, above: &Kept, pressure: f64) -> State {
 }
 
 /// Whether the outer face has gone through the frame; the crease at the rim does not count.
-fn touches_frame(wall: &SolidWall, state: &State) -> bool {
+pub(super) fn touches_frame(wall: &SolidWall, state: &State) -> bool {
     let mesh = &wall.mesh;
     let crease = CREASE * mesh.thickness;
     (0..mesh.stations()).any(|station| {

@@ -93,6 +93,12 @@ impl SolidWall {
         })
     }
 
+    /// Derivative of the fluid's volume by its pressure, a plate held at a height, by the latest factors: those of an iterate beside the state.
+    pub(in crate::solid) fn compliance(&mut self) -> f64 {
+        self.follow_pressure();
+        self.change(&self.by_pressure)
+    }
+
     /// Change of the fluid's volume with a step.
     pub(in crate::solid) fn change(&self, step: &State) -> f64 {
         let by_node = self.by_node.as_flattened();

@@ -10,7 +10,12 @@ impl SolidWall {
     /// The object's action on a column's outer edge, if it is near.
     pub(super) fn action(&self, state: &State, column: usize, apex: f64) -> Option<Action> {
         let place = edge(&self.mesh, &state.nodes, column, self.mesh.layers() - 1);
-        let (stiffness, near) = (self.contact_stiffness * self.stiffening(), self.mesh.thickness);
+        let stiffening = if self.on_foundation {
+            1.0
+        } else {
+            self.stiffening()
+        };
+        let (stiffness, near) = (self.contact_stiffness * stiffening, self.mesh.thickness);
         let undeformed = &self.outer[column];
         let mut action = self.surface.action(stiffness, undeformed, &place, apex, near)?;
         if let Some(sliding) = &self.sliding {
@@ -27,9 +32,10 @@ impl SolidWall {
     }
 
     /// What a plate answers to penetration, pressure per length, in place of a rigid one's penalty: of objects that are put in its place after this.
-    /// And the tolerance in place of a dome's, whose wall is far stiffer than a thin disc.
-    pub fn resist(&mut self, stiffness: f64, tolerance: f64) {
+    /// `on_foundation`: that is a real foundation's. And the tolerance in place of a dome's, whose wall is far stiffer than a thin disc.
+    pub fn resist(&mut self, stiffness: f64, on_foundation: bool, tolerance: f64) {
         self.contact_stiffness = stiffness;
+        self.on_foundation = on_foundation;
         self.tolerance = tolerance;
     }
 

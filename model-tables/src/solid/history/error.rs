@@ -1,6 +1,7 @@
 //! Why there is no press in time.
 
 use crate::limit::EndsBy;
+use crate::solid::disc::DiscEnd;
 use crate::solid::{Failure, SolidError};
 use core::fmt;
 
@@ -32,6 +33,15 @@ pub enum HistoryError {
         indentation: f64,
         /// What ends the press.
         by: EndsBy,
+    },
+    /// The actuator does not stand what comes next.
+    Actuator {
+        /// When, seconds.
+        time: f64,
+        /// Pressure of the state before, pascals.
+        pressure: f64,
+        /// Why there is none after it.
+        by: DiscEnd,
     },
     /// A state was not found.
     Unsolved {
@@ -75,6 +85,13 @@ impl fmt::Display for HistoryError {
                 f,
                 "the press ends at {:.6} mm ({}) at time_s = {time:.6}: press less deep",
                 1e3 * indentation,
+                by.word()
+            ),
+            Self::Actuator { time, pressure, by } => write!(
+                f,
+                "the actuator's states end at {:.6} kPa ({}) at time_s = {time:.6}: press less deep, or take a thicker, smaller or \
+                 stiffer disc",
+                pressure / 1e3,
                 by.word()
             ),
             Self::Unsolved {

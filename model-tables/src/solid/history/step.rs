@@ -4,6 +4,7 @@ use super::{
     Drive, ENERGY_TOLERANCE, FIRST_ENERGY_TOLERANCE, FORCE_ITERATIONS, FORCE_TOLERANCE, History,
     LARGEST_BEND, LARGEST_GROWTH, LARGEST_TRAVEL, Next, Rejected, Solved,
 };
+use crate::solid::disc::DiscEnd;
 use crate::solid::state::Balance;
 use crate::solid::{Failure, section};
 
@@ -12,6 +13,9 @@ impl History {
     pub(super) fn step(&mut self, seconds: f64, drive: Drive, target: f64) -> Result<Solved, Rejected> {
         if let Some(memory) = &mut self.wall.memory {
             memory.begin(seconds);
+        }
+        if let Some(outlet) = &mut self.outlet {
+            outlet.disc.begin(seconds);
         }
         let (indentation, balance) = match drive {
             Drive::Indentation(_) => {
@@ -35,27 +39,44 @@ impl History {
         if let Some(by) = section::touches_base(&self.wall, &self.trial) {
             return Err(Rejected::Touches(by));
         }
-        let share = self.bend() / (LARGEST_BEND * self.height);
+        let of_disc = self.outlet.as_ref().map_or(0.0, |outlet| outlet.disc.share());
+        let share = (self.bend() / (LARGEST_BEND * self.height)).max(of_disc);
         if share > 1.0 {
             return Err(Rejected::TooLong(share));
         }
         let (energy, work) = self.work_of_step(indentation, &balance)?;
+        let of_actuator = match &mut self.outlet {
+            Some(outlet) => {
+                let work = outlet.disc.work_of_step();
+                Some(work.ok_or(Rejected::Actuator(DiscEnd::NoFurtherState))?)
+            }
+            None => None,
+        };
         Ok(Solved {
             indentation,
             balance,
             share,
             energy,
             work,
+            of_actuator,
         })
     }
 
-    /// Relaxed strain energy after the trial, and work of the wall's stresses in it: as much as the plate does. What is in balance but on
+    /// Relaxed strain energy after the trial, and work of the wall's stresses and of what the fluid carried out in it: as much as the plate does. What is in balance but on
     /// another branch fails this.
     fn work_of_step(&mut self, indentation: f64, balance: &Balance) -> Result<(f64, f64), Rejected> {
-        let energy = self.wall.energy(&self.trial);
+        // Between the two walls' iterations the excess volumes are not far below the tolerance: their work counts.
+        let energy = if self.outlet.is_some() {
+            self.wall.potential(&self.trial)
+        } else {
+            self.wall.energy(&self.trial)
+        };
         let mut work = energy - self.energy;
         if let Some(memory) = &mut self.wall.memory {
             work += memory.end(&self.wall.mesh, &self.wall.material, &self.trial);
+        }
+        if self.outlet.is_some() {
+            work += 0.5 * (self.state.fluid + self.trial.fluid) * (self.volume - balance.volume);
         }
         let supplied = 0.5 * (self.force + balance.force) * (indentation - self.indentation);
         let [of_step, of_all] = if self.most_work > 0.0 {
@@ -98,6 +119,15 @@ impl History {
     /// Solves with the plate at an indentation.
     fn settle(&mut self, indentation: f64) -> Result<Balance, Rejected> {
         let plate = self.height - indentation;
+        if let Some(outlet) = &mut self.outlet {
+            return outlet.settle(
+                &mut self.wall,
+                &mut self.trial,
+                plate,
+                self.whole,
+                &mut self.fluid,
+            );
+        }
         self.wall
             .settle(&mut self.trial, plate, &self.fluid)
             .map_err(Rejected::Failed)
@@ -141,11 +171,15 @@ impl History {
     }
 
     /// Takes a step as it was solved.
-    pub(super) fn take(&mut self, solved: &Solved, seconds: f64) {
+    pub(super) fn take(&mut self, solved: &Solved, seconds: f64) -> Option<()> {
+        if let (Some(outlet), Some(work)) = (&mut self.outlet, solved.of_actuator) {
+            outlet.disc.take(work, seconds)?;
+        }
         if let Some(memory) = &mut self.wall.memory {
             memory.take();
         }
         self.energy = solved.energy;
+        self.volume = solved.balance.volume;
         self.work += solved.work;
         self.most_work = self.most_work.max(self.work);
         self.supplied += 0.5 * (self.force + solved.balance.force) * (solved.indentation - self.indentation);
@@ -167,5 +201,6 @@ impl History {
             travel: (growth * travel.max(self.next.travel)).min(LARGEST_TRAVEL * self.height),
         };
         self.steps += 1;
+        Some(())
     }
 }
