@@ -158,6 +158,46 @@ pub(super) fn force(found: &Findings) -> String {
     lines("Force against indentation", axes, true, &[series])
 }
 
+/// A line by a name, in SI units.
+pub(super) struct Labelled {
+    pub(super) label: String,
+    pub(super) points: Vec<[f64; 2]>,
+}
+
+/// Forces over the indentation.
+pub(super) fn labelled_forces(title: &str, forces: &[Labelled]) -> String {
+    let series: Vec<Series> = forces
+        .iter()
+        .enumerate()
+        .map(|(i, line)| Series {
+            label: line.label.clone(),
+            color: COLORS[i % COLORS.len()],
+            marker: Some(MARKERS[i % MARKERS.len()]),
+            line: true,
+            points: line.points.clone(),
+        })
+        .collect();
+    lines(
+        title,
+        [Named("indentation", MM), Named("force", NEWTON)],
+        true,
+        &series,
+    )
+}
+
+/// Feedback force over touch force.
+pub(super) fn feedback(line: Labelled) -> String {
+    let axes = [Named("touch force", NEWTON), Named("feedback force", NEWTON)];
+    let series = Series {
+        label: line.label,
+        color: BLUE,
+        marker: None,
+        line: true,
+        points: line.points,
+    };
+    lines("Feedback force against touch force", axes, true, &[series])
+}
+
 /// Pressure rise over the indentation.
 pub(super) fn pressure(found: &Findings) -> String {
     let axes = [Named("indentation", MM), Named("pressure rise", KPA)];

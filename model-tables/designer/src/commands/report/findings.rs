@@ -58,6 +58,8 @@ pub(super) struct Findings {
     pub(super) bending: Vec<Bending>,
     /// The actuator over its pressure.
     pub(super) actuator: Vec<(f64, Blocked)>,
+    /// The design with the semi-axes that the model takes.
+    pub(super) design: Design,
     /// What a reader has to know, a line each.
     pub(super) warnings: Vec<String>,
 }
@@ -137,6 +139,7 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     warnings.extend(bench::caution(&file));
     Ok(Findings {
         actuator: actuator(&file, &design),
+        design,
         rest: tip.rest(),
         model: kind,
         note,

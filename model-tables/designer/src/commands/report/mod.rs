@@ -2,6 +2,7 @@
 
 mod charts;
 mod cost;
+mod feedback;
 mod findings;
 mod in_time;
 mod inputs;

@@ -1,6 +1,7 @@
 //! The page: words and tables around the charts. Everything is in the one file: no script, no font, no picture from elsewhere.
 
 use super::charts;
+use super::feedback;
 use super::findings::Findings;
 use super::in_time;
 use super::inputs::{Row, inputs, rows};
@@ -33,6 +34,9 @@ pub(super) fn html(found: &Findings, path: &Path) -> String {
             @if !found.in_time.is_empty() { (in_time::section(&found.in_time)) }
             (speed(found))
             @if !found.actuator.is_empty() { (actuator(found)) }
+            @if let Some(haptic) = &feedback::pressing(&found.file, found.model, &found.design, found.deepest) {
+                (feedback::section(haptic))
+            }
         }
         footer {
             p.soft {
