@@ -2,11 +2,12 @@
 //!
 //! [`target`] (what is wanted) -> a search over materials, aspects and stretches, in which one solved press covers every
 //! size and wall, because a membrane's force is proportional to modulus, wall and size -> least squares from the
-//! best -> [`Sized`] designs, ranked.
+//! best -> [`Sized`] designs, ranked. [`transmission`] sizes fingertip and feedback actuator together.
 
 mod refine;
 mod search;
 pub mod target;
+pub mod transmission;
 
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;

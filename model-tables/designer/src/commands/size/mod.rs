@@ -1,9 +1,11 @@
 //! `designer size`: membranes for a wanted force over the indentation.
 
 mod chart;
+mod transmission;
 
 use super::bench;
 use crate::size::target::Target;
+use crate::size::transmission::target::WantedLoop;
 use crate::size::{self, Sized};
 use model_tables::design::RestBy;
 use output::files;
@@ -46,8 +48,12 @@ Designs are ranked by misfit (misfits under a percent count alike), then by what
 `force_n` has the force at each indentation of the target. The tolerance columns say by how much the force changes, at the
 worst of those indentations, when that dimension alone is off by the tolerance and the stretch at rest is kept.
 
+A target with [transmission] is one of a haptic loop: fingertip and feedback actuator for a wanted feedback force over touch force, with what tolerances,
+air, tube and temperature do to that (see targets/feedback.toml).
+
 Examples:
   cargo designer size model-tables/targets/human-fingertip.toml
+  cargo designer size model-tables/targets/feedback.toml --out loops/
   cargo designer size model-tables/targets/human-fingertip.toml --best 20 --out sized/";
 
 #[derive(Debug, clap::Args)]
@@ -64,6 +70,12 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     files::keep(&arguments.target);
+    if let Ok(text) = std::fs::read_to_string(&arguments.target)
+        && WantedLoop::is_in(&text)
+    {
+        let out = arguments.out.as_deref();
+        return transmission::run(&arguments.target, &text, arguments.best.into(), out);
+    }
     let target = Target::read(&arguments.target).map_err(Refusal::of)?;
     if let Some(out) = &arguments.out {
         files::expect_folder(out, &["size.svg"])?;
