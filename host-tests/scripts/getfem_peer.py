@@ -6,7 +6,7 @@
 
 The printed fingertip, 9 x 7 mm outside, wall 1 mm, Agilus30, unstretched, pressed by a rigid plate in 25 states 0.1 mm apart. Biquadratic
 displacements, a pressure linear and discontinuous in each element, the fluid's pressure as one more unknown, the plate as a penalty as
-stiff as in `model_tables::solid`, smoothed over a two-thousandth of the wall because GetFEM's Gauss points do not move with the contact's
+stiff as in `model_tables::solid`, smoothed over a twenty-thousandth of the wall because GetFEM's Gauss points do not move with the contact's
 edge. Each state starts from the parabola through the three before it. One row: settings, microseconds of CPU a state, Newton iterations
 a state, and, separated by spaces, pressures in pascals and forces in newtons.
 """
@@ -26,7 +26,7 @@ STATES, DEEPEST = 25, 2.5e-3
 STIFFNESS = 200.0
 GRADING, FEW = 0.25, 24.0
 # Width over which the plate's contact is smoothed, in wall thicknesses.
-SMOOTH = 5e-4
+SMOOTH = 5e-5
 RESIDUAL = 1e-9
 ITERATIONS = 60
 

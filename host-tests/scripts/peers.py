@@ -227,7 +227,7 @@ def seconds_table(times):
     """By command and build."""
     page = [f"| command | {' | '.join(times)} |", "|---" * (len(times) + 1) + "|"]
     for command in next(iter(times.values())):
-        page.append(f"| {command} | " + " | ".join(f"{spent[command]:.2f}" for spent in times.values()) + " |")
+        page.append(f"| {command} | " + " | ".join("-" if np.isnan(spent[command]) else f"{spent[command]:.2f}" for spent in times.values()) + " |")
     return page
 
 
@@ -291,7 +291,7 @@ def main():
         times["this build"] = seconds(designer("this", ROOT), ROOT)
         for commit in arguments.against:
             times[commit] = seconds(designer(commit, archive(commit)), archive(commit))
-    page = (SCRIPTS / "peers.md").read_text().replace("{machine}", machine())
+    page = (SCRIPTS / "peers.md").read_text().replace("{machine}", machine()).replace("{load}", f"{os.getloadavg()[1]:.0f}")
     page = page.replace("{command}", " ".join(["python3 host-tests/scripts/peers.py", *sys.argv[1:]]))
     page = page.replace("{membrane}", "\n".join(membrane_tables(ours, others, peers, truth)))
     page = page.replace("{solid}", "\n".join(solid_tables(ours, others, getfem))).replace("{notes}", "\n".join(notes))
