@@ -1,11 +1,15 @@
 //! `designer published`: the source paper's numbers beside what its stated inputs give, and the page about them.
 
+mod actuator;
+mod lifted;
+mod markdown;
 mod page;
 pub(super) mod paper;
 pub(super) mod quoted;
 mod readings;
 pub(super) mod solid;
 
+use actuator::OfPaper;
 use model_tables::design_file::DesignFile;
 use output::files;
 use output::rows::{Cell, Rows};
@@ -30,7 +34,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let paper = Paper::solve()?;
     let mut notes = Vec::new();
     if let Some(out) = &arguments.out {
-        let text = page::markdown(&paper, &Solid::solve()?);
+        let printed = shipped(
+            "index-fingertip-elastic",
+            include_str!("../../../../designs/index-fingertip-elastic.toml"),
+        )?;
+        let text = page::markdown(&paper, &Solid::solve()?, &OfPaper::solve(&printed)?)?;
         files::write_one(out, text.into_bytes())?;
         notes.push(format!("wrote {}", out.display()));
     }

@@ -2,60 +2,39 @@
 //!
 //! Few digits of each number, so that the page says what a reader can use and is the same on every host.
 
+use super::actuator::OfPaper;
+use super::lifted;
+use super::markdown::{number, published, ratio, table};
 use super::paper::Paper;
 use super::quoted;
 use super::solid::{Beside, COMPLIANCE, SOLID, SOLID_COMPLIANT_FORCE, SOLID_CONTACT_RADIUS, Solid};
 use core::f64::consts::PI;
-use output::rows::{plain, significant};
-use std::fmt::Write as _;
+use output::Refusal;
+use output::rows::significant;
 
 /// What writes the page.
 pub(super) const COMMAND: &str = "cargo designer published --out model-tables/PUBLISHED.md";
 
-/// Digits of a number.
-const DIGITS: i32 = 4;
-/// Digits of a ratio.
-const RATIO_DIGITS: i32 = 3;
-
-fn number(value: f64) -> String {
-    significant(value, DIGITS)
-}
-
-fn ratio(value: f64) -> String {
-    significant(value, RATIO_DIGITS)
-}
-
-/// A number as it was published: no digits added.
-fn published(value: f64) -> String {
-    plain(value, DIGITS)
-}
-
-fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let mut text = format!("| {} |\n|{}\n", header.join(" | "), "---|".repeat(header.len()));
-    for row in rows {
-        let _ = writeln!(text, "| {} |", row.join(" | "));
-    }
-    text
-}
-
 /// The whole page.
-pub(super) fn markdown(paper: &Paper, solid: &Solid) -> String {
-    format!(
+pub(super) fn markdown(paper: &Paper, solid: &Solid, feedback: &OfPaper) -> Result<String, Refusal> {
+    Ok(format!(
         "# Published numbers, and how far a membrane is from a real dome\n\
          \n\
          Written by `{COMMAND}`; a test fails when it is stale. Columns named *here* are computed by this crate when the \
          page is written; *published* and *solid* are quoted.\n\
          \n\
-         {}\n{}\n{}\n{}\n{}\n{}\n{}\n{}",
+         {}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}",
         numbers(paper),
         forces(paper),
         readings(paper),
         misprints(),
         others(),
+        feedback.markdown(paper),
+        lifted::markdown()?,
         distance(solid),
         mistaken(solid),
         consequences(solid),
-    )
+    ))
 }
 
 fn numbers(paper: &Paper) -> String {

@@ -49,6 +49,9 @@ pub(super) struct Paper {
     pub(super) blocked_diameter: f64,
     /// Contact diameter of the formula at that pressure, metres.
     pub(super) contact_diameter: f64,
+    /// Blocked force of the formula, newtons, and its volume change, cubic metres, each at its published pressure.
+    pub(super) blocked_force: f64,
+    pub(super) volume_change: f64,
     /// End of the press, metres, and what the paper puts in its place: inflated height less undeformed height.
     pub(super) limit: f64,
     pub(super) height_difference: f64,
@@ -114,6 +117,8 @@ impl Paper {
             readings: readings(&design)?,
             blocked_diameter,
             contact_diameter: blocked.contact_diameter,
+            blocked_force: blocked.blocked_force,
+            volume_change: changed.volume_change,
             limit,
             height_difference: rest.height - design.membrane.axial_semi_axis,
         })
