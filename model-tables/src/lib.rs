@@ -68,7 +68,6 @@ pub mod curve;
 pub mod design;
 #[cfg(feature = "std")]
 pub mod design_file;
-pub mod gas;
 #[cfg(feature = "std")]
 pub mod generate;
 pub mod limit;

@@ -1,12 +1,12 @@
 //! The haptic loop against brute force: the fluid's volume counted, state by state.
 
 use model_tables::design::{Design, Membrane, RestBy};
-use model_tables::gas::TrappedGas;
 use model_tables::material::Law;
 use model_tables::model::Kind;
 use model_tables::model::feedback::{Loop, LoopError};
 use model_tables::object::{Friction, Object};
 use model_tables::solid::disc::{DISC, Disc, DiscDesign, FarSide};
+use model_tables::solid::gas::TrappedGas;
 use model_tables::solid::press::{COARSE, Press};
 
 const AGILUS30: Law = Law::MooneyRivlin {

@@ -1,7 +1,6 @@
 //! The haptic loop in time: between its elastic limits, which the loop without time gives, with nothing lost on the way.
 
 use model_tables::design::{Design, Membrane, RestBy};
-use model_tables::gas::{STANDARD_ATMOSPHERE, TrappedGas};
 use model_tables::material::Law;
 use model_tables::material::preset::AGILUS30;
 use model_tables::material::relaxation::{Relaxation, Term};
@@ -9,6 +8,7 @@ use model_tables::model::Kind;
 use model_tables::model::feedback::{Loop, LoopState};
 use model_tables::object::{Friction, Object};
 use model_tables::solid::disc::{Disc, DiscDesign, DiscInTime, DiscState, FarSide};
+use model_tables::solid::gas::{STANDARD_ATMOSPHERE, TrappedGas};
 use model_tables::solid::history::{Drive, History, Instant};
 use model_tables::solid::mesh::Elements;
 

@@ -5,11 +5,11 @@ use super::bounds::{Bounds, LENGTH};
 use super::material::material;
 use super::relaxation;
 use super::section::{KeyFault, Section};
-use crate::gas::TrappedGas;
 use crate::material::Law;
 use crate::material::relaxation::Relaxation;
 use crate::object::Friction;
 use crate::solid::disc::{DiscDesign, FarSide};
+use crate::solid::gas::TrappedGas;
 use core::fmt::{self, Write as _};
 
 /// `[actuator]`, in the units of its keys.

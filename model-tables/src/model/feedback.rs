@@ -6,11 +6,11 @@
 use super::{Fingertip, Kind, ModelError};
 use crate::curve::Contact;
 use crate::design::Design;
-use crate::gas::TrappedGas;
 use crate::membrane::TensionField;
 use crate::membrane::press;
 use crate::solid;
 use crate::solid::disc::{Disc, DiscError, DiscState};
+use crate::solid::gas::TrappedGas;
 use crate::solid::section::WallPoint;
 use std::fmt;
 

@@ -20,11 +20,11 @@ use super::mesh::Elements;
 use super::press;
 use super::state::{Balance, Fluid, State};
 use crate::design::{Design, RestBy};
-use crate::gas::TrappedGas;
 use crate::limit::EndsBy;
 use crate::material::Hyperelastic as _;
 use crate::material::relaxation::Relaxation;
 use crate::object::Friction;
+use crate::solid::gas::TrappedGas;
 use outlet::Outlet;
 
 /// Largest travel of a plate near the wall in a step, over the height.

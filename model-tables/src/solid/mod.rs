@@ -9,7 +9,8 @@
 //! in [`lanes`]), [`fluid`] (the volume inside) and [`object`] with [`plate`] and `friction` (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
 //! (Newton's method) -> [`inflation`] -> [`path`] (the
 //! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units, and by `branch` those beside the path)
-//! -> [`section`] (what is read off along the meridian). [`disc`] is the feedback actuator: a flat wall that goes by the fluid's pressure.
+//! -> [`section`] (what is read off along the meridian). [`disc`] is the feedback actuator: a flat wall that goes by the fluid's
+//! pressure; [`gas`] what is trapped in the line to it.
 #![cfg_attr(
     feature = "std",
     expect(
@@ -38,6 +39,8 @@ pub mod fluid;
 mod friction;
 #[cfg(feature = "std")]
 pub mod frontal;
+#[cfg(feature = "std")]
+pub mod gas;
 #[cfg(feature = "std")]
 pub mod history;
 #[cfg(feature = "std")]

@@ -4,10 +4,10 @@
 //! tangent; the fingertip is solved with that as a compliance, until both have one pressure (Newton's method).
 
 use super::Rejected;
-use crate::gas::TrappedGas;
 use crate::solid::Failure;
 use crate::solid::disc::DiscInTime;
 use crate::solid::equilibrium::SolidWall;
+use crate::solid::gas::TrappedGas;
 use crate::solid::state::{Balance, Fluid, State};
 
 /// Iterations between fingertip and actuator.

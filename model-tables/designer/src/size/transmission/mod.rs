@@ -6,12 +6,12 @@
 pub mod target;
 
 use model_tables::design::{Design, Membrane, RestBy};
-use model_tables::gas::TrappedGas;
 use model_tables::material::preset::Preset;
 use model_tables::model::Kind;
 use model_tables::model::feedback::Loop;
 use model_tables::object::{Friction, Object};
 use model_tables::solid::disc::{Disc, DiscDesign};
+use model_tables::solid::gas::TrappedGas;
 use model_tables::solid::mesh::Elements;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
