@@ -85,19 +85,30 @@ impl Candidate<'_> {
         Some(assemble(layout, &found[0].1, &found[1].1))
     }
 
-    /// Tables of this candidate's curve in the layout of others, with their lowest segment.
-    pub(super) fn beside(&self, others: &OwnedTables, accuracy: &Accuracy) -> Option<OwnedTables> {
-        let layout = others.layout;
-        let (lowest, spans) = self.segmentation.spans.split_first()?;
+    /// What others read at the end of their lowest segment.
+    pub(super) fn shared_end(&self, others: &OwnedTables) -> Option<[i32; 2]> {
+        let (lowest, _) = self.segmentation.spans.split_first()?;
         let end = others.lookup(PressureRise(lowest.end - 1));
+        Some([end.force.0, end.indentation.0])
+    }
+
+    /// Tables of this candidate's curve in the layout of others, with their lowest segment; beyond it from these outputs on.
+    pub(super) fn beside(
+        &self,
+        others: &OwnedTables,
+        before: [i32; 2],
+        accuracy: &Accuracy,
+    ) -> Option<OwnedTables> {
+        let layout = others.layout;
+        let (_, spans) = self.segmentation.spans.split_first()?;
         let integers = |output: usize, shift: u32, before: i32| {
             if self.spare_bits(output)? < shift {
                 return None;
             }
             self.integers(&layout, output, shift, accuracy, spans, before)
         };
-        let force = integers(0, layout.force_shift, end.force.0)?;
-        let indentation = integers(1, layout.indentation_shift, end.indentation.0)?;
+        let force = integers(0, layout.force_shift, before[0])?;
+        let indentation = integers(1, layout.indentation_shift, before[1])?;
         let mut tables = assemble(layout, &force, &indentation);
         tables.words.extend(others.segment(spans.len()));
         Some(tables)

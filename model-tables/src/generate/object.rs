@@ -1,4 +1,5 @@
-//! Tables of other objects than a plate: those of a reference ball, and the law that says how much of it an object has.
+//! Tables of other objects than a plate: those of a reference object, and the law of how much of it an object has. The reference is a
+//! ball, and where a design states a cup, that cup: a weight takes one ball to another within a percent, and a ball to a cup within 5 or 10.
 
 use super::candidate::{Candidate, Work};
 use super::owned::OwnedTables;
@@ -21,17 +22,22 @@ pub(super) use band::{TableError, Unknown};
 pub(super) use press::plate_of;
 pub use solved::{NoObjects, SolvedObject, SolvedObjects};
 
-/// What the tables of the reference ball are held to, as a multiple of what those of the plate are: its share of a blend's error.
-const BALL_ACCURACY: f64 = 3.0;
+/// What the tables of the reference object are held to, as a multiple of what those of the plate are: its share of a blend's error.
+const REFERENCE_ACCURACY: f64 = 3.0;
+
+/// Percent of reading of a solved object: a blend that is further off is not offered. A ball and a cup differ in more than a weight.
+const FARTHEST: f64 = 6.0;
 
 /// A law may lie so much beyond its ends, in units of a weight.
 const MARGIN: i32 = 1 << (WEIGHT_BITS - 5);
 
-/// Tables of the reference ball, and what a blend of them and the plate's is worth.
+/// Tables of the reference object, and what a blend of them and the plate's is worth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectTables {
-    /// The reference ball's, of the layout of the plate's.
+    /// The reference object's, of the layout of the plate's.
     pub ball: OwnedTables,
+    /// The reference object: a ball, or the cup that the design states.
+    pub reference: Touched,
     /// The weights over the radius.
     pub law: BlendLaw,
     /// What the design says is touched, until a command says otherwise.
@@ -92,7 +98,7 @@ fn blended(plate: &OwnedTables, ball: &OwnedTables, weights: &Weights) -> OwnedT
 }
 
 impl SolvedObjects {
-    /// The reference ball's tables in the layout of the plate's, if there are some with which no blend ever falls.
+    /// The reference object's tables in the layout of the plate's, if there are some with which no blend ever falls.
     pub(super) fn tables(
         &self,
         plate: &OwnedTables,
@@ -104,8 +110,8 @@ impl SolvedObjects {
             return None;
         }
         let accuracy = Accuracy {
-            force_percent_of_reading: BALL_ACCURACY * accuracy.force_percent_of_reading,
-            indentation_percent_of_reading: BALL_ACCURACY * accuracy.indentation_percent_of_reading,
+            force_percent_of_reading: REFERENCE_ACCURACY * accuracy.force_percent_of_reading,
+            indentation_percent_of_reading: REFERENCE_ACCURACY * accuracy.indentation_percent_of_reading,
             ..*accuracy
         };
         let work = Work::default();
@@ -116,32 +122,62 @@ impl SolvedObjects {
             error: 0.0,
             work: &work,
         };
-        let ball = candidate.beside(plate, &accuracy)?;
-        let law = self.law(truth.fraction_bits, truth.maximum);
-        // A blend for a tight cup can fall where one for balls does not.
-        let without_cups = BlendLaw {
-            least: [law.least[0], 0],
-            ..law
+        let ball = if self.reference.is_cup() {
+            // First contact is shared with the plate, and a cup has less indentation there: its tables begin below that, and a blend
+            // raises them by less than a micrometre.
+            let cup = candidate.beside(plate, [0; 2], &accuracy)?;
+            blended(plate, &cup, &Weights::REFERENCE)
+        } else {
+            candidate.beside(plate, candidate.shared_end(plate)?, &accuracy)?
         };
-        let law = [law, without_cups]
-            .into_iter()
-            .find(|law| rises(plate, &ball, law))?;
+        let mut law = self.law(truth.fraction_bits, truth.maximum);
+        let errors = loop {
+            let errors: Vec<BlendError> = self
+                .objects
+                .iter()
+                .filter_map(|object| {
+                    let weights = law.weights(object.touched)?;
+                    Some(self.error(&answered(plate, &ball, &weights), object))
+                })
+                .collect();
+            let is_far = |error: &BlendError| {
+                let BlendErrors {
+                    force_percent,
+                    indentation_percent,
+                    ..
+                } = error.pressed;
+                error.radius_mm.is_sign_negative() != self.reference.is_cup()
+                    && force_percent.max(indentation_percent) > FARTHEST
+            };
+            if !errors.iter().any(is_far) && rises(plate, &ball, &law) {
+                break errors;
+            }
+            // The tightest that is not of the reference's kind is left out.
+            let other = usize::from(!self.reference.is_cup());
+            if law.least[other] == 0 {
+                return None;
+            }
+            law.least[other] = self.next_wider(other, law.least[other]);
+        };
         law.weights(self.start)?;
-        let errors = self
-            .objects
-            .iter()
-            .filter_map(|object| {
-                let weights = law.weights(object.touched)?;
-                Some(self.error(&answered(plate, &ball, &weights), object))
-            })
-            .collect();
         Some(ObjectTables {
             ball,
+            reference: self.reference,
             law,
             start: self.start,
             from: self.from,
             errors,
         })
+    }
+
+    /// The next wider radius than this of solved balls (0) or cups (1), micrometres; 0 where there is none.
+    fn next_wider(&self, side: usize, least: i32) -> i32 {
+        let radii = self.objects.iter().filter_map(|object| match object.touched {
+            Touched::Ball(radius) if side == 0 => Some(radius),
+            Touched::Cup(radius) if side == 1 => Some(radius),
+            _ => None,
+        });
+        radii.filter(|radius| *radius > least).min().unwrap_or(0)
     }
 
     /// The law in integers.
@@ -159,7 +195,7 @@ impl SolvedObjects {
         };
         let both = |of: [solved::Coefficients; 2]| of.map(coefficients);
         BlendLaw {
-            reference: press::micrometres(self.reference_radius),
+            reference: press::micrometres(self.scale),
             offset: press::micrometres(self.offset),
             least: self.least.map(press::micrometres),
             last: self.last.map(counts),

@@ -13,6 +13,7 @@ use super::{Fingertip, Kind, ModelError};
 use crate::curve::Contact;
 use crate::design::Design;
 use crate::design_file::{DEFAULT_ELEMENTS, DesignFile, ModelSection};
+use crate::object::Shape;
 use crate::solid;
 use crate::solid::SolidError;
 use crate::solid::mesh::Elements;
@@ -66,6 +67,8 @@ const MAX_PERCENT: f64 = 1.0;
 const DEFAULT_FROM: f64 = 1.0;
 /// The deepest indentation where a design does not say, over the height: well before the end of any press.
 const DEFAULT_DEPTH: f64 = 0.35;
+/// Square of the smallest part of a depth that a cup is looked at to.
+const TIGHTEST_CUP: f64 = 0.01;
 
 /// How near a design's model has to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,11 +91,12 @@ impl Wanted {
         let from = file
             .accuracy
             .map_or(DEFAULT_FROM, |a| a.from_percent_of_full_scale);
-        let height = 1e3 * file.design().membrane.axial_semi_axis;
+        let design = file.design();
+        let height = 1e3 * design.membrane.axial_semi_axis;
         Self {
             error: percent / 100.0,
             from: from / 100.0,
-            deepest: 1e-3 * file.max_indentation_mm.unwrap_or(DEFAULT_DEPTH * height),
+            deepest: 1e-3 * file.max_indentation_mm.unwrap_or(DEFAULT_DEPTH * height) * in_a_cup(&design),
         }
     }
 
@@ -154,6 +158,18 @@ impl Wanted {
             .map(|part| fingertip.contact_at(part * self.deepest))
             .collect()
     }
+}
+
+/// The depth at which an object has the pressure that a plate has at a depth, over that depth: 1, and less of a cup, which lies against
+/// more of the wall and whose press ends earlier. Of a wall without bending: `sqrt(1 - Rd / R)`, with `Rd` the crown's radius of
+/// curvature.
+fn in_a_cup(design: &Design) -> f64 {
+    let Shape::Cup { radius } = design.object.shape else {
+        return 1.0;
+    };
+    let dome = &design.membrane;
+    let crown = dome.radial_semi_axis * dome.radial_semi_axis / dome.axial_semi_axis;
+    libm::sqrt((1.0 - crown / radius).max(TIGHTEST_CUP))
 }
 
 /// A model that was taken, and on what evidence.

@@ -71,17 +71,19 @@ fn force(read: &ReadPair, known: i32) -> [i32; 2] {
     [force, hypotenuse(sigma, force / PRODUCT).max(1)]
 }
 
-/// The curvature of the ball that has this indentation at the pressure where a plate and the reference ball have those, 1/km, and
+/// The curvature of the ball that has this indentation at the pressure where a plate and the reference object have those, 1/km, and
 /// whether it is a lower bound. Flat where the indentation is that of a plate or less.
-fn curvature(law: &BlendLaw, plate: i32, ball: i32, known: i32) -> (i32, bool) {
-    let apart = i64::from(ball) - i64::from(plate);
-    if apart <= 0 {
+fn curvature(law: &BlendLaw, plate: i32, reference: i32, known: i32) -> (i32, bool) {
+    let apart = i64::from(reference) - i64::from(plate);
+    if apart == 0 || law.least[0] <= 0 {
         return (0, false);
     }
-    let weight = ((i64::from(known) - i64::from(plate)) << WEIGHT_BITS) / apart;
+    // Of a reference that is a cup the weights of balls are below 0.
+    let sign = apart.signum();
+    let weight = sign * (((i64::from(known) - i64::from(plate)) << WEIGHT_BITS) / apart);
     let weight_of = |radius: i32| {
         law.weights(Touched::Ball(radius))
-            .map_or(0, |weights| i64::from(weights.indentation))
+            .map_or(0, |weights| sign * i64::from(weights.indentation))
     };
     let least = law.least[0].clamp(1, LARGEST);
     if weight > weight_of(least) {

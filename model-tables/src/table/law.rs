@@ -1,4 +1,4 @@
-//! How much of the reference ball an object has: the weights of a blend over the object's radius.
+//! How much of the reference object an object has: the weights of a blend over the object's radius.
 
 /// Fraction bits of a weight.
 pub const WEIGHT_BITS: u32 = 10;
@@ -17,6 +17,11 @@ pub enum Touched {
 }
 
 impl Touched {
+    /// Whether it is hollow.
+    pub const fn is_cup(self) -> bool {
+        matches!(self, Self::Cup(_))
+    }
+
     /// Code and radius; a plate's is 0.
     pub const fn code(self) -> (u8, i32) {
         match self {
@@ -51,7 +56,7 @@ impl core::fmt::Display for Touched {
     }
 }
 
-/// Weights of the reference ball in units of `2^-10`, and the last input that is answered with them.
+/// Weights of the reference object in units of `2^-10`, and the last input that is answered with them.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Weights {
     /// Of the force.
@@ -69,17 +74,23 @@ impl Weights {
         indentation: 0,
         maximum: i32::MAX,
     };
+    /// Those of the reference object.
+    pub const REFERENCE: Self = Self {
+        force: 1 << WEIGHT_BITS,
+        indentation: 1 << WEIGHT_BITS,
+        maximum: i32::MAX,
+    };
 }
 
 /// Weights over the radius, of one design: with `t = (reference + offset) / (R + offset)`, for a cup of `-R`,
 /// `w = t (c1 + c2 t + c3 t^2)`. Fitted to solved objects.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct BlendLaw {
-    /// Radius of the reference ball, micrometres.
+    /// Radius of the reference ball, micrometres; where the reference is a cup, a length like it.
     pub reference: i32,
     /// Added to radii: twice the wall, micrometres.
     pub offset: i32,
-    /// The smallest radius of a ball, and of a cup (0: no cups), micrometres.
+    /// The smallest radius of a ball, and of a cup, micrometres; 0: none.
     pub least: [i32; 2],
     /// Last input that all balls, and all cups, answer: counts.
     pub last: [i32; 2],
@@ -113,7 +124,9 @@ impl BlendLaw {
             // The divisor of a cup is below 0.
             (
                 "least",
-                length(ball) && (cup == 0 || length(cup) && cup > self.offset),
+                (ball == 0 || length(ball))
+                    && (cup == 0 || length(cup) && cup > self.offset)
+                    && (ball > 0 || cup > 0),
             ),
             ("last", self.last.iter().all(|last| (1..=maximum).contains(last))),
             ("force", small(&self.force)),

@@ -142,17 +142,19 @@ fn write_blend(object: &ObjectTables, unknown: bool, out: &mut String) -> fmt::R
     let millimetres = |micrometres: i32| f64::from(micrometres) * 1e-3;
     writeln!(
         out,
-        "\n[object] # tables blended of the plate's and a reference ball's, as the chip blends them. A cylinder takes half the weights\n\
+        "\n[object] # tables blended of the plate's and a reference object's, as the chip blends them. A cylinder takes half the weights\n\
          # of a ball: quoted, not solved.\n\
          start = \"{}\"\n\
-         reference_ball_mm = {:?}\n\
-         bytes = {}\n\
-         least_ball_mm = {:?}",
+         reference_{}_mm = {:?}\n\
+         bytes = {}",
         object.start,
-        millimetres(law.reference),
+        if object.reference.is_cup() { "cup" } else { "ball" },
+        millimetres(object.reference.code().1),
         2 * object.ball.bytes(),
-        millimetres(law.least[0]),
     )?;
+    if law.least[0] > 0 {
+        writeln!(out, "least_ball_mm = {:?}", millimetres(law.least[0]))?;
+    }
     if unknown {
         writeln!(out, "chosen = \"the start has the smallest band\"")?;
     }

@@ -20,6 +20,8 @@ const BALLS: [(f64, bool); 5] = [
 ];
 /// The cups, the same; those that touch beside the pole first, or have no press, are left out.
 const CUPS: [f64; 2] = [2.6, 5.2];
+/// The wider cups of a design that states one, over its radius, and whether the law is fitted to them.
+const WIDER_CUPS: [(f64, bool); 3] = [(1.5, true), (2.2, false), (4.0, true)];
 /// The smallest part of the last pressure rise that counts: of less, objects are told apart by less than what tables are off.
 const FROM: f64 = 1.0 / 128.0;
 /// The states of an object's curve, on until it has the plate's last pressure.
@@ -52,10 +54,13 @@ pub struct SolvedObject {
 #[derive(Clone, Debug)]
 pub struct SolvedObjects {
     pub(super) objects: Vec<SolvedObject>,
-    /// The reference ball's curve, continued to where the plate's ends.
+    /// The reference object's curve, continued to where the plate's ends.
     pub(super) reference_beyond: Curve,
-    /// Lengths in metres.
-    pub(super) reference_radius: f64,
+    /// The object of the tables beside the plate's: a ball, or the cup that the design states.
+    pub(super) reference: Touched,
+    /// Scale of the law, metres: the reference ball's radius, also where the reference is a cup.
+    pub(super) scale: f64,
+    /// Twice the wall, metres.
     pub(super) offset: f64,
     /// Smallest radii of balls and of cups; 0: none.
     pub(super) least: [f64; 2],
@@ -70,16 +75,16 @@ pub struct SolvedObjects {
 /// Why there are no blended tables.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoObjects {
-    /// The reference ball, or one of those that the law is fitted to, has no press.
-    Ball {
-        /// Its radius, millimetres.
+    /// The reference object, or a ball that the law is fitted to, has no press.
+    Unpressed {
+        /// Its radius, millimetres; of a cup negative.
         radius_mm: f64,
         /// Why.
         reason: ModelError,
     },
     /// Its curve does not rise.
     Curve {
-        /// Its radius, millimetres.
+        /// Its radius, millimetres; of a cup negative.
         radius_mm: f64,
         /// Where.
         reason: CurveError,
@@ -100,13 +105,19 @@ pub enum NoObjects {
 impl fmt::Display for NoObjects {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Ball { radius_mm, reason } => write!(
+            Self::Unpressed { radius_mm, reason } => write!(
                 f,
-                "the ball of {radius_mm:.3} mm that tables of objects need has no press ({reason}): leave out [object]"
+                "the {} of {:.3} mm that tables of objects need has no press ({reason}): {}",
+                kind(*radius_mm),
+                radius_mm.abs(),
+                remedy(*radius_mm)
             ),
             Self::Curve { radius_mm, reason } => write!(
                 f,
-                "the curve of the ball of {radius_mm:.3} mm that tables of objects need cannot be used ({reason}): leave out [object]"
+                "the curve of the {} of {:.3} mm that tables of objects need cannot be used ({reason}): {}",
+                kind(*radius_mm),
+                radius_mm.abs(),
+                remedy(*radius_mm)
             ),
             Self::Radius {
                 radius_mm,
@@ -132,6 +143,18 @@ impl fmt::Display for NoObjects {
                 "the tables come from the data in [calibration], and those of other objects cannot: leave out [object]"
             ),
         }
+    }
+}
+
+fn kind(radius_mm: f64) -> &'static str {
+    if radius_mm < 0.0 { "cup" } else { "ball" }
+}
+
+fn remedy(radius_mm: f64) -> &'static str {
+    if radius_mm < 0.0 {
+        "give a wider cup as object.radius_mm, or leave out [object]"
+    } else {
+        "leave out [object]"
     }
 }
 
@@ -167,53 +190,54 @@ impl SolvedObjects {
         // Whole micrometres, as the chip has them.
         let radius = |share: f64| f64::from(micrometres(share * pole)) * 1e-6;
         let deep = |curve: &Curve| curve.at_indentation(end.indentation).pressure_rise.min(last);
-        let reference_radius = radius(REFERENCE);
-        let ball = |radius: f64| {
+        let scale = radius(REFERENCE);
+        let solved = |radius: f64, fitted: bool| {
             let radius_mm = radius * 1e3;
-            presses.curve(radius, DEPTHS).map_err(|failed| match failed {
-                Failed::Model(reason) => NoObjects::Ball { radius_mm, reason },
+            let curve = presses.curve(radius, DEPTHS).map_err(|failed| match failed {
+                Failed::Model(reason) => NoObjects::Unpressed { radius_mm, reason },
                 Failed::Curve(reason) => NoObjects::Curve { radius_mm, reason },
-            })
-        };
-        let reference = ball(reference_radius)?;
-        let mut objects = vec![SolvedObject {
-            touched: Touched::Ball(micrometres(reference_radius)),
-            radius: reference_radius,
-            fitted: true,
-            fitted_to: deep(&reference),
-            curve: reference.clone(),
-        }];
-        for (share, fitted) in BALLS {
-            let radius = radius(share);
-            let curve = ball(radius)?;
-            objects.push(SolvedObject {
-                touched: Touched::Ball(micrometres(radius)),
+            })?;
+            Ok(SolvedObject {
+                touched: if radius < 0.0 {
+                    Touched::Cup(micrometres(-radius))
+                } else {
+                    Touched::Ball(micrometres(radius))
+                },
                 radius,
                 fitted,
                 fitted_to: deep(&curve),
                 curve,
-            });
-        }
-        for share in CUPS {
-            let radius = radius(share);
-            if let Ok(curve) = presses.curve(-radius, DEPTHS) {
-                objects.push(SolvedObject {
-                    touched: Touched::Cup(micrometres(radius)),
-                    radius: -radius,
-                    fitted: true,
-                    fitted_to: deep(&curve),
-                    curve,
-                });
+            })
+        };
+        let balls = std::iter::once((REFERENCE, true))
+            .chain(BALLS)
+            .map(|(share, fitted)| solved(radius(share), fitted));
+        let cup = stated_cup(design);
+        let mut objects = Vec::new();
+        if let Some(cup) = cup {
+            objects.push(solved(-cup, true)?);
+            for (times, fitted) in WIDER_CUPS {
+                objects.extend(solved(-f64::from(micrometres(times * cup)) * 1e-6, fitted));
             }
+            // A ball is no more than told beside the cup: one without a press is left out.
+            objects.extend(balls.flatten());
+        } else {
+            for ball in balls {
+                objects.push(ball?);
+            }
+            let cups = CUPS.map(|share| solved(-radius(share), true));
+            objects.extend(cups.into_iter().flatten());
         }
+        let reference = objects[0].clone();
         let offset = 2.0 * design.design_to(Axes::Outer).membrane.thickness;
         let mut found = Self {
-            reference_beyond: beyond(&reference, curve).map_err(|reason| NoObjects::Curve {
-                radius_mm: reference_radius * 1e3,
+            reference_beyond: beyond(&reference.curve, curve).map_err(|reason| NoObjects::Curve {
+                radius_mm: reference.radius * 1e3,
                 reason,
             })?,
             objects,
-            reference_radius,
+            reference: reference.touched,
+            scale,
             offset,
             least: [0.0; 2],
             last: [last; 2],
@@ -227,9 +251,10 @@ impl SolvedObjects {
         Ok(found)
     }
 
-    /// The law of balls, through the reference, and that of cups.
+    /// The law of balls and that of cups, one of them through the reference.
     fn fit(&mut self, plate: &Curve) {
-        let place = |radius: f64| (self.reference_radius + self.offset) / (radius + self.offset);
+        let place = |radius: f64| (self.scale + self.offset) / (radius + self.offset);
+        let of_cup = matches!(self.reference, Touched::Cup(_));
         for cups in [false, true] {
             let side = usize::from(cups);
             let own = self.objects.iter().filter(|object| (object.radius < 0.0) == cups);
@@ -244,10 +269,10 @@ impl SolvedObjects {
                     .filter(|object| object.fitted)
                     .map(|object| [place(object.radius), self.weight(plate, object, output)])
                     .collect();
-                let law = if cups {
-                    law_of_cups(&nodes)
-                } else {
-                    law_of_balls(&nodes)
+                let law = match (cups == of_cup, cups) {
+                    (true, _) => law_through(&nodes, place(self.objects[0].radius)),
+                    (false, true) => law_of_cups(&nodes),
+                    (false, false) => law_of_other_balls(&nodes),
                 };
                 let laws = if output == 0 {
                     &mut self.force
@@ -297,7 +322,8 @@ impl SolvedObjects {
                 (Touched::Cylinder(micrometres(radius_mm * 1e-3)), radius_mm, 0)
             }
         };
-        if self.least[side] > 0.0 && radius_mm.abs() * 1e-3 >= self.least[side] {
+        let least = micrometres(self.least[side]);
+        if least > 0 && micrometres(radius_mm.abs() * 1e-3) >= least {
             return Ok(touched);
         }
         Err(NoObjects::Radius {
@@ -307,25 +333,60 @@ impl SolvedObjects {
     }
 }
 
-/// `w = t (1 + (t - 1) (a + b t))` by least squares: one at the reference, whose `t` is 1.
-fn law_of_balls(nodes: &[[f64; 2]]) -> Coefficients {
+/// The radius of the cup that a design states, in whole micrometres as the chip has it, metres.
+fn stated_cup(design: &DesignFile) -> Option<f64> {
+    match design.object?.shape {
+        ShapeSection::Ball { radius_mm } if radius_mm < 0.0 => {
+            Some(f64::from(micrometres(-radius_mm * 1e-3)) * 1e-6)
+        }
+        _ => None,
+    }
+}
+
+/// `w = u (1 + (u - 1) (a + b u))` with `u = t / reference` by least squares: one at the reference.
+fn law_through(nodes: &[[f64; 2]], reference: f64) -> Coefficients {
     let (mut matrix, mut right) = ([[0.0; 2]; 2], [0.0; 2]);
     for &[t, weight] in nodes {
-        let row = [t * (t - 1.0), t * t * (t - 1.0)];
+        let u = t / reference;
+        let row = [u * (u - 1.0), u * u * (u - 1.0)];
         for i in 0..2 {
-            right[i] += row[i] * (weight - t);
+            right[i] += row[i] * (weight - u);
             for j in 0..2 {
                 matrix[i][j] += row[i] * row[j];
             }
         }
     }
-    let [[p, q], [r, s]] = matrix;
+    let [a, b] = two_unknowns(matrix, right);
+    let square = reference * reference;
+    [(1.0 - a) / reference, (a - b) / square, b / (square * reference)]
+}
+
+/// `w = t (c1 + c2 t)` by least squares, of balls beside a reference that is a cup.
+fn law_of_other_balls(nodes: &[[f64; 2]]) -> Coefficients {
+    let (mut matrix, mut right) = ([[0.0; 2]; 2], [0.0; 2]);
+    for &[t, weight] in nodes {
+        let row = [t, t * t];
+        for i in 0..2 {
+            right[i] += row[i] * weight;
+            for j in 0..2 {
+                matrix[i][j] += row[i] * row[j];
+            }
+        }
+    }
+    let [first, second] = two_unknowns(matrix, right);
+    [first, second, 0.0]
+}
+
+/// Two unknowns by Cramer's rule; with fewer equations than unknowns zeros.
+fn two_unknowns([[p, q], [r, s]]: [[f64; 2]; 2], right: [f64; 2]) -> [f64; 2] {
     let determinant = p * s - q * r;
-    let (a, b) = (
+    if determinant.abs() <= 1e-12 * (p * s).abs() {
+        return [0.0; 2];
+    }
+    [
         (right[0] * s - right[1] * q) / determinant,
         (right[1] * p - right[0] * r) / determinant,
-    );
-    [1.0 - a, a - b, b]
+    ]
 }
 
 /// `w = t (c1 + c2 t)` through two nodes, or `c1 t` through one.

@@ -18,6 +18,7 @@ use model_tables::model::ModelError;
 use model_tables::model::choice::FINE;
 use model_tables::model::state::{MeridianStation, Pressed, RestState};
 use model_tables::model::{Fingertip, Kind};
+use model_tables::object::Shape;
 use model_tables::units::PressureRise;
 use output::Refusal;
 use output::progress::Progress;
@@ -102,9 +103,12 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
         Kind::Solid(_) => Fingertip::of(kind, &design).map_err(refuse)?,
     };
     let limit = tip.limit().map_err(refuse)?;
-    let deepest = file
-        .max_indentation_mm
-        .map_or(DEPTH * limit.indentation, |depth| depth / 1e3);
+    let end = DEPTH * limit.indentation;
+    let deepest = match design.object.shape {
+        // A press into a cup ends earlier than that onto the plate, whose tables go so deep.
+        Shape::Cup { .. } => file.max_indentation_mm.map_or(end, |depth| end.min(depth / 1e3)),
+        _ => file.max_indentation_mm.map_or(end, |depth| depth / 1e3),
+    };
     progress.set(0.2);
     let states = (0..=STATES)
         .map(|k| {
@@ -184,7 +188,14 @@ fn tables(
 }
 
 fn table_readings(generated: &Generated, file: &DesignFile, states: &[Pressed]) -> Vec<TableReading> {
-    let tables = &generated.certified.tables;
+    let plate = &generated.certified.tables;
+    // The chip begins with what the design states.
+    let blended = generated
+        .certified
+        .object
+        .as_ref()
+        .and_then(|object| object.blended(plate, object.start));
+    let tables = blended.as_ref().unwrap_or(plate);
     let bits = tables.layout.pressure_fraction_bits;
     let from = file
         .accuracy
