@@ -126,6 +126,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
     let fluid_half = match design.relaxation {
         None => None,
         Some(_) => Some(share::half_borne_by_the_fluid(
+            &design,
             &touching,
             fingertip.as_ref(),
             end,
