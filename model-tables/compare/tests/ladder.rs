@@ -1,6 +1,7 @@
 //! The rule by which `kind = "auto"` chooses a model, against the refined solid.
 
 use compare::campaign::walls;
+use compare::ladder::objects;
 use model_tables::model::choice::LADDER;
 use std::collections::BTreeMap;
 
@@ -45,5 +46,30 @@ fn auto_lets_no_more_error_through_than_allowed() {
             assert!(taken.error <= asked, "{:?}: {asked} {taken:?}", wall.case);
         }
         assert_eq!(wall.take(1e-9).fidelity, LADDER.len() - 1);
+    }
+}
+
+/// The page's rows of one wall under balls and a rough plate, computed again, are those on the page.
+#[test]
+fn the_page_has_the_objects_as_they_are_computed() {
+    let page = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../LADDER.md"));
+    let scenes = objects::measure(1.0).expect("its presses");
+    let chapter = objects::markdown(&scenes);
+    let rows: Vec<&str> = chapter.lines().filter(|line| line.starts_with("| 1 |")).collect();
+    assert_eq!(rows.len(), 6);
+    for row in rows {
+        assert!(page.contains(row), "LADDER.md is stale; it should have\n{row}");
+    }
+    // A blend never is further off than the plate's tables where those are off.
+    for scene in scenes
+        .iter()
+        .filter(|scene| scene.radius.is_some_and(|radius| radius < 30.0))
+    {
+        let (plate, in_band, blend) = scene.states.last().expect("three depths");
+        assert!(
+            blend.largest() < 2.5 && plate.largest() > 4.0 * blend.largest(),
+            "{scene:?}"
+        );
+        assert!(*in_band || scene.radius < Some(5.0), "{scene:?}");
     }
 }

@@ -14,6 +14,7 @@ use output::{CommandAnswer, Refusal};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+pub mod objects;
 mod page;
 
 const COLUMNS: &[&str] = &["allowed_percent", "model", "designs", "largest_error_percent"];
@@ -59,6 +60,7 @@ pub fn run(arguments: &LadderArguments) -> Result<CommandAnswer, Refusal> {
         progress.set((index + 1) as f64 / arguments.designs as f64);
     }
     let scaling = scaling::measure().map_err(|error| Refusal(error.to_string()))?;
+    let scenes = objects::measure_all().map_err(|error| Refusal(error.to_string()))?;
     progress.finish();
     let judged: Vec<&MeasuredWall> = measured.iter().filter(|wall| wall.has_truth()).collect();
     let mut rows = Rows::new(COLUMNS);
@@ -83,7 +85,7 @@ pub fn run(arguments: &LadderArguments) -> Result<CommandAnswer, Refusal> {
         ("ladder.svg", svg(&judged).into_bytes()),
         (
             "LADDER.md",
-            page::markdown(&judged, measured.len() - judged.len(), &scaling).into_bytes(),
+            page::markdown(&judged, measured.len() - judged.len(), &scaling, &scenes).into_bytes(),
         ),
     ];
     files::write_all(&arguments.out, &contents)?;

@@ -1,5 +1,6 @@
 //! The page: errors of the fidelities over walls, indentations and pre-stretches, and what `auto` lets through.
 
+use super::objects::{self, ObjectScene};
 use super::pre_stretch;
 use crate::campaign::scaling::{self, Cost};
 use crate::campaign::walls::{ASKED, Evidence, FROM, MeasuredWall};
@@ -59,7 +60,12 @@ fn error_at(wall: &MeasuredWall, place: usize, part: usize) -> Option<f64> {
     )))
 }
 
-pub(super) fn markdown(measured: &[&MeasuredWall], left_out: usize, scaling: &[Cost]) -> String {
+pub(super) fn markdown(
+    measured: &[&MeasuredWall],
+    left_out: usize,
+    scaling: &[Cost],
+    scenes: &[ObjectScene],
+) -> String {
     let refined = LADDER.len() - 1;
     let mut text = format!(
         "# Which model a wall needs\n\n\
@@ -87,6 +93,7 @@ pub(super) fn markdown(measured: &[&MeasuredWall], left_out: usize, scaling: &[C
         "\n## By indentation\n\nMedian error, percent, over every wall that has the model; of the membrane also by wall over radius.\n"
     );
     by_indentation(&mut text, measured);
+    text.push_str(&objects::markdown(scenes));
     choices(&mut text, measured);
     text
 }
