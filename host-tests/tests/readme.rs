@@ -1,5 +1,6 @@
 //! The figures of the README that the host can compute.
 
+use host_tests::real_use::force_in_real_use;
 use host_tests::{assert_readme_says, measured_figure};
 use micromath::F32Ext;
 
@@ -29,5 +30,16 @@ fn its_figures_are_the_measured_ones() {
     let report = measured_figure("instructions from averaged counts to both results");
     assert_readme_says(&format!(
         "{report} instructions; {flash:.0} kB flash, {ram:.0} kB RAM in all"
+    ));
+}
+
+/// The headline is what the campaign of grasps printed, as the error budget has it.
+#[test]
+fn the_headline_is_of_the_campaign_of_grasps() {
+    let force = |design: &str| force_in_real_use(design, "not told").expect("a chapter of the campaign");
+    let ([median, most], [elastic, elastic_most]) =
+        (force("index-fingertip"), force("index-fingertip-elastic"));
+    assert_readme_says(&format!(
+        "{median:.1} % median error, {most:.1} % at 95 % (of an elastic wall {elastic:.1} % and {elastic_most:.1} %)"
     ));
 }

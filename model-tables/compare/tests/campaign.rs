@@ -1,9 +1,11 @@
 //! A small campaign of random designs: no state may be wrong, and every refusal has a reason that holds.
 
+use compare::campaign::grasps::{GraspRow, GraspedTip};
 use compare::campaign::objects::{self, BandTally, ObjectWorld, TouchedKind};
 use compare::campaign::{self, Tally, lives, solids};
 use model_tables::design_file::DesignFile;
 use model_tables::generate;
+use model_tables::solid::press::COARSE;
 use std::path::Path;
 
 /// Reasons that are physics: the law unstable, a pole that inflation does not stretch so far, a plain membrane that
@@ -73,4 +75,26 @@ fn the_truth_of_random_objects_lies_in_the_band() {
         assert!(tally.share() >= 0.99, "{tally}\n{:?}", tally.outside);
         assert!(tally.kinds[&TouchedKind::Ball][0] > 1000, "{tally}");
     }
+}
+
+/// All of it: `cargo campaign grasps`, of the solid 2 x 60; here of the coarse one, which is up to 2 % off itself.
+#[test]
+fn grasps_in_time_are_read_better_by_a_chip_that_is_told_and_within_the_band_by_one_that_is_not() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/index-fingertip-elastic.toml");
+    let design = DesignFile::read(&file).expect("a shipped design");
+    let tip = GraspedTip::new(&design, Some(COARSE)).expect("tables");
+    let tally = tip.run(2026, 4, 1, |_| {});
+    println!("{tally}");
+    assert_eq!((tally.scenes, tally.unsolved), (4, 0));
+    let of = |told: bool, row: GraspRow| tally.row(told, row).expect("touched");
+    let [not_told, told] = [false, true].map(|told| of(told, GraspRow::Ball).within(0.5));
+    assert!(told[0] < 2.0 && told[1] < 2.0, "{told:?}");
+    assert!(
+        told[0] < 0.2 * not_told[0] && told[1] < 0.2 * not_told[1],
+        "{told:?} {not_told:?}"
+    );
+    let [without, _, stated] = of(false, GraspRow::All).shares();
+    assert!(without < 0.01 && stated > 0.99, "{tally}");
+    // What no longer touches is not felt.
+    assert!(tally.free()[1] < 2.0, "{:?}", tally.free());
 }

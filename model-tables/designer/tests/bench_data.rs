@@ -358,7 +358,10 @@ fn misspelt_names_and_swapped_axes_are_named() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("are the two swapped?"));
     // A refusal is one line alone.
     let deep = program::refusal(&["solve", path.to_str().expect("text"), "--indentation-mm", "50"]);
-    assert!(deep.contains("50 mm") && !deep.contains("are the two swapped"), "{deep}");
+    assert!(
+        deep.contains("50 mm") && !deep.contains("are the two swapped"),
+        "{deep}"
+    );
     let misspelt = folder.join("misspelt.toml");
     fs::write(&misspelt, DESIGN.replace("thickness_mm", "thicknes_mm")).expect("a design");
     let line = program::refusal(&["rest", misspelt.to_str().expect("text")]);

@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 use compare::campaign::draw::Case;
+use compare::campaign::grasps::GraspedTip;
 use compare::campaign::judge::{Judged, Verdict};
 use compare::campaign::lives::{self, tip};
 use compare::campaign::objects::{self, BandTally, ObjectWorld};
@@ -41,6 +42,32 @@ enum Campaign {
     /// Presses random objects that the chip is not told, against the band that a design states
     #[command(after_help = "Example:\n  cargo campaign objects --objects 2000 --seed 2026")]
     Objects(ObjectArguments),
+    /// Grasps random objects in time, through the firmware's own signal path
+    #[command(after_help = "Example:\n  cargo campaign grasps --scenes 30 --worlds 4 --seed 2026")]
+    Grasps(GraspArguments),
+}
+
+#[derive(Debug, Args)]
+struct GraspArguments {
+    /// Scenes of two grasps, each solved in time once
+    #[arg(long, default_value_t = 30)]
+    scenes: u64,
+    /// Zeros and noises of each scene, half of them of an absolute part
+    #[arg(long, default_value_t = 4)]
+    worlds: u64,
+    /// What the draw depends on
+    #[arg(long, default_value_t = 2026)]
+    seed: u64,
+    /// Designs that rest unstretched, without `[object]`; repeatable
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_values = [
+            "model-tables/designs/index-fingertip.toml",
+            "model-tables/designs/index-fingertip-elastic.toml"
+        ]
+    )]
+    design: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -184,6 +211,7 @@ fn main() -> ExitCode {
         Campaign::Solids(arguments) => Ok(judge_solids(&arguments)),
         Campaign::Lives(arguments) => Ok(judge_lives(&arguments)),
         Campaign::Objects(arguments) => judge_objects(&arguments),
+        Campaign::Grasps(arguments) => judge_grasps(&arguments),
     };
     match kept {
         Ok(true) => ExitCode::SUCCESS,
@@ -317,6 +345,32 @@ fn judge_objects(arguments: &ObjectArguments) -> Result<bool, Box<dyn Error>> {
             println!("  outside: {object:?}");
         }
         kept &= tally.share() >= 0.99;
+    }
+    Ok(kept)
+}
+
+/// A table for each design; whether the solid found the states of most scenes.
+fn judge_grasps(arguments: &GraspArguments) -> Result<bool, Box<dyn Error>> {
+    let mut kept = true;
+    for (number, file) in arguments.design.iter().enumerate() {
+        let design = DesignFile::read(file)?;
+        if design.object.is_some() {
+            return Err(format!(
+                "{}: [object] is given: leave it out, the campaign grasps objects of its own",
+                file.display()
+            )
+            .into());
+        }
+        let tip = GraspedTip::new(&design, None)?;
+        let tally = tip.run(arguments.seed, arguments.scenes, arguments.worlds, |done| {
+            eprint!("\r{done} of {} scenes", arguments.scenes);
+        });
+        eprintln!();
+        if number > 0 {
+            println!();
+        }
+        print!("### {}\n\n{tally}", design.name);
+        kept &= tally.scenes > tally.unsolved;
     }
     Ok(kept)
 }

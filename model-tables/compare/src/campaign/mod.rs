@@ -4,6 +4,7 @@
 //! -> [`Tally`].
 
 pub mod draw;
+pub mod grasps;
 pub mod judge;
 pub mod lives;
 pub mod objects;

@@ -257,7 +257,7 @@ fn sag_in_a_grasp(world: &mut LifeWorld<'_>, much: f64, long: f64) {
 }
 
 /// One standard deviation of a sample's white noise as the signal path gets it, pascals: a block of the converter is a mean.
-fn sample_noise(part: &Transducer) -> f64 {
+pub(super) fn sample_noise(part: &Transducer) -> f64 {
     let averaged = fingertip::signal::uncertainty::averaged(&part.kind);
     f64::from(part.noise) / 1e3 / f64::from(averaged).sqrt()
 }
