@@ -5,6 +5,7 @@
 //! `compare`, rows and files go out through `output`.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "commands")]
 pub mod commands;
 pub mod fit;
 pub mod size;

@@ -1,6 +1,5 @@
 //! Rows of an answer, and the forms they are printed in.
 
-use clap::ValueEnum;
 use std::fmt::Write as _;
 
 /// Significant digits of a number in CSV.
@@ -9,7 +8,8 @@ const CSV_DIGITS: i32 = 15;
 const TABLE_DIGITS: i32 = 7;
 
 /// How rows are printed.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Format {
     /// Columns for people
     Table,

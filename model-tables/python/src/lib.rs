@@ -4,6 +4,9 @@
 // PyO3 takes arguments by value.
 #![allow(clippy::needless_pass_by_value)]
 
+mod calibration;
+mod many;
+mod sizing;
 mod states;
 mod time;
 
@@ -12,7 +15,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 pyo3::import_exception!(fingertip.errors, DesignError);
+pyo3::import_exception!(fingertip.errors, FitError);
 pyo3::import_exception!(fingertip.errors, ModelError);
+pyo3::import_exception!(fingertip.errors, SweepError);
 pyo3::import_exception!(fingertip.errors, TableError);
 
 /// Reads a design; `name` is what its errors call it.
@@ -40,9 +45,15 @@ fn canonical(text: &str, name: &str) -> PyResult<String> {
 #[pymodule]
 mod _fingertip {
     #[pymodule_export]
+    use super::calibration::fit;
+    #[pymodule_export]
+    use super::canonical;
+    #[pymodule_export]
+    use super::many::{SweepFolder, sweep, sweep_part, sweep_text};
+    #[pymodule_export]
+    use super::sizing::size;
+    #[pymodule_export]
     use super::states::{estimate, rest, solve, table};
     #[pymodule_export]
     use super::time::history;
-    #[pymodule_export]
-    use super::canonical;
 }

@@ -1,9 +1,9 @@
 //! `designer calibration`: what a calibration gains, on stand-ins for a device, and the page about it.
 
-use super::fit as command;
 use super::published::quoted::{FORCES, INDENTATIONS};
 use super::published::solid::SOLID;
 use crate::fit::data::{Data, DataChoice};
+use crate::fit::findings;
 use crate::fit::parameter::Parameter;
 use crate::fit::{self, DataQuantity, Fit};
 use crate::size;
@@ -194,7 +194,7 @@ fn page(domes: &[Case; 3], papers: &[Case; 3], paper_data: &Data, target: &Targe
                 estimate.parameter,
                 number(estimate.start),
                 if estimate.held.is_some() {
-                    command::state(estimate.held).to_owned()
+                    findings::state(estimate.held).to_owned()
                 } else {
                     number(estimate.value)
                 },

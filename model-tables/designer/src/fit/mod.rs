@@ -16,6 +16,7 @@ pub mod data;
 mod data_error;
 mod error;
 mod error_inflation;
+pub mod findings;
 mod heading;
 mod identify;
 mod kind;
@@ -30,6 +31,7 @@ mod robust;
 mod search;
 mod solve;
 pub mod spline;
+pub mod write;
 
 use check::{Hysteresis, Misfit, Validation};
 use data::Data;

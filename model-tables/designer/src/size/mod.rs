@@ -8,6 +8,7 @@ mod refine;
 mod search;
 pub mod target;
 pub mod transmission;
+mod written;
 
 use model_tables::design::{Design, Membrane, RestBy};
 use model_tables::material::Law;
@@ -38,6 +39,10 @@ const SAME: f64 = 0.02;
 const THICKEST: f64 = 0.3;
 /// Misfits under this are as good as none: nobody makes a fingertip to a percent.
 const GOOD: f64 = 0.01;
+
+/// Why there is no design, with the remedy.
+pub const NOTHING_FOUND: &str = "no membrane within the bounds can be pressed that deep while it is taut, its material's strain tested and \
+     its pressure in the transducer's range: widen `[bounds]`, or take another range or material";
 
 /// A membrane that was found.
 #[derive(Clone, Debug, PartialEq)]

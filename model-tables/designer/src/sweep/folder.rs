@@ -35,7 +35,7 @@ impl Shard {
 
 /// A sweep's folder, held by this run.
 #[derive(Debug)]
-pub(super) struct Folder {
+pub struct Folder {
     path: PathBuf,
     digits: usize,
     /// The system lets go of it when the program ends, in whatever way.
@@ -44,7 +44,10 @@ pub(super) struct Folder {
 
 impl Folder {
     /// Opens the folder, or makes it; refuses that of another sweep, and one at which the same shard is at work.
-    pub(super) fn open(path: &Path, space: &Space, shard: Shard) -> Result<Self, Refusal> {
+    ///
+    /// # Errors
+    /// [`Refusal`]: the folder holds another sweep, or cannot be written.
+    pub fn open(path: &Path, space: &Space, shard: Shard) -> Result<Self, Refusal> {
         let manifest = path.join(MANIFEST);
         let text = manifest_of(space);
         match fs::read_to_string(&manifest) {
@@ -109,7 +112,10 @@ impl Folder {
     }
 
     /// The shard's parts that are not there yet.
-    pub(super) fn left(&self, space: &Space, shard: Shard) -> Result<Vec<u64>, Refusal> {
+    ///
+    /// # Errors
+    /// [`Refusal`]: one that is there is damaged.
+    pub fn left(&self, space: &Space, shard: Shard) -> Result<Vec<u64>, Refusal> {
         let mut left = Vec::new();
         for part in (0..space.parts()).filter(|&part| shard.holds(part)) {
             let path = self.part(part);
@@ -134,18 +140,22 @@ impl Folder {
     }
 
     /// Moves a whole part in.
-    pub(super) fn write(&self, part: u64, content: &[u8]) -> Result<(), Refusal> {
+    ///
+    /// # Errors
+    /// [`Refusal`]: it cannot be written; nothing half-written is left.
+    pub fn write(&self, part: u64, content: &[u8]) -> Result<(), Refusal> {
         files::write_durably(&self.part(part), content)
     }
 }
 
 /// Numbers of a part's designs.
-pub(super) fn designs(space: &Space, part: u64) -> std::ops::Range<u64> {
+pub fn designs(space: &Space, part: u64) -> std::ops::Range<u64> {
     let first = part * space.designs_per_part;
     first..(first + space.designs_per_part).min(space.sample.count)
 }
 
-fn manifest_of(space: &Space) -> String {
+/// What the folder of a sweep states: the space, and the version of program and rows.
+pub fn manifest_of(space: &Space) -> String {
     format!(
         "# The sweep of this folder. A run of another sweep, or of another version, is refused here.\nspace_sha256 = \"{}\"\n\
          program = \"designer {}\"\ntables_version = {TABLE_VERSION}\nrows_version = {ROWS_VERSION}\ndesigns = {}\n\

@@ -10,6 +10,7 @@
 mod columns;
 mod evaluate;
 pub mod folder;
+pub mod inline;
 pub mod sample;
 pub mod sobol;
 pub mod space;
@@ -51,9 +52,7 @@ pub struct Swept {
 /// # Errors
 /// [`Refusal`]: the folder holds another sweep, or cannot be written. Parts that are there stay.
 pub fn run(space: &Space, out: &Path, shard: Shard) -> Result<Swept, Refusal> {
-    let hash = space.hash();
-    let metadata = [("fingertip.space_sha256", hash.as_str())];
-    let columns = Columns::of(space, &metadata).map_err(Refusal::of)?;
+    let columns = columns(space)?;
     let folder = Folder::open(out, space, shard)?;
     let left = folder.left(space, shard)?;
     let parts = (space.parts() + shard.of - shard.index) / shard.of;
@@ -77,25 +76,72 @@ pub fn run(space: &Space, out: &Path, shard: Shard) -> Result<Swept, Refusal> {
     let (begun, counted) = (Instant::now(), done.clone());
     let _ticks = Ticks::every(TELL_EVERY, move || tell(&counted, of_this, begun));
     for part in left {
-        let numbers: Vec<u64> = folder::designs(space, part).collect();
-        let rows: Vec<(Vec<Datum>, Option<String>)> = numbers
-            .into_par_iter()
-            .with_max_len(1)
-            .map(|number| {
-                let row = evaluate::row(space, number);
-                done.fetch_add(1, Ordering::Relaxed);
-                row
-            })
-            .collect();
-        swept.computed += rows.len() as u64;
-        swept.refused += rows.iter().filter(|(_, reason)| reason.is_some()).count() as u64;
+        let made = part_of(space, &columns, part, &done)?;
+        swept.computed += made.designs;
+        swept.refused += made.refused;
         if swept.first_reason.is_none() {
-            swept.first_reason = rows.iter().find_map(|(_, reason)| reason.clone());
+            swept.first_reason = made.first_reason;
         }
-        let rows: Vec<Vec<Datum>> = rows.into_iter().map(|(row, _)| row).collect();
-        folder.write(part, &columns.encode(&rows).map_err(Refusal::of)?)?;
+        folder.write(part, &made.content)?;
     }
     Ok(swept)
+}
+
+/// A part of a sweep.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SweptPart {
+    /// The bytes of its file.
+    pub content: Vec<u8>,
+    /// Its designs.
+    pub designs: u64,
+    /// Of those, refused: rows with a reason.
+    pub refused: u64,
+    /// The line that refused the first of them; `None` where none was refused.
+    pub first_reason: Option<String>,
+}
+
+/// Computes one part, as [`run`] does, and gives its bytes in place of writing them.
+///
+/// # Errors
+/// [`Refusal`]: there is no such part.
+pub fn part(space: &Space, part: u64) -> Result<SweptPart, Refusal> {
+    if part >= space.parts() {
+        return Err(Refusal(format!(
+            "there is no part {part}: the sweep has parts 0 to {}",
+            space.parts() - 1
+        )));
+    }
+    part_of(space, &columns(space)?, part, &AtomicU64::new(0))
+}
+
+fn columns(space: &Space) -> Result<Columns, Refusal> {
+    Columns::of(space, &[("fingertip.space_sha256", space.hash().as_str())]).map_err(Refusal::of)
+}
+
+/// Solves the designs of a part on the threads of the pool; `done` counts them.
+fn part_of(space: &Space, columns: &Columns, part: u64, done: &AtomicU64) -> Result<SweptPart, Refusal> {
+    let numbers: Vec<u64> = folder::designs(space, part).collect();
+    let rows: Vec<(Vec<Datum>, Option<String>)> = numbers
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|number| {
+            let row = evaluate::row(space, number);
+            done.fetch_add(1, Ordering::Relaxed);
+            row
+        })
+        .collect();
+    let (designs, refused) = (
+        rows.len(),
+        rows.iter().filter(|(_, reason)| reason.is_some()).count(),
+    );
+    let first_reason = rows.iter().find_map(|(_, reason)| reason.clone());
+    let rows: Vec<Vec<Datum>> = rows.into_iter().map(|(row, _)| row).collect();
+    Ok(SweptPart {
+        content: columns.encode(&rows).map_err(Refusal::of)?,
+        designs: designs as u64,
+        refused: refused as u64,
+        first_reason,
+    })
 }
 
 /// One line of progress.

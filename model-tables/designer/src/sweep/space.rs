@@ -65,6 +65,18 @@ impl Space {
         parse(&text, path).map_err(|(line, problem)| DesignFileError { file, line, problem })
     }
 
+    /// Checks the text of a sweep's file that has its design in `[base]`; `name` is what errors call it.
+    ///
+    /// # Errors
+    /// [`DesignFileError`] for the first thing that is wrong.
+    pub fn parse(text: &str, name: &str) -> Result<Self, DesignFileError> {
+        parse(text, Path::new(name)).map_err(|(line, problem)| DesignFileError {
+            file: name.to_owned(),
+            line,
+            problem,
+        })
+    }
+
     /// The values of design `number`, in the order of [`Space::variables`].
     pub fn values(&self, number: u64) -> Vec<Value> {
         if self.sample.method == Sampling::Grid {
@@ -96,6 +108,11 @@ impl Space {
             set(document.as_table_mut(), &variable.key, value.clone());
         }
         document.to_string()
+    }
+
+    /// Keys and sections of the base design.
+    pub(super) fn base(&self) -> toml_edit::Iter<'_> {
+        self.base.iter()
     }
 
     /// Parts of the whole sweep.

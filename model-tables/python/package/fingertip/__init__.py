@@ -18,10 +18,12 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from .errors import DesignError, FingertipError, ModelError, TableError, TelemetryError
+from .errors import DesignError, FingertipError, FitError, ModelError, SweepError, TableError, TelemetryError
 
 if TYPE_CHECKING:
+    from .calibration import Fit, FittedParameter, Residuals, fit
     from .model import Design, DesignLike, Estimates, History, Rest, States, Tables, estimate, history, rest, solve, table
+    from .sizing import SizedDesign, Sizing, size
 
 __all__ = [
     "Design",
@@ -29,23 +31,34 @@ __all__ = [
     "DesignLike",
     "Estimates",
     "FingertipError",
+    "Fit",
+    "FitError",
+    "FittedParameter",
     "History",
     "ModelError",
+    "Residuals",
     "Rest",
+    "SizedDesign",
+    "Sizing",
     "States",
+    "SweepError",
     "TableError",
     "Tables",
     "TelemetryError",
     "estimate",
+    "fit",
     "history",
     "rest",
+    "size",
     "solve",
     "table",
 ]
 
 # Where a name is. Loaded when it is first asked for: `fingertip.telemetry` needs the standard library alone, not numpy and the model.
 _HOMES = {
+    "calibration": ("Fit", "FittedParameter", "Residuals", "fit"),
     "model": ("Design", "DesignLike", "Estimates", "History", "Rest", "States", "Tables", "estimate", "history", "rest", "solve", "table"),
+    "sizing": ("SizedDesign", "Sizing", "size"),
 }
 
 

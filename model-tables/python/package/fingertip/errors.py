@@ -3,7 +3,9 @@
 __all__ = [
     "DesignError",
     "FingertipError",
+    "FitError",
     "ModelError",
+    "SweepError",
     "TableError",
     "TelemetryError",
 ]
@@ -23,6 +25,14 @@ class ModelError(FingertipError):
 
 class TableError(FingertipError):
     """No such tables, with the numbers."""
+
+
+class FitError(FingertipError):
+    """Data that cannot be read, or that no fit comes near: the row or the number, and the remedy."""
+
+
+class SweepError(FingertipError):
+    """A sweep that cannot run: its file, its folder, or its workers."""
 
 
 class TelemetryError(FingertipError):

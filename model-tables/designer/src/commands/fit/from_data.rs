@@ -1,10 +1,11 @@
 //! `designer fit --from-data`: tables from a monotone curve through the data alone.
 
 use super::super::bench;
-use super::{Arguments, write};
+use super::Arguments;
 use crate::fit;
 use crate::fit::data::Data;
 use crate::fit::spline::{DataBranch, FromData, from_data};
+use crate::fit::write;
 use model_tables::design_file::{Calibration, DataCurve, DesignFile};
 use model_tables::generate::{self, GenerateError};
 use model_tables::model::Fingertip;

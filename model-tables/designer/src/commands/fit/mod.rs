@@ -4,12 +4,13 @@ mod chart;
 mod from_data;
 mod relaxation;
 mod report;
-mod write;
 
 use super::{bench, finite, read};
 use crate::fit::data::{Data, DataChoice, Direction};
+use crate::fit::findings::{findings, state};
 use crate::fit::parameter::Parameter;
-use crate::fit::{self, Fit, Held, Measured};
+use crate::fit::write;
+use crate::fit::{self, Fit, Measured};
 use model_tables::design_file::DesignFile;
 use model_tables::model::Fingertip;
 use output::files;
@@ -156,7 +157,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         .map_err(|error| Refusal::about(&arguments.data, &error))?;
     let seconds = start.elapsed().as_secs_f64();
     let mut notes = data.notes.clone();
-    notes.extend(report::findings(&file, &data, &fit));
+    notes.extend(findings(&file, &data, &fit));
     notes.extend(bench::caution(&file));
     // What is written is the calibrated design, and its limits count.
     let calibrated = DesignFile {
@@ -197,16 +198,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         rows: rows(&fit),
         notes,
     })
-}
-
-/// Why a parameter stands where it does.
-pub(super) fn state(held: Option<Held>) -> &'static str {
-    match held {
-        None => "fitted",
-        Some(Held::Unidentified) => "held: the data do not tell it",
-        Some(Held::AtBound) => "held: the data want it below zero",
-        Some(Held::NotOfModel) => "held: the design does not rest by a stretch",
-    }
 }
 
 fn rows(fit: &Fit) -> Rows {

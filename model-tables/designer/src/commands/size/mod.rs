@@ -7,7 +7,6 @@ use super::bench;
 use crate::size::target::Target;
 use crate::size::transmission::target::WantedLoop;
 use crate::size::{self, Sized};
-use model_tables::design::RestBy;
 use output::files;
 use output::progress::Progress;
 use output::rows::{Cell, Rows, significant};
@@ -86,11 +85,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     progress.finish();
     let seconds = start.elapsed().as_secs_f64();
     if sizing.designs.is_empty() {
-        return Err(Refusal::about(
-            &arguments.target,
-            &"no membrane within the bounds can be pressed that deep while it is taut, its material's strain tested and its \
-              pressure in the transducer's range: widen `[bounds]`, or take another range or material",
-        ));
+        return Err(Refusal::about(&arguments.target, &size::NOTHING_FOUND));
     }
     let found = sizing.designs.len();
     let all = sizing.designs.clone();
@@ -127,7 +122,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         let mut contents = vec![("size.svg".to_owned(), chart::draw(&target, &all).into_bytes())];
         for (rank, sized) in sizing.designs.iter().enumerate() {
             let name = format!("{}-{}", target.name, rank + 1);
-            contents.push((format!("{name}.toml"), design(&name, sized, &target).into_bytes()));
+            contents.push((
+                format!("{name}.toml"),
+                sized.design_file(&name, &target).into_bytes(),
+            ));
         }
         let contents: Vec<(&str, Vec<u8>)> = contents
             .iter()
@@ -143,13 +141,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     Ok(CommandAnswer { rows, notes })
 }
 
-fn stretch(sized: &Sized) -> f64 {
-    match sized.design.rest {
-        RestBy::PoleStretch(stretch) => stretch,
-        _ => f64::NAN,
-    }
-}
-
 fn row(rank: usize, sized: &Sized, target: &Target, all: &[Sized]) -> Vec<Cell> {
     let membrane = &sized.design.membrane;
     let forces: Vec<String> = sized.forces.iter().map(|force| significant(*force, 4)).collect();
@@ -161,7 +152,7 @@ fn row(rank: usize, sized: &Sized, target: &Target, all: &[Sized]) -> Vec<Cell> 
         Cell::Number(1e3 * membrane.radial_semi_axis),
         Cell::Number(1e3 * membrane.axial_semi_axis),
         Cell::Number(1e3 * membrane.thickness),
-        Cell::Number(stretch(sized)),
+        Cell::Number(sized.stretch()),
         Cell::Number(100.0 * sized.misfit),
         Cell::Text(forces.join(" ")),
         Cell::Number(1e-3 * sized.rest_pressure),
@@ -179,38 +170,4 @@ fn row(rank: usize, sized: &Sized, target: &Target, all: &[Sized]) -> Vec<Cell> 
         wall,
         Cell::word(if front { "yes" } else { "no" }),
     ]
-}
-
-/// A design file of a sized membrane, ready for tables.
-fn design(name: &str, sized: &Sized, target: &Target) -> String {
-    let membrane = &sized.design.membrane;
-    let micrometres = |metres: f64| libm::round(1e6 * metres) / 1e3;
-    let [low, high] = target.range_kpa;
-    // A 12-bit converter over four fifths of its range, averaged over sixteen samples.
-    let resolution = 1e3 * (high - low) / 4096.0 / 0.8;
-    format!(
-        "# Sized for `{}`: misfit {:.2} %, force changed by {:.1} % by a tolerance of {} mm.\n\
-         name = \"{name}\"\n\n\
-         [membrane]\nradial_semi_axis_mm = {:?}\naxial_semi_axis_mm = {:?}\nthickness_mm = {:?}\n\n\
-         [material]\npreset = \"{}\"\n\n\
-         [rest]\npole_stretch = {:?}\n\n\
-         [fluid]\ncompliance_mm3_per_kpa = {:?}\n\n\
-         [press]\nmax_indentation_mm = {:?}\n\n\
-         # A ratiometric gauge read through a 12-bit converter: put in the one you have.\n\
-         [transducer]\nkind = \"ratiometric\"\nrange_kpa = [{low:?}, {high:?}]\nresolution_pa = {:?}\n\n\
-         [accuracy]\nforce_percent_of_reading = 0.1\nindentation_percent_of_reading = 0.1\n\
-         from_percent_of_full_scale = 1.0\n",
-        target.name,
-        100.0 * sized.misfit,
-        100.0 * sized.making(),
-        1e3 * target.tolerance,
-        micrometres(membrane.radial_semi_axis),
-        micrometres(membrane.axial_semi_axis),
-        micrometres(membrane.thickness),
-        sized.material.name,
-        libm::round(1e5 * stretch(sized)) / 1e5,
-        target.compliance_mm3_per_kpa,
-        micrometres(target.deepest()),
-        libm::round(10.0 * resolution) / 10.0,
-    )
 }

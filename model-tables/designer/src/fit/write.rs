@@ -1,17 +1,16 @@
 //! The files of a fit: the calibrated design and what is left of the data.
 
-use crate::fit::data::Data;
-use crate::fit::{DataQuantity, Fit};
+use super::data::Data;
+use super::{DataQuantity, Fit};
 use model_tables::design_file::{Calibration, DataCurve, DesignFile};
 use std::fmt::Write as _;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 
 /// The design's text with its `[calibration]` replaced; everything else stays as it is, comments too.
-pub(super) fn with_calibration(
-    text: &str,
-    calibration: &Calibration,
-    comment: &str,
-) -> Result<String, String> {
+///
+/// # Errors
+/// The parser's line, where the text is no TOML.
+pub fn with_calibration(text: &str, calibration: &Calibration, comment: &str) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
     let mut table = Table::new();
     let default = Calibration::default();
@@ -79,7 +78,10 @@ pub(super) fn with_calibration(
 const FINEST: f64 = 0.5;
 
 /// The design's text with a press no deeper than its data, and tables that are allowed an error of `percent` of reading at least.
-pub(super) fn with_reachable_tables(text: &str, deepest_mm: f64, percent: f64) -> Result<String, String> {
+///
+/// # Errors
+/// The parser's line, where the text is no TOML.
+pub fn with_reachable_tables(text: &str, deepest_mm: f64, percent: f64) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
     let asked = document
         .get("press")
@@ -111,8 +113,11 @@ fn nine_digits(number: f64) -> f64 {
     format!("{number:.8e}").parse().unwrap_or(number)
 }
 
-/// The calibrated design.
-pub(super) fn calibrated(text: &str, file: &DesignFile, data: &Data, fit: &Fit) -> Result<String, String> {
+/// The text of the design with the `[calibration]` of a fit.
+///
+/// # Errors
+/// The parser's line, where the text is no TOML.
+pub fn calibrated(text: &str, file: &DesignFile, data: &Data, fit: &Fit) -> Result<String, String> {
     let calibration = fit.values.calibration(file, &fit.fitted);
     let mut comment = format!(
         "Fitted by `designer fit` to {}: {} rows, {} fitted parameters.",
@@ -137,7 +142,7 @@ pub(super) fn calibrated(text: &str, file: &DesignFile, data: &Data, fit: &Fit) 
 }
 
 /// Every measured number beside what design and fit say.
-pub(super) fn residuals(data: &Data, fit: &Fit) -> String {
+pub fn residuals(data: &Data, fit: &Fit) -> String {
     let mut text = String::from(
         "line,trial,indentation_mm,quantity,measured,design,fitted,residual,residual_in_standard_deviations,outlier\n",
     );
