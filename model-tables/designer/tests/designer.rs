@@ -653,3 +653,20 @@ fn an_interrupt_leaves_nothing_behind() {
     assert!(status.code() == Some(130) || by_signal, "{status}");
     assert!(!out.exists());
 }
+
+#[test]
+fn a_hand_is_refused_with_the_designs_of_its_tips() {
+    let hand = format!("{}/../hands/hand.toml", env!("CARGO_MANIFEST_DIR"));
+    for command in ["rest", "table"] {
+        let out = scratch("hand").display().to_string();
+        let arguments: &[&str] = match command {
+            "table" => &[command, &hand, "--out", &out],
+            _ => &[command, &hand],
+        };
+        let text = refusal(arguments);
+        assert!(
+            text.contains("this is a hand") && text.contains(": ../designs/index-fingertip-elastic.toml"),
+            "{text}"
+        );
+    }
+}

@@ -34,6 +34,11 @@ pub enum Problem {
         /// The names known in that place.
         allowed: String,
     },
+    /// The file is of a hand, which has no fingertip of its own.
+    Hand {
+        /// The design files of its tips.
+        designs: String,
+    },
     /// A value that cannot be.
     Value {
         /// Full name of the key.
@@ -68,6 +73,10 @@ impl fmt::Display for Problem {
                 }
                 write!(f, ": allowed are {allowed}")
             }
+            Self::Hand { designs } => write!(
+                f,
+                "this is a hand, which has no fingertip of its own: name the design of one of its tips: {designs}"
+            ),
             Self::Value { key, found, allowed } => {
                 write!(f, "`{key}` is {}: must be {allowed}", one_line(found))
             }

@@ -8,6 +8,7 @@ mod actuator;
 pub mod bounds;
 mod calibration;
 mod error;
+pub mod hand;
 mod material;
 mod object;
 mod print;

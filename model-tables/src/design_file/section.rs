@@ -66,6 +66,55 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// The tables of an array that must be there, at least one.
+    ///
+    /// # Errors
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn subs(&mut self, name: &'static str, allowed: &str) -> Result<Vec<Section<'a>>, KeyFault> {
+        let Some(value) = self.get(name) else {
+            let key = format!("[[{}]]", self.full(name));
+            let allowed = allowed.to_owned();
+            return Err((None, Problem::Missing { key, allowed }));
+        };
+        let tables: Option<Vec<Section<'a>>> = value.get_ref().as_array().and_then(|array| {
+            array
+                .iter()
+                .map(|item| {
+                    Some(Section {
+                        text: self.text,
+                        path: self.full(name),
+                        header: item.span().start,
+                        table: item.get_ref().as_table()?,
+                        known: Vec::new(),
+                    })
+                })
+                .collect()
+        });
+        tables
+            .filter(|tables| !tables.is_empty())
+            .ok_or_else(|| self.refuse(name, allowed))
+    }
+
+    /// Whole numbers in brackets, if the key is there.
+    ///
+    /// # Errors
+    /// [`KeyFault`] with the key, what was found and what is allowed.
+    pub fn whole_numbers(&mut self, key: &'static str, allowed: &str) -> Result<Option<Vec<u32>>, KeyFault> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        let numbers: Option<Vec<u32>> = value.get_ref().as_array().and_then(|array| {
+            array
+                .iter()
+                .map(|item| match item.get_ref() {
+                    DeValue::Integer(integer) => u32::from_str_radix(integer.as_str(), integer.radix()).ok(),
+                    _ => None,
+                })
+                .collect()
+        });
+        numbers.map(Some).ok_or_else(|| self.refuse(key, allowed))
+    }
+
     /// Whether the key is there.
     pub fn has(&mut self, key: &'static str) -> bool {
         self.get(key).is_some()
@@ -348,7 +397,8 @@ impl<'a> Section<'a> {
         }
     }
 
-    fn line_of(&self, key: &str) -> Option<usize> {
+    /// The line of a key, counted from 1, if it is there.
+    pub fn line_of(&self, key: &str) -> Option<usize> {
         let (key, _) = self.table.get_key_value(key)?;
         Some(self.line_at(key.span().start))
     }

@@ -4,6 +4,7 @@ use super::actuator::ActuatorSection;
 use super::bounds::{Bounds, LENGTH, SEMI_AXIS};
 use super::calibration::Calibration;
 use super::error::Problem;
+use super::hand;
 use super::material::material;
 use super::section::{KeyFault, Section, line_at};
 use super::transducer::transducer;
@@ -27,6 +28,9 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, KeyFault> {
         (line, Problem::Syntax(error.message().to_owned()))
     })?;
     let mut root = Section::root(text, document.get_ref());
+    if let Some(designs) = hand::designs_in(document.get_ref()) {
+        return Err((None, Problem::Hand { designs }));
+    }
     let name = name(&mut root)?;
     let membrane = membrane(root.needed_sub(
         "membrane",
