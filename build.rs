@@ -3,18 +3,26 @@
 //! `FINGERTIP_DESIGN`, relative to the workspace root, chooses the design.
 
 use model_tables::constants::TransducerKind;
-use model_tables::generate::{self, AccuracyLimit, GenerateError};
+use model_tables::design_file::DesignFile;
+use model_tables::design_file::hand::{HandFile, TransducerPlace, is_hand};
+use model_tables::generate::{self, AccuracyLimit, GenerateError, Generated};
 use std::ffi::OsStr;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip-elastic.toml";
 
-/// Each board with the linker's sizes of its chip; those of the default board are in `memory.x`.
-const BOARDS: [(&str, Option<&str>); 2] = [
-    ("nucleo-f429zi", None),
-    ("nucleo-l432kc", Some("src/board/nucleo_l432kc.x")),
+/// Each board with the linker's sizes of its chip; those of the default board are in `memory.x`. And how long its converter takes for
+/// the internal reference, microseconds: `IDENTITY_CONVERSION` of its chip.
+const BOARDS: [(&str, Option<&str>, u32); 2] = [
+    ("nucleo-f429zi", None, 17),
+    ("nucleo-l432kc", Some("src/board/nucleo_l432kc.x"), 10),
 ];
+
+/// A tip's conversion, and what the scans of a block come to at about, microseconds.
+const CONVERSION: u32 = 10;
+const BLOCK: u32 = 1_000;
 
 fn main() {
     println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
@@ -24,6 +32,11 @@ fn main() {
         "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
     );
     println!("cargo::rustc-check-cfg=cfg(object)");
+    println!("cargo::rustc-check-cfg=cfg(hand)");
+    println!("cargo::rustc-check-cfg=cfg(tips)");
+    if env::var_os("CARGO_FEATURE_TIPS").is_some() {
+        println!("cargo::rustc-cfg=tips");
+    }
     if let Err(reason) = build() {
         println!("cargo::error={}", reason.replace('\n', " "));
     }
@@ -53,8 +66,100 @@ fn fold_in_the_design(for_the_chip: bool) -> Result<(), String> {
         println!("cargo::rerun-if-changed={design}/always");
     }
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
-    fs::write(out.join("design.rs"), tables(Path::new(design))?).expect("cargo's folder can be written");
+    let write =
+        |name: &str, text: String| fs::write(out.join(name), text).expect("cargo's folder can be written");
+    if fs::read_to_string(design).is_ok_and(|text| is_hand(&text)) {
+        let (tables, tips) = hand(Path::new(design))?;
+        write("design.rs", tables);
+        write("hand.rs", tips);
+    } else {
+        write("design.rs", tables(Path::new(design))?);
+    }
     Ok(())
+}
+
+/// The Rust source of the tables of a hand, and of its tips; or the reason why there are none.
+fn hand(path: &Path) -> Result<(String, String), String> {
+    let named = |reason: &str| format!("{}: {reason}", path.display());
+    if env::var_os("CARGO_FEATURE_LOAD_TIP").is_some() {
+        return Err(named(
+            "firmware of a hand loads no tips: build it without the feature load-tip",
+        ));
+    }
+    let file = HandFile::read(path).map_err(|error| error.to_string())?;
+    for tip in &file.tips {
+        println!("cargo::rerun-if-changed={}", tip.design.display());
+    }
+    let designs = file.designs().map_err(|error| error.to_string())?;
+    let channels: Vec<u8> = file
+        .tips
+        .iter()
+        .filter_map(|tip| match tip.place {
+            TransducerPlace::Channel(channel) => Some(channel),
+            TransducerPlace::Bus { .. } => None,
+        })
+        .collect();
+    if channels.len() != file.tips.len() {
+        return Err(named(
+            "parts on a bus are not read yet: give each [[tip]] a channel",
+        ));
+    }
+    println!("cargo::rustc-cfg=hand");
+    if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
+        // Its tips are made on the stack.
+        println!("cargo::rustc-link-arg-bins=--defsym=_stack_length=0x4000");
+    }
+    println!("cargo::rustc-cfg=tips");
+    println!("cargo::rustc-cfg=transducer=\"ratiometric\"");
+    let reference = chosen_board().map_or(BOARDS[0].2, |(_, _, reference)| reference);
+    let scan = CONVERSION * channels.len() as u32 + reference;
+    let scans = (BLOCK + scan / 2) / scan;
+    let names: Vec<&str> = file.tips.iter().map(|tip| tip.name.as_str()).collect();
+    let tips = channels.len();
+    let mut source = format!(
+        "/// The hand's name.\npub const NAME: &str = {:?};\n\
+         /// Hash of its tips, where they are, and their designs.\npub const HASH: u64 = {};\n\
+         /// Its tips.\npub const TIPS: usize = {tips};\n\
+         /// Their names.\npub const TIP_NAMES: [&str; TIPS] = {names:?};\n\
+         /// Their channels.\npub const CHANNELS: [u8; TIPS] = {channels:?};\n\
+         /// Scans of a block.\npub const SCANS: usize = {scans};\n\
+         /// From one block to the next, microseconds.\npub const PERIOD: u32 = {};\n",
+        file.name,
+        file.hash(&designs),
+        scans * scan
+    );
+    // Tips of one design share its tables and its code.
+    let mut different: Vec<&DesignFile> = Vec::new();
+    let (mut list, mut of_tips) = (String::new(), String::new());
+    for (number, (tip, design)) in file.tips.iter().zip(&designs).enumerate() {
+        let known = different.iter().position(|other| other.hash() == design.hash());
+        let which = known.unwrap_or(different.len());
+        let _ = writeln!(of_tips, "        tip_{number} Design{which},");
+        if known.is_some() {
+            continue;
+        }
+        different.push(design);
+        let generated = generated(&tip.design)?;
+        if generated.certified.object.is_some() {
+            return Err(format!(
+                "{}: a hand's designs touch a plate: leave [object] out",
+                tip.design.display()
+            ));
+        }
+        let wall = if generated.wall().is_some() {
+            "relaxing"
+        } else {
+            "elastic"
+        };
+        let _ = writeln!(list, "        Design{which} design_{which} {wall},");
+        let _ = write!(
+            source,
+            "/// A design.\npub mod design_{which} {{\n{}}}\n",
+            generated.rust_source()
+        );
+    }
+    let tips = format!("hand! {{\n    designs {{\n{list}    }}\n    tips {{\n{of_tips}    }}\n}}\n");
+    Ok((source, tips))
 }
 
 /// The design file: what `FINGERTIP_DESIGN` asks for, or the default. The build script runs in the folder of its
@@ -82,14 +187,27 @@ fn design_path(asked: Option<&OsStr>) -> Result<&str, String> {
     Ok(path)
 }
 
-/// The Rust source of the tables, or the reason why there are none.
-fn tables(design: &Path) -> Result<String, String> {
+/// The tables of a design, or the reason why there are none.
+fn generated(design: &Path) -> Result<Generated, String> {
     let named = |reason: String| format!("{}: {reason}", design.display());
     let generated = generate::from_design_file(design).map_err(|error| match error {
         // These name the file themselves.
         GenerateError::File(error) => error.to_string(),
         error => named(error.to_string()),
     })?;
+    if generated.limits() != [AccuracyLimit::Accuracy; 2] {
+        println!("cargo::warning={}: {}", design.display(), generated.choice());
+    }
+    if let Some(error) = generated.own_error() {
+        // Cargo shows it with -vv, and the certificate has it.
+        println!("{}: {error}", design.display());
+    }
+    Ok(generated)
+}
+
+/// The Rust source of the tables, or the reason why there are none.
+fn tables(design: &Path) -> Result<String, String> {
+    let generated = generated(design)?;
     // Only the driver of this kind gets into the image.
     let kind = match generated.transducer().kind {
         TransducerKind::Ratiometric { .. } => "ratiometric",
@@ -106,27 +224,28 @@ fn tables(design: &Path) -> Result<String, String> {
         // Tables of other objects than a plate, and the command that says which.
         println!("cargo::rustc-cfg=object");
     }
-    if generated.limits() != [AccuracyLimit::Accuracy; 2] {
-        println!("cargo::warning={}: {}", design.display(), generated.choice());
-    }
-    if let Some(error) = generated.own_error() {
-        // Cargo shows it with -vv, and the certificate has it.
-        println!("{}: {error}", design.display());
-    }
     Ok(generated.rust_source())
 }
 
-fn link_for_the_chip() -> Result<(), String> {
+/// The board of the build; the reason where it is not one.
+fn chosen_board() -> Result<(&'static str, Option<&'static str>, u32), String> {
     let feature = |board: &str| board.to_uppercase().replace('-', "_");
     let chosen = |board: &str| env::var_os(format!("CARGO_FEATURE_BOARD_{}", feature(board))).is_some();
-    let boards: Vec<_> = BOARDS.iter().filter(|(board, _)| chosen(board)).collect();
-    let [(_, sizes)] = boards[..] else {
-        let known = BOARDS.map(|(board, _)| format!("board-{board}")).join(" or ");
-        return Err(format!(
-            "{} boards are chosen: choose one, with --package fingertip --no-default-features --features {known}",
-            boards.len()
-        ));
-    };
+    let boards: Vec<_> = BOARDS.iter().filter(|(board, ..)| chosen(board)).collect();
+    match boards[..] {
+        [board] => Ok(*board),
+        _ => {
+            let known = BOARDS.map(|(board, ..)| format!("board-{board}")).join(" or ");
+            Err(format!(
+                "{} boards are chosen: choose one, with --package fingertip --no-default-features --features {known}",
+                boards.len()
+            ))
+        }
+    }
+}
+
+fn link_for_the_chip() -> Result<(), String> {
+    let (_, sizes, _) = chosen_board()?;
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     println!("cargo::rerun-if-changed=memory.x");
     println!("cargo::rustc-link-search={}", root.display());

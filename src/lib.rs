@@ -8,10 +8,10 @@
 //! | [`status`] | why there is no reading, and what qualifies one | |
 //! | [`transducer`] | a part's words -> pressure | `units`, `status` |
 //! | [`signal`] | pressure -> force and indentation with their 1-sigma | and `transducer` |
-//! | `image` | the design that this build is for (feature `design`) | and `signal` |
 //! | [`link`] | reports and commands as bytes | and `signal` |
 //! | [`storage`] | the calibration in flash | and `link` |
 //! | [`device`] | commands, resets, tasks that must report | all of these |
+//! | `image` | the design that this build is for (feature `design`), or the tips of a hand | and `signal`, of a hand `device` |
 //! | `board` | pins, clocks and interrupts, on the chip only | `units`, `status`, `transducer`, `image` |
 //!
 //! Integers only. No module but `board` knows a clock or a bus: time and samples are arguments.
@@ -28,7 +28,10 @@ pub mod transducer;
 
 pub mod signal;
 
-#[cfg(feature = "design")]
+#[cfg(all(feature = "design", not(hand)))]
+pub mod image;
+#[cfg(all(feature = "design", hand))]
+#[path = "image/hand.rs"]
 pub mod image;
 
 pub mod link;

@@ -14,6 +14,9 @@ pub enum Fault {
     Zeroing,
     /// The filter is filling again after a gap.
     Settling,
+    /// The converter's channels are not in their places.
+    #[cfg(tips)]
+    ChannelIdentity,
     /// Samples were lost between the converter and the signal path.
     SamplesLost,
     /// The converter gave no samples in time.
@@ -48,7 +51,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault with its code in telemetry; 0 is not used, so that a cleared word names none.
-    pub const CODES: [(Self, u8); 19] = [
+    pub const CODES: [(Self, u8); 19 + cfg!(tips) as usize] = [
         (Self::SensorOpen, 1),
         (Self::SensorShort, 2),
         (Self::Zeroing, 3),
@@ -59,6 +62,8 @@ impl Fault {
         (Self::Jump, 8),
         (Self::ResetLoop, 9),
         (Self::SensorSupply, 10),
+        #[cfg(tips)]
+        (Self::ChannelIdentity, 11),
         (Self::SensorAbsent, 16),
         (Self::BusFault, 17),
         (Self::WrongSensor, 18),
@@ -77,6 +82,8 @@ impl Fault {
             Self::SensorShort => "sensor short",
             Self::Zeroing => "zeroing",
             Self::Settling => "settling",
+            #[cfg(tips)]
+            Self::ChannelIdentity => "channel identity",
             Self::SamplesLost => "samples lost",
             Self::ConverterStalled => "converter stalled",
             Self::SensorSupply => "sensor supply",

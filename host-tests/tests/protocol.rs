@@ -3,6 +3,8 @@
 use fingertip::link::command::{self, Command, Request};
 use fingertip::link::load::{self, LoadCommand, LoadKind, LoadRequest};
 use fingertip::link::telemetry::{self, Frame, Hello, Message};
+use fingertip::link::tips;
+use fingertip::link::wire::unstuff;
 use fingertip::signal::report::{Measurement, Report};
 use fingertip::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings};
 use fingertip::units::Microseconds;
@@ -125,6 +127,66 @@ fn the_pages_examples_are_what_the_firmware_sends_and_takes() {
 }
 
 #[test]
+fn the_pages_examples_of_a_hand_are_what_the_reader_in_python_reads() {
+    let whats = [
+        "readings, sequence 0x0102",
+        "hello of the board",
+        "hello of tip 4",
+        "answer of tip 4",
+    ];
+    let mut stream = Vec::new();
+    for what in whats {
+        let bytes = example(&format!("hand: {what}"));
+        let body = unstuff(&bytes[..bytes.len() - 1]).expect("it is a frame");
+        assert!(tips::read_body(&body).is_ok(), "{what}");
+        stream.extend(bytes);
+    }
+    for (tip, sequence, command, arguments, what) in [
+        (
+            4,
+            0x0102,
+            Command::Tare,
+            &["--encode", "4", "tare", "258"][..],
+            "tare of tip 4",
+        ),
+        (
+            255,
+            1,
+            Command::Rate { every: 4 },
+            &["--encode", "255", "rate", "1", "0400"],
+            "rate of all",
+        ),
+    ] {
+        let bytes = example(&format!("hand: {what}"));
+        let request = Request { sequence, command };
+        assert_eq!(tips::encode_request(tip, &request).as_slice(), bytes, "{what}");
+        assert_eq!(
+            reader_of(HAND_READER, arguments, &[]).unwrap_or(bytes.clone()),
+            bytes,
+            "{what}"
+        );
+    }
+    let Some(told) = reader_of(HAND_READER, &[], &stream) else {
+        return;
+    };
+    let told = String::from_utf8(told).expect("it is text");
+    let lines: Vec<&str> = told.lines().collect();
+    assert_eq!(
+        lines,
+        [
+            "258 3000500 us, 3 dropped: tip 0 warning: saturated, touched, 642.000 Pa, 1500000 uN, 2500000 nm, 1-sigma 2.828 \
+             Pa, 5793 uN, 8933 nm | tip 1 fault: sensor open",
+            "7 1000000 us, 259 dropped: hello, firmware 0.1.0, reset by watchdog, design 0123456789abcdef, tables 1, a \
+             report each 2010 us, stored: in use (17), before: late task 0x3, 2 resets in a row; 2 samples lost, 6 outliers, \
+             259 frames dropped, 4 refused; 5 tips",
+            "8 1000000 us, 0 dropped: tip 4 index, design 0123456789abcdef, tables 5, a report each 2010 us, stored: none \
+             (0), 6 outliers",
+            "9 2000000 us, 0 dropped: tip 4: tare 772: touched, findings 0x0",
+        ]
+    );
+}
+
+#[test]
 fn the_page_names_every_code() {
     let page = fs::read_to_string(workspace().join("src/link/PROTOCOL.md")).expect("the page is there");
     for (fault, code) in Fault::CODES {
@@ -150,7 +212,15 @@ fn the_page_names_every_code() {
 
 /// Runs the reader, or nothing where there is no Python.
 fn reader(arguments: &[&str], input: &[u8]) -> Option<Vec<u8>> {
-    let script = workspace().join("host-tests/scripts/read_frames.py");
+    reader_of("host-tests/scripts/read_frames.py", arguments, input)
+}
+
+/// The reader of a hand's frames.
+const HAND_READER: &str = "host-tests/scripts/read_hand.py";
+
+/// The same of another script.
+fn reader_of(script: &str, arguments: &[&str], input: &[u8]) -> Option<Vec<u8>> {
+    let script = workspace().join(script);
     let mut child = python3()?
         .arg(script)
         .args(arguments)

@@ -1,11 +1,13 @@
 //! What every board gives the tasks, and how it is set up.
 
 use super::chosen::{BAUD, CALIBRATION, Interrupts, Pins, Region, WATCHDOG, clocks, region};
-#[cfg(transducer = "ratiometric")]
-use super::converter::DmaConverter;
+#[cfg(all(transducer = "ratiometric", not(hand)))]
+use super::converter::DmaConverter as AnaloguePort;
 #[cfg(not(transducer = "ratiometric"))]
 use super::i2c::I2cBus;
 use super::memory::RetryingFlash;
+#[cfg(hand)]
+use super::scan::DmaScan as AnaloguePort;
 use crate::status::ResetCause;
 use crate::units::Microseconds;
 #[cfg(transducer = "ratiometric")]
@@ -70,7 +72,7 @@ pub struct Board {
 
 /// What the transducer is on: the converter, ...
 #[cfg(transducer = "ratiometric")]
-pub type Port = DmaConverter;
+pub type Port = AnaloguePort;
 
 /// ... or the bus.
 #[cfg(not(transducer = "ratiometric"))]
@@ -94,7 +96,7 @@ impl Board {
         watchdog.unleash();
 
         #[cfg(transducer = "ratiometric")]
-        let port = (!gave_up).then(|| DmaConverter::new(Adc::new(pins.converter)));
+        let port = (!gave_up).then(|| AnaloguePort::new(Adc::new(pins.converter)));
         #[cfg(not(transducer = "ratiometric"))]
         let port = (!gave_up).then_some(I2cBus(pins.bus));
 

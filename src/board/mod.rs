@@ -2,13 +2,15 @@
 //! and what all boards share.
 
 mod common;
-#[cfg(transducer = "ratiometric")]
+#[cfg(all(transducer = "ratiometric", not(hand)))]
 mod converter;
 #[cfg(not(transducer = "ratiometric"))]
 mod i2c;
 mod memory;
 #[macro_use]
 mod pins;
+#[cfg(hand)]
+mod scan;
 
 #[cfg(feature = "board-nucleo-f429zi")]
 #[path = "stm32f4.rs"]

@@ -5,6 +5,7 @@
 //! | clock | HSE, 8 MHz, bypass | the ST-LINK's MCO drives it by default (UM1974 6.8.1); a crystal is not fitted |
 //! | transducer, analogue | PA3, `ADC123_IN3` | A0 of the Zio and Arduino header (UM1974 table 19) |
 //! | its supply, where it is measured | PC0, `ADC123_IN10` | A1 of that header |
+//! | a hand's channels 0 to 5 | PA3, PC0, PC3, PB1, PC2, PA5; `ADC1_IN3`, `10`, `13`, `9`, `12`, `5` | A0, A1, A2, A6, A7, D13: pins of ADC1 that the board uses for nothing else (UM1974 tables 19 and 20) |
 //! | transducer, bus | PB8, PB9, I2C1 | D15 and D14 of that header, with pull-ups at the transducer |
 //! | serial port | PD8, PD9, USART3 | the ST-LINK's virtual COM port by default (UM1974 6.9) |
 //! | calibration | flash from `0x0810_0000`, two sectors of 16 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
@@ -63,8 +64,43 @@ bind_interrupts!(pub(super) struct BusInterrupts {
     DMA1_STREAM6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
 });
 
+/// What a hand's `channel` counts: A0, A1, A2, A6, A7 and D13 of the Zio and Arduino headers.
+#[cfg(hand)]
+pub(super) const CHANNELS: [Input; 6] = [
+    Input {
+        channel: 3,
+        port: pac::GPIOA,
+        pin: 3,
+    },
+    Input {
+        channel: 10,
+        port: pac::GPIOC,
+        pin: 0,
+    },
+    Input {
+        channel: 13,
+        port: pac::GPIOC,
+        pin: 3,
+    },
+    Input {
+        channel: 9,
+        port: pac::GPIOB,
+        pin: 1,
+    },
+    Input {
+        channel: 12,
+        port: pac::GPIOC,
+        pin: 2,
+    },
+    Input {
+        channel: 5,
+        port: pac::GPIOA,
+        pin: 5,
+    },
+];
+
 /// The transducer's output.
-#[cfg(transducer = "ratiometric")]
+#[cfg(all(transducer = "ratiometric", not(hand)))]
 pub(super) const OUTPUT: Input = Input {
     channel: 3,
     port: pac::GPIOA,
@@ -72,7 +108,7 @@ pub(super) const OUTPUT: Input = Input {
 };
 
 /// Its supply.
-#[cfg(transducer = "ratiometric")]
+#[cfg(all(transducer = "ratiometric", not(hand)))]
 pub(super) const SUPPLY: Input = Input {
     channel: 10,
     port: pac::GPIOC,

@@ -5,6 +5,7 @@
 //! | clock | HSI16 | no crystal is fitted but the 32 kHz one; 1 % off at most (DS11451 table 49) is enough for the serial port |
 //! | transducer, analogue | PA0, `ADC1_IN5` | A0 of the Nano header (UM1956 table 9) |
 //! | its supply, where it is measured | PA1, `ADC1_IN6` | A1 of that header |
+//! | a hand's channels 0 to 5 | PA0, PA1, PA3, PA4, PA7, PA5; `ADC1_IN5`, `6`, `8`, `9`, `12`, `10` | A0, A1, A2, A3, A6, A4; PA5 is wired to PB7 (SB16), which stays an input |
 //! | transducer, bus | PB6, PB7, I2C1 | D5 and D4 of that header, with pull-ups at the transducer; A5 and A4 (PA5, PA6) are wired to them by default (SB16, SB18) and stay inputs |
 //! | serial port | PA2, PA15, USART2 | the ST-LINK's virtual COM port by default (UM1956 6.8) |
 //! | calibration | the last two pages of flash, 2 KB each | erasing one stalls the code for 25 ms at most (DS11451 table 58): samples are lost, and counted |
@@ -65,8 +66,43 @@ bind_interrupts!(pub(super) struct BusInterrupts {
     DMA2_CHANNEL7 => dma::InterruptHandler<peripherals::DMA2_CH7>;
 });
 
+/// What a hand's `channel` counts: A0, A1, A2, A3, A6 and A4 of the Nano header.
+#[cfg(hand)]
+pub(super) const CHANNELS: [Input; 6] = [
+    Input {
+        channel: 5,
+        port: pac::GPIOA,
+        pin: 0,
+    },
+    Input {
+        channel: 6,
+        port: pac::GPIOA,
+        pin: 1,
+    },
+    Input {
+        channel: 8,
+        port: pac::GPIOA,
+        pin: 3,
+    },
+    Input {
+        channel: 9,
+        port: pac::GPIOA,
+        pin: 4,
+    },
+    Input {
+        channel: 12,
+        port: pac::GPIOA,
+        pin: 7,
+    },
+    Input {
+        channel: 10,
+        port: pac::GPIOA,
+        pin: 5,
+    },
+];
+
 /// The transducer's output.
-#[cfg(transducer = "ratiometric")]
+#[cfg(all(transducer = "ratiometric", not(hand)))]
 pub(super) const OUTPUT: Input = Input {
     channel: 5,
     port: pac::GPIOA,
@@ -74,7 +110,7 @@ pub(super) const OUTPUT: Input = Input {
 };
 
 /// Its supply.
-#[cfg(transducer = "ratiometric")]
+#[cfg(all(transducer = "ratiometric", not(hand)))]
 pub(super) const SUPPLY: Input = Input {
     channel: 6,
     port: pac::GPIOA,

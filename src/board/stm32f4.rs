@@ -1,6 +1,8 @@
 //! The STM32F4: flags of the last reset, and its converter.
 
-#[cfg(transducer = "ratiometric")]
+#[cfg(hand)]
+use super::chosen::CHANNELS;
+#[cfg(all(transducer = "ratiometric", not(hand)))]
 use super::chosen::{OUTPUT, SUPPLY};
 use crate::status::ResetCause;
 #[cfg(transducer = "ratiometric")]
@@ -33,7 +35,7 @@ pub(super) fn reset_cause() -> ResetCause {
 
 /// Sets up ADC1 to run free at 4 MHz, read by stream 0 of DMA2, channel 0. 28 cycles of sampling (7 us, enough for 10
 /// kilo-ohm) and 12 of conversion are 10 us; 100 of them 1 ms to the cycle.
-#[cfg(transducer = "ratiometric")]
+#[cfg(all(transducer = "ratiometric", not(hand)))]
 pub(super) fn set_up_converter(supply_measured: bool) {
     OUTPUT.connect();
     let adc = pac::ADC1;
@@ -49,6 +51,39 @@ pub(super) fn set_up_converter(supply_measured: bool) {
         adc.sqr3().modify(|w| w.set_sq(1, SUPPLY.channel));
         adc.cr1().modify(|w| w.set_scan(true));
     }
+}
+
+/// Sampling of the internal reference, at least 10 us (DS9405 table 84): 56 cycles of 4 MHz are 14 us, and 12 of conversion make 17.
+#[cfg(hand)]
+pub(super) const IDENTITY_CONVERSION: u32 = 17;
+
+/// Sets up ADC1 as [`set_up_converter`] does, for a scan of these channels and the internal reference after them.
+#[cfg(hand)]
+pub(super) fn set_up_scan(channels: &[u8]) {
+    const REFERENCE: u8 = 17;
+    let adc = pac::ADC1;
+    pac::ADC123_COMMON.ccr().modify(|w| w.set_tsvrefe(true));
+    let times = |channel: u8, time: SampleTime| match usize::from(channel) {
+        channel @ 0..10 => adc.smpr2().modify(|w| w.set_smp(channel, time)),
+        channel => adc.smpr1().modify(|w| w.set_smp(channel - 10, time)),
+    };
+    let rank = |rank: usize, channel: u8| match rank {
+        0..6 => adc.sqr3().modify(|w| w.set_sq(rank, channel)),
+        _ => adc.sqr2().modify(|w| w.set_sq(rank - 6, channel)),
+    };
+    for (number, input) in channels
+        .iter()
+        .filter_map(|&channel| CHANNELS.get(usize::from(channel)))
+        .enumerate()
+    {
+        input.connect();
+        times(input.channel, SampleTime::CYCLES28);
+        rank(number, input.channel);
+    }
+    times(REFERENCE, SampleTime::CYCLES56);
+    rank(channels.len(), REFERENCE);
+    adc.sqr1().modify(|w| w.set_l(channels.len() as u8));
+    adc.cr1().modify(|w| w.set_scan(true));
 }
 
 /// Starts it at the front of the ring, also from any state it is stuck in.

@@ -1,6 +1,8 @@
 //! The STM32L4: flags of the last reset, and its converter.
 
-#[cfg(transducer = "ratiometric")]
+#[cfg(hand)]
+use super::chosen::CHANNELS;
+#[cfg(all(transducer = "ratiometric", not(hand)))]
 use super::chosen::{OUTPUT, SUPPLY};
 use crate::status::ResetCause;
 #[cfg(transducer = "ratiometric")]
@@ -29,7 +31,7 @@ pub(super) fn reset_cause() -> ResetCause {
 
 /// Sets up ADC1 to run free at 6 MHz, read by channel 1 of DMA1, request 0. 47.5 cycles of sampling (7.9 us, enough for 10
 /// kilo-ohm) and 12.5 of conversion are 10 us; 100 of them 1 ms to the cycle.
-#[cfg(transducer = "ratiometric")]
+#[cfg(all(transducer = "ratiometric", not(hand)))]
 pub(super) fn set_up_converter(supply_measured: bool) {
     OUTPUT.connect();
     // The core's 24 MHz by four, in step with it.
@@ -47,6 +49,13 @@ pub(super) fn set_up_converter(supply_measured: bool) {
             .modify(|w| w.set_smp(usize::from(SUPPLY.channel), SampleTime::CYCLES47_5));
         adc.sqr1().modify(|w| w.set_sq(1, SUPPLY.channel));
     }
+    run_free();
+}
+
+/// For ever, each code to the DMA.
+#[cfg(transducer = "ratiometric")]
+fn run_free() {
+    let adc = pac::ADC1;
     adc.cfgr().modify(|w| {
         w.set_cont(true);
         w.set_dmaen(true);
@@ -55,6 +64,43 @@ pub(super) fn set_up_converter(supply_measured: bool) {
     adc.isr().write(|w| w.set_adrdy(true));
     adc.cr().modify(|w| w.set_aden(true));
     while !adc.isr().read().adrdy() {}
+}
+
+/// Sampling of the internal reference, at least 4 us (DS11451, embedded voltage reference): 7.9 us, as of every channel.
+#[cfg(hand)]
+pub(super) const IDENTITY_CONVERSION: u32 = 10;
+
+/// Sets up ADC1 as [`set_up_converter`] does, for a scan of these channels and the internal reference after them.
+#[cfg(hand)]
+pub(super) fn set_up_scan(channels: &[u8]) {
+    const REFERENCE: u8 = 0;
+    pac::ADC1_COMMON.ccr().modify(|w| {
+        w.set_ckmode(0b11);
+        w.set_vrefen(true);
+    });
+    let adc = pac::ADC1;
+    let times = |channel: u8| {
+        let channel = usize::from(channel);
+        adc.smpr(channel / 10)
+            .modify(|w| w.set_smp(channel % 10, SampleTime::CYCLES47_5));
+    };
+    let rank = |rank: usize, channel: u8| match rank {
+        0..4 => adc.sqr1().modify(|w| w.set_sq(rank, channel)),
+        _ => adc.sqr2().modify(|w| w.set_sq(rank - 4, channel)),
+    };
+    for (number, input) in channels
+        .iter()
+        .filter_map(|&channel| CHANNELS.get(usize::from(channel)))
+        .enumerate()
+    {
+        input.connect();
+        times(input.channel);
+        rank(number, input.channel);
+    }
+    times(REFERENCE);
+    rank(channels.len(), REFERENCE);
+    adc.sqr1().modify(|w| w.set_l(channels.len() as u8));
+    run_free();
 }
 
 /// Starts it at the front of the ring, also from any state it is stuck in.

@@ -1,6 +1,8 @@
 //! One board: the [`logic`] between samples and line, and the [`supervisor`] of tasks and resets; with the feature `load-tip` the
 //! loader of a tip's data.
 
+#[cfg(tips)]
+pub mod hand;
 pub mod logic;
 pub mod task_monitor;
 #[cfg(feature = "load-tip")]

@@ -1,9 +1,13 @@
 //! What the image adds to the library: the tasks, the transducer of the design on the board's port, and memory that a reset
 //! keeps.
 
+#[cfg(hand)]
+mod hand;
 mod queues;
 mod retained;
+#[cfg(not(hand))]
 mod tasks;
 #[cfg(feature = "load-tip")]
 mod tip;
+#[cfg(not(hand))]
 mod transducer;

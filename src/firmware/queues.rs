@@ -1,20 +1,27 @@
 //! What the tasks hand to each other: frames to be sent, commands, what is to be stored; and who reported when.
 
 use core::cell::RefCell;
-use core::sync::atomic::AtomicU32;
+use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_sync::blocking_mutex::ThreadModeMutex;
 use embassy_sync::blocking_mutex::raw::{NoopRawMutex, ThreadModeRawMutex};
 use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
 use embassy_time::Duration;
 use fingertip::board::Clock;
+#[cfg(hand)]
+use fingertip::device::hand::HandFrame;
+#[cfg(not(hand))]
 use fingertip::device::logic::ToStore;
 use fingertip::device::task_monitor::TaskMonitor;
 use fingertip::image;
 use fingertip::link::command::Request;
 use fingertip::link::outbox::Outbox;
+#[cfg(not(hand))]
 use fingertip::link::telemetry::Message;
+#[cfg(hand)]
+use fingertip::link::tips::FrameStart;
 use fingertip::link::wire::Encoded;
+#[cfg(not(hand))]
 use fingertip::storage::store::StoreError;
 use fingertip::units::Microseconds;
 use static_cell::{ConstStaticCell, StaticCell};
@@ -27,8 +34,8 @@ pub(super) const SEND: usize = 0;
 pub(super) const LISTEN: usize = 1;
 pub(super) const REMEMBER: usize = 2;
 
-/// 8 ms of reports.
-pub(super) const WAITING: usize = 8;
+/// 8 ms of reports; of a hand the greetings of all its tips too.
+pub(super) const WAITING: usize = if cfg!(hand) { 16 } else { 8 };
 
 /// Frames waiting for the line.
 pub(super) struct Waiting {
@@ -43,20 +50,42 @@ pub(super) static SENT: ConstStaticCell<Encoded> = ConstStaticCell::new(Encoded:
 pub(super) static OUTBOX: StaticCell<Waiting> = StaticCell::new();
 
 impl Waiting {
+    #[cfg(not(hand))]
     pub(super) fn put(&self, message: &Message) {
         self.frames.borrow_mut().put(message);
         self.more.signal(());
     }
+
+    #[cfg(hand)]
+    #[inline(never)] // several places put frames; one copy of the encoders is enough
+    pub(super) fn put_frame(&self, frame: &HandFrame<'_>) {
+        self.frames.borrow_mut().put_by(|body, sequence, dropped| {
+            frame.write(FrameStart {
+                body,
+                sequence,
+                dropped,
+            });
+        });
+        self.more.signal(());
+    }
 }
 
+/// A command, of a hand with its tip.
+#[cfg(not(hand))]
+pub(super) type Asked = Request;
+#[cfg(hand)]
+pub(super) type Asked = (u8, Request);
+
 /// Commands waiting for the next report. When full the newest is refused, and counted.
-pub(super) static REQUESTS: Channel<ThreadModeRawMutex, Request, 2> = Channel::new();
+pub(super) static REQUESTS: Channel<ThreadModeRawMutex, Asked, 2> = Channel::new();
 
 /// What came over the line and was no command.
 pub(super) static REFUSED: AtomicU32 = AtomicU32::new(0);
 
 /// To be stored, and what came of it.
+#[cfg(not(hand))]
 pub(super) static TO_STORE: Channel<ThreadModeRawMutex, ToStore, 1> = Channel::new();
+#[cfg(not(hand))]
 pub(super) static STORED: Channel<ThreadModeRawMutex, (Result<(), StoreError>, u32), 1> = Channel::new();
 
 /// Who reported when.
@@ -65,4 +94,13 @@ pub(super) static TASK_MONITOR: ThreadModeMutex<RefCell<TaskMonitor<3>>> =
 
 pub(super) fn alive(task: usize, clock: Clock) {
     TASK_MONITOR.lock(|task_monitor| task_monitor.borrow_mut().report(task, clock.now()));
+}
+
+/// Counts what was no command.
+pub(super) fn refuse() {
+    // Only this task counts, and one core has no exclusive access to lose.
+    REFUSED.store(
+        REFUSED.load(Ordering::Relaxed).saturating_add(1),
+        Ordering::Relaxed,
+    );
 }

@@ -5,7 +5,7 @@
 use crate::firmware::queues::REMEMBER;
 use crate::firmware::queues::{
     FRAMES, IDLE, LISTEN, OUTBOX, REFUSED, REQUESTS, SEND, SENT, STORED, TASK_MONITOR, TO_STORE, Waiting,
-    alive,
+    alive, refuse,
 };
 use crate::firmware::retained;
 #[cfg(feature = "load-tip")]
@@ -255,14 +255,6 @@ async fn listen(mut serial_rx: SerialRx, clock: Clock) {
         }
         embassy_futures::yield_now().await;
     }
-}
-
-fn refuse() {
-    // Only this task counts, and one core has no exclusive access to lose.
-    REFUSED.store(
-        REFUSED.load(Ordering::Relaxed).saturating_add(1),
-        Ordering::Relaxed,
-    );
 }
 
 /// Stores the calibration. Period: when asked for. Deadline: none; other tasks run meanwhile. Without a store every save

@@ -6,4 +6,6 @@ pub mod command;
 pub mod load;
 pub mod outbox;
 pub mod telemetry;
+#[cfg(tips)]
+pub mod tips;
 pub mod wire;

@@ -30,6 +30,12 @@ impl<'a, const FRAMES: usize, const OBJECT: bool> Outbox<'a, FRAMES, OBJECT> {
     /// Puts a message behind the others.
     #[inline(never)] // several places speak; one copy of the encoder is enough
     pub fn put(&mut self, message: &Message) {
+        self.put_by(|frame, sequence, dropped| telemetry::write::<OBJECT>(frame, sequence, dropped, message));
+    }
+
+    /// Puts a frame behind the others that `write` writes, with its number and how many were dropped before it.
+    #[inline]
+    pub fn put_by(&mut self, write: impl FnOnce(&mut Encoded, u16, u16)) {
         if self.waiting == FRAMES {
             self.oldest = (self.oldest + 1) % FRAMES;
             self.waiting -= 1;
@@ -37,7 +43,7 @@ impl<'a, const FRAMES: usize, const OBJECT: bool> Outbox<'a, FRAMES, OBJECT> {
         }
         let place = (self.oldest + self.waiting) % FRAMES;
         if let Some(frame) = self.frames.get_mut(place) {
-            telemetry::write::<OBJECT>(frame, self.sequence, self.dropped as u16, message);
+            write(frame, self.sequence, self.dropped as u16);
             self.sequence = self.sequence.wrapping_add(1);
             self.waiting += 1;
         }

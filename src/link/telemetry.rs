@@ -13,7 +13,7 @@ use crate::units::Microseconds;
 use model_tables::table::known::KnownContact;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-const HEADER: usize = 14;
+pub(super) const HEADER: usize = 14;
 const READING: usize = HEADER + 28;
 const FAULT: usize = HEADER + 1;
 const HELLO: usize = HEADER + 47;
@@ -188,7 +188,7 @@ pub fn write<const OBJECT: bool>(body: &mut Encoded, sequence: u16, dropped: u16
     body.finish();
 }
 
-fn write_hello(body: &mut Encoded, hello: &Hello) {
+pub(super) fn write_hello(body: &mut Encoded, hello: &Hello) {
     body.put(hello.firmware);
     body.put([code_of(&ResetCause::CODES, hello.reset_cause)]);
     body.put(hello.design_hash.to_le_bytes());
@@ -219,7 +219,7 @@ pub fn decode(stuffed: &[u8]) -> Result<Frame, DecodeError> {
     read_body(&unstuff(stuffed)?)
 }
 
-fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
+pub(super) fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
     if body.len() < HEADER {
         return Err(DecodeError::Short);
     }
@@ -349,7 +349,7 @@ fn read_measurement(fields: &mut Reader<'_>) -> Result<(Measurement, u8), Decode
     Ok((measurement, pressure_fraction_bits))
 }
 
-fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<Hello, DecodeError> {
+pub(super) fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<Hello, DecodeError> {
     let firmware = fields.take()?;
     let [reset_cause] = fields.take()?;
     let design_hash = u64::from_le_bytes(fields.take()?);

@@ -12,8 +12,12 @@ use heapless::Vec;
 /// Version of the layout of all bodies.
 pub const PROTOCOL_VERSION: u8 = 2;
 
+/// The same of a board of several tips.
+#[cfg(tips)]
+pub const HAND_VERSION: u8 = 3;
+
 /// Longest body there is, in either direction.
-pub const MAXIMUM_BODY: usize = 80;
+pub const MAXIMUM_BODY: usize = if cfg!(tips) { 240 } else { 80 };
 
 const CRC_BYTES: usize = 2;
 

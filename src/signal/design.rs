@@ -156,6 +156,25 @@ impl Parameters {
         }
     }
 
+    /// The same of a tip of a hand: a sample each `period` microseconds, made of so many codes of the converter.
+    ///
+    /// # Panics
+    /// As [`Parameters::of`].
+    #[cfg(tips)]
+    pub const fn of_scan(
+        constants: DesignConstants,
+        fraction_bits: u32,
+        last_rise: PressureRise,
+        [period, codes]: [u32; 2],
+    ) -> Self {
+        Self {
+            period,
+            step_limits: StepLimits::of(&constants, fraction_bits, period),
+            uncertainty: Uncertainty::averaging(&constants, fraction_bits, codes),
+            ..Self::of(constants, fraction_bits, last_rise)
+        }
+    }
+
     /// Two samples further apart than this are not next to each other, microseconds.
     pub const fn gap(&self) -> u64 {
         20 * self.period as u64

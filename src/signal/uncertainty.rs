@@ -15,8 +15,13 @@ pub struct Uncertainty {
 impl Uncertainty {
     /// For a design.
     pub const fn of(constants: &DesignConstants, fraction_bits: u32) -> Self {
+        Self::averaging(constants, fraction_bits, averaged(&constants.transducer.kind))
+    }
+
+    /// For a design whose reading is made of so many samples, as [`averaged`] counts them.
+    pub const fn averaging(constants: &DesignConstants, fraction_bits: u32, averaged: u32) -> Self {
         let transducer = &constants.transducer;
-        let averaged = averaged(&transducer.kind) as i64;
+        let averaged = averaged as i64;
         let (noise, resolution) = (transducer.noise as i64, transducer.resolution as i64);
         // The kernel 1-2-1 over 4 leaves 6/16 of the variance; steps of the resolution have 1/12. Below 2^63.
         let variance = noise * noise / averaged / 16 * 6 + resolution * resolution / 12;

@@ -228,35 +228,39 @@ impl Ring {
     /// Codes in the ring.
     pub const LENGTH: usize = 2 * BLOCK_LENGTH;
 
-    /// A block must be begun to be read before the next one is this far, conversions: what remains of a [`PERIOD`] is
-    /// for the reading.
-    const LATEST: usize = BLOCK_LENGTH * 3 / 4;
-
-    /// The block that is complete, at a look once a [`PERIOD`]; `position` is how many codes of the ring are written.
+    /// The block that is complete, at a look once a [`PERIOD`]; `position` is how many codes of the ring are written. It must
+    /// be begun to be read before the next one is three quarters written: what remains of a [`PERIOD`] is for the reading.
     ///
     /// # Errors
     /// [`Fault::ConverterStalled`] when it stands still, [`Fault::SamplesLost`] when the last look was too long ago or
     /// this one comes too late.
     pub fn look(&mut self, position: usize) -> Result<Complete, Fault> {
-        let position = position % Self::LENGTH;
-        let last = core::mem::replace(&mut self.last, position);
-        let (before, now) = (last / BLOCK_LENGTH, position / BLOCK_LENGTH);
-        let since = position % BLOCK_LENGTH;
-        if position == last {
-            Err(Fault::ConverterStalled)
-        } else if before == now || since > Self::LATEST {
-            Err(Fault::SamplesLost)
-        } else {
-            Ok(Complete {
-                half: before,
-                since: since as u32,
-            })
-        }
+        look(&mut self.last, position, BLOCK_LENGTH)
     }
 
     /// Whether the block of the last look is not being written again, at a `position` less than a ring later.
     pub fn still_holds(&self, position: usize) -> bool {
         self.last / BLOCK_LENGTH == position % Self::LENGTH / BLOCK_LENGTH
+    }
+}
+
+/// [`Ring::look`] in a ring of two blocks of a length.
+#[inline(always)] // the length is a constant wherever it is called
+#[allow(clippy::inline_always)]
+pub(super) fn look(last: &mut usize, position: usize, block: usize) -> Result<Complete, Fault> {
+    let position = position % (2 * block);
+    let last = core::mem::replace(last, position);
+    let (before, now) = (last / block, position / block);
+    let since = position % block;
+    if position == last {
+        Err(Fault::ConverterStalled)
+    } else if before == now || since > block * 3 / 4 {
+        Err(Fault::SamplesLost)
+    } else {
+        Ok(Complete {
+            half: before,
+            since: since as u32,
+        })
     }
 }
 

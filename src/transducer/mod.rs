@@ -7,6 +7,8 @@ pub mod dps310;
 pub mod driver;
 pub mod ms5837;
 pub mod ratiometric;
+#[cfg(tips)]
+pub mod scan;
 #[cfg(test)]
 mod script;
 pub mod supervisor;

@@ -118,15 +118,7 @@ pub fn run_watching<L: Listener>(
     watched: &[u64],
     listener: L,
 ) -> Result<RunOutcome<L>, BenchError> {
-    let counted = counted
-        .iter()
-        .map(|(owner, name)| -> Result<Counted, ImageError> {
-            let entry = image.function(owner, name)?;
-            let returns = image.returns_of(entry)?;
-            Ok(Counted { entry, returns })
-        })
-        .collect::<Result<_, _>>()?;
-    let counter = CallCounter::new(counted);
+    let counter = CallCounter::of(image, counted)?;
     let elf = rigless::image::Image::new(image.path(), image.bytes().to_vec(), None).map_err(emulator)?;
     let board = Box::new(Nucleo::new(&plant.transducer()).map_err(emulator)?);
     let mut session = Session::new(board, 0, VirtualNanos(LISTEN)).map_err(emulator)?;
@@ -166,11 +158,11 @@ pub fn run_watching<L: Listener>(
     })
 }
 
-fn emulator(error: impl fmt::Display) -> BenchError {
+pub(crate) fn emulator(error: impl fmt::Display) -> BenchError {
     BenchError::Emulator(error.to_string())
 }
 
-fn seconds(at: VirtualNanos) -> f64 {
+pub(crate) fn seconds(at: VirtualNanos) -> f64 {
     at.0 as f64 * 1e-9
 }
 
@@ -179,7 +171,7 @@ fn describe(reset: &Reset) -> String {
 }
 
 /// Everything the emulator answered without a model behind it.
-fn gaps(session: &Session<Nucleo>) -> Vec<String> {
+pub(crate) fn gaps(session: &Session<Nucleo>) -> Vec<String> {
     let unmapped = session.unmapped().into_iter().map(|gap| gap.to_string());
     let refused = session
         .refused()
@@ -244,10 +236,7 @@ impl<L> Bench<L> {
 
     /// The first timer that is started after a reset keeps the time.
     fn note_clock(&mut self, access: Access) {
-        let starts = access.kind == AccessKind::Write
-            && TIMER_CONTROL.contains(&access.address)
-            && access.value & COUNTER_ENABLE != 0;
-        if starts && self.clock_zero.is_none() {
+        if starts_the_clock(&access) && self.clock_zero.is_none() {
             self.clock_zero = Some(seconds(access.virtual_time));
         }
     }
@@ -301,6 +290,13 @@ impl<L: Listener> Driver<Nucleo> for Bench<L> {
     }
 }
 
+/// Whether it starts a timer that may keep the image's time.
+pub(crate) fn starts_the_clock(access: &Access) -> bool {
+    access.kind == AccessKind::Write
+        && TIMER_CONTROL.contains(&access.address)
+        && access.value & COUNTER_ENABLE != 0
+}
+
 /// A function: where it begins and where its callers go on.
 struct Counted {
     entry: u64,
@@ -308,7 +304,7 @@ struct Counted {
 }
 
 /// Counts instructions between functions' entries and returns.
-struct CallCounter {
+pub(crate) struct CallCounter {
     counted: Vec<Counted>,
     /// Which function was entered last, and when.
     entered: Option<(usize, u64)>,
@@ -318,22 +314,36 @@ struct CallCounter {
 }
 
 impl CallCounter {
-    fn new(counted: Vec<Counted>) -> Self {
-        Self {
+    /// Of these functions, by owner and name.
+    pub(crate) fn of(image: &Image, counted: &[(&str, &str)]) -> Result<Self, ImageError> {
+        let counted = counted
+            .iter()
+            .map(|(owner, name)| -> Result<Counted, ImageError> {
+                let entry = image.function(owner, name)?;
+                let returns = image.returns_of(entry)?;
+                Ok(Counted { entry, returns })
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
             counted,
             entered: None,
             sum: 0,
             calls: vec![],
-        }
+        })
     }
 
-    fn addresses(&self) -> impl Iterator<Item = u64> {
+    /// What was counted.
+    pub(crate) fn into_calls(self) -> Vec<u64> {
+        self.calls
+    }
+
+    pub(crate) fn addresses(&self) -> impl Iterator<Item = u64> {
         self.counted
             .iter()
             .flat_map(|function| std::iter::once(function.entry).chain(function.returns.iter().copied()))
     }
 
-    fn hit(&mut self, hit: Hit) {
+    pub(crate) fn hit(&mut self, hit: Hit) {
         if let Some(function) = self
             .counted
             .iter()

@@ -99,6 +99,21 @@ impl Nucleo {
         }
     }
 
+    /// The output on one of ADC1's channels from now on, a share of the reference.
+    pub(crate) fn set_share(&mut self, channel: u8, share: f64) {
+        let microvolts = share * f64::from(REFERENCE_MICROVOLTS) + HALF_CODE_MICROVOLTS;
+        let converter = &mut self.mcu.adc[TRANSDUCER_CONVERTER];
+        converter.set_reference(REFERENCE_MICROVOLTS);
+        converter.set_input(Channel::new(channel).expect("a pin's channel"), microvolts as u32);
+    }
+
+    /// The internal reference from now on, a share of the converter's: the emulated one is 1210 units, whatever a unit is.
+    pub(crate) fn set_internal_reference(&mut self, share: f64) {
+        const INTERNAL: f64 = 1210.0;
+        let reference = (INTERNAL / share.max(1e-3)).round();
+        self.mcu.adc[TRANSDUCER_CONVERTER].set_reference(reference as u32);
+    }
+
     /// Has the host send bytes, behind those that are under way.
     pub(crate) fn send(&mut self, bytes: &[u8]) {
         if let Some(wire) = self.mcu.usart[self.host_port].chip_mut::<HostWire>() {

@@ -4,7 +4,7 @@
 //! contact and pressure) ->
 //! [`transducer`] and [`noise`] (a voltage, or a `sensor` on a bus) -> `board` (the emulated microcontroller) running [`image`] ->
 //! [`bench`] (the bytes it sends) -> [`record`] (reports beside the truth) -> [`accuracy`], [`chart`] and
-//! [`output`] files. [`inlined`] finds what a part of an image costs.
+//! [`output`] files. [`hand`] is the same for several fingertips. [`inlined`] finds what a part of an image costs.
 #![forbid(unsafe_code)]
 
 mod abp2;
@@ -13,6 +13,7 @@ pub mod bench;
 mod board;
 pub mod chart;
 pub mod fingertip_design;
+pub mod hand;
 pub mod image;
 pub mod inlined;
 mod ms5837;

@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 const OVERFLOW: f64 = 65_536e-6;
 
 /// The instant that the image calls `device_time`, for a report that has come within an overflow of it.
-fn instant(device_time: f64, moment: Moment) -> f64 {
+pub(crate) fn instant(device_time: f64, moment: Moment) -> f64 {
     let time = moment.clock_zero + device_time;
     time - OVERFLOW * ((time - moment.time) / OVERFLOW).ceil().max(0.0)
 }

@@ -43,6 +43,9 @@ struct Arguments {
     /// Speed of the serial port, bits a second
     #[arg(long, value_name = "BAUD", default_value_t = BAUD)]
     baud: u32,
+    /// Of a hand: the number or name of the tip that is shown and logged
+    #[arg(long, value_name = "TIP", default_value = "0")]
+    tip: String,
     /// Also write every report to this CSV file, which must not be there yet
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -197,6 +200,7 @@ fn run(arguments: &Arguments) -> Result<ExitCode, String> {
         began,
         ending: ending.clone(),
         for_s: arguments.for_s,
+        tip: arguments.tip.clone(),
         log: arguments.csv.as_ref().map(|path| path.display().to_string()),
     };
     let outcome = match form {
@@ -218,6 +222,8 @@ struct Watch {
     began: SystemTime,
     ending: Ending,
     for_s: Option<Duration>,
+    /// Of a hand: the tip that is followed.
+    tip: String,
     /// Where rows go.
     log: Option<String>,
 }
@@ -236,7 +242,7 @@ impl Watch {
     }
 
     fn show_on(&mut self, terminal: &mut DefaultTerminal, logs: &mut Logs) -> Result<(), String> {
-        let mut monitor = Monitor::default();
+        let mut monitor = Monitor::of_tip(&self.tip);
         let mut keyboard = Keyboard::default();
         let mut context = ViewContext {
             address: self.name.clone(),
@@ -303,7 +309,7 @@ impl Watch {
 
     /// Rows, until nobody reads them.
     fn pipe(mut self, form: Form, logs: &mut Logs) -> Result<(), String> {
-        let mut monitor = Monitor::default();
+        let mut monitor = Monitor::of_tip(&self.tip);
         let mut output: Option<Writer<RowOutput>> = None;
         let mut connected = false;
         let mut is_told = false;
@@ -364,6 +370,13 @@ impl Watch {
                      board's firmware",
                     self.name
                 ),
+                None if monitor.tip().is_some() => {
+                    format!(
+                        "{}: no report of {}",
+                        self.name,
+                        monitor.tip().unwrap_or_default()
+                    )
+                }
                 None => format!(
                     "{} sent no report; is it a fingertip's port, at this speed?",
                     self.name

@@ -3,8 +3,10 @@
 use crate::frames::clock::BoardClock;
 use crate::frames::order::{FrameOrder, Order};
 use crate::frames::pending::{self, Pending};
-use fingertip::link::command::{self, Command, Request};
-use fingertip::link::telemetry::{Decoder, Hello, Message};
+use crate::frames::tip::TipChoice;
+use fingertip::link::command::{Command, Request};
+use fingertip::link::telemetry::{Hello, Message};
+use fingertip::link::tips::{AnyDecoder, AnyFrame};
 use fingertip::link::wire::{DecodeError, PROTOCOL_VERSION};
 use fingertip::signal::report::Report;
 use fingertip::status::{Status, Touch};
@@ -135,7 +137,8 @@ pub struct HistoryPoint {
 /// Everything that is known of a board.
 #[derive(Clone, Debug, Default)]
 pub struct Monitor {
-    decoder: Decoder,
+    decoder: AnyDecoder,
+    tip: TipChoice,
     order: FrameOrder,
     clock: BoardClock,
     counts: Counts,
@@ -165,10 +168,25 @@ pub enum Connection {
 }
 
 impl Monitor {
+    /// Of a board of several fingertips, that with this number or name; of a board of one this is left alone.
+    #[must_use]
+    pub fn of_tip(tip: &str) -> Self {
+        Self {
+            tip: TipChoice::of(tip),
+            ..Self::default()
+        }
+    }
+
+    /// The fingertip that is followed, of a board of several; `None` of a board of one, and before its greeting.
+    pub fn tip(&self) -> Option<String> {
+        self.tip.label()
+    }
+
     /// The link is connected again: another board may be at its end.
     pub fn connected(&mut self) {
         self.connection = Connection::Connected;
-        self.decoder = Decoder::default();
+        self.decoder = AnyDecoder::default();
+        self.tip = self.tip.anew();
         self.order = FrameOrder::default();
         self.hello = None;
         self.restarted("connected");
@@ -199,8 +217,11 @@ impl Monitor {
                 return None;
             }
         };
-        let time = frame.message.time();
-        let missing = match self.order.place(frame.sequence, time.0) {
+        let (sequence, time) = match &frame {
+            AnyFrame::One(frame) => (frame.sequence, frame.message.time()),
+            AnyFrame::Tips(frame) => (frame.sequence, frame.message.time()),
+        };
+        let missing = match self.order.place(sequence, time.0) {
             Order::Next { missing } => missing,
             Order::Repeated | Order::Late => {
                 self.counts.out_of_order += 1;
@@ -218,7 +239,11 @@ impl Monitor {
         }
         self.heard = Some(now);
         let late = self.clock.lateness(time.0, now);
-        match frame.message {
+        let message = match frame {
+            AnyFrame::One(frame) => frame.message,
+            AnyFrame::Tips(frame) => self.tip.message(frame.message)?,
+        };
+        match message {
             Message::Report {
                 report,
                 pressure_fraction_bits,
@@ -351,7 +376,7 @@ impl Monitor {
         let sequence = self.next_command;
         self.pending.sent(sequence, command, now);
         self.note(format!("{name} {sequence} sent"));
-        Some(command::encode(&Request { sequence, command }).to_vec())
+        Some(self.tip.encode(&Request { sequence, command }))
     }
 
     /// Gives up answers that are overdue.

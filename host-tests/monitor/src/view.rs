@@ -184,12 +184,14 @@ fn heading(monitor: &Monitor, context: &ViewContext, width: u16) -> Paragraph<'s
             hello.design_hash
         )
     });
+    let tip = monitor.tip().map_or_else(String::new, |tip| format!("  {tip}"));
     let mut left = usize::from(width);
     let mut spans = Vec::new();
     for (text, style) in [
         (name, Style::new().add_modifier(Modifier::BOLD)),
         (address, Style::new()),
         (state, style),
+        (tip, Style::new()),
         (design, Style::new()),
     ] {
         let text = fitted(&text, left);

@@ -23,11 +23,12 @@ use std::process;
 use std::time::{Duration, Instant, SystemTime};
 
 /// Commands that begin so are not run, and why.
-const NOT_RUN: [(&str, &str); 6] = [
+const NOT_RUN: [(&str, &str); 7] = [
     ("cargo install ", "network"),
     ("stty -F /dev/ttyACM0 ", "board"),
     ("probe-rs run ", "board"),
     ("python3 host-tests/scripts/read_frames.py /dev/ttyACM0", "board"),
+    ("python3 host-tests/scripts/read_hand.py /dev/ttyACM0", "board"),
     (
         "python3 host-tests/scripts/read_frames.py tcp:",
         "the emulated board, which runs for ever; host-tests/tests/protocol.rs runs the script",

@@ -3,3 +3,4 @@
 pub(crate) mod clock;
 pub(crate) mod order;
 pub(crate) mod pending;
+pub(crate) mod tip;

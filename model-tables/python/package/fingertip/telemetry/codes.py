@@ -54,6 +54,7 @@ class Fault(enum.IntEnum):
     JUMP = 8
     RESET_LOOP = 9
     SENSOR_SUPPLY = 10
+    CHANNEL_IDENTITY = 11
     SENSOR_ABSENT = 16
     BUS_FAULT = 17
     WRONG_SENSOR = 18

@@ -1,0 +1,67 @@
+//! The chip's converter as a hand has it: free-running scans of its tips' channels and the internal reference, the DMA filling
+//! a ring of two blocks of scans.
+
+use super::chip;
+use crate::image::{CHANNELS, PERIOD, RANKS, SCANS, TIPS};
+use crate::transducer::scan::{ScanBlock, ScanConverter};
+use core::sync::atomic::{AtomicU16, Ordering, fence};
+use embassy_stm32::adc::Adc;
+use embassy_stm32::peripherals::ADC1;
+use embassy_time::{Duration, Ticker};
+
+/// One conversion of a tip's channel, microseconds.
+const CONVERSION: u32 = 10;
+
+/// What the build script took for the period is what the converter takes.
+const _: () = assert!(PERIOD == SCANS as u32 * (CONVERSION * TIPS as u32 + chip::IDENTITY_CONVERSION));
+
+/// Codes in the ring.
+const LENGTH: usize = 2 * SCANS * RANKS;
+
+/// The ring that the converter's DMA fills.
+static RING: [ScanBlock<RANKS, SCANS>; 2] =
+    [const { [const { [const { AtomicU16::new(0) }; RANKS] }; SCANS] }; 2];
+
+/// ADC1 on the pins of the hand's channels.
+pub struct DmaScan {
+    ticker: Ticker,
+}
+
+impl DmaScan {
+    /// The ticks come this long after the end of a block, microseconds.
+    const MARGIN: u64 = 20;
+
+    pub(super) fn new(adc: Adc<'static, ADC1>) -> Self {
+        // Powered and clocked, and calibrated where the chip needs it; dropping it would undo that.
+        core::mem::forget(adc);
+        chip::set_up_scan(&CHANNELS);
+        Self {
+            ticker: Ticker::every(Duration::from_micros(u64::from(PERIOD))),
+        }
+    }
+}
+
+impl ScanConverter<RANKS, SCANS> for DmaScan {
+    const PERIOD: u32 = PERIOD;
+
+    fn restart(&mut self) {
+        chip::restart_converter(RING.as_ptr() as u32, LENGTH as u16);
+        self.ticker.reset_after(Duration::from_micros(Self::MARGIN));
+    }
+
+    async fn tick(&mut self) {
+        self.ticker.next().await;
+    }
+
+    fn position(&self) -> Option<usize> {
+        let running = chip::converter_runs();
+        let position = LENGTH - usize::from(chip::conversions_left());
+        // What the DMA wrote before it counted is there to be read.
+        fence(Ordering::SeqCst);
+        running.then_some(position)
+    }
+
+    fn ring(&self) -> &[ScanBlock<RANKS, SCANS>; 2] {
+        &RING
+    }
+}

@@ -1,0 +1,257 @@
+//! The tips of a hand between their samples and the line: what [`Device`] is for one fingertip. Each tip has its own zero, faults
+//! and answers; the reports of one instant share a frame and a time.
+//!
+//! Calibrations are not stored: `save` and `forget` are answered "not in this image".
+
+use crate::device::logic::{Counters, Device};
+use crate::link::command::{Command, Outcome, Request};
+use crate::link::telemetry::{Answer, Hello, Message};
+use crate::link::tips::{ALL_TIPS, FrameStart};
+use crate::signal::design::Design;
+use crate::signal::report::Report;
+use crate::status::{Fault, Status};
+use crate::transducer::driver::Sample;
+use crate::units::Microseconds;
+
+/// One of two reports goes on the line at the start: five tips take 55 of its 92 kB/s.
+pub const EVERY: u16 = 2;
+
+/// A tip, whatever its design.
+pub trait HandTip {
+    /// [`Device::step`].
+    fn step(
+        &mut self,
+        now: Microseconds,
+        sample: Result<Sample, Fault>,
+        put: &mut dyn FnMut(&Message),
+    ) -> Report;
+
+    /// [`Device::request`], of a command that stores nothing.
+    fn request(&mut self, now: Microseconds, request: Request, put: &mut dyn FnMut(&Message));
+
+    /// What others count.
+    fn counters(&mut self) -> &mut Counters;
+
+    /// `k`: its pressures are counted in `1 / 2^k` pascal.
+    fn pressure_fraction_bits(&self) -> u32;
+}
+
+impl<D: Design> HandTip for Device<D> {
+    fn step(
+        &mut self,
+        now: Microseconds,
+        sample: Result<Sample, Fault>,
+        put: &mut dyn FnMut(&Message),
+    ) -> Report {
+        Device::step(self, now, sample, put)
+    }
+
+    fn request(&mut self, now: Microseconds, request: Request, put: &mut dyn FnMut(&Message)) {
+        // None is asked for that stores something.
+        let _ = Device::request(self, now, request, put);
+    }
+
+    fn counters(&mut self) -> &mut Counters {
+        &mut self.counters
+    }
+
+    fn pressure_fraction_bits(&self) -> u32 {
+        self.parameters().pressure_fraction_bits
+    }
+}
+
+/// A frame of a hand.
+#[derive(Clone, Copy, Debug)]
+pub enum HandFrame<'a> {
+    /// The reports of all tips.
+    Readings {
+        /// In the order of the tips.
+        reports: &'a [Report],
+        /// Fraction bits of the frame, and of each tip beyond those.
+        fraction_bits: (u8, &'a [u32]),
+    },
+    /// The board's greeting.
+    Board(Hello, u8),
+    /// A tip's greeting, with its number and name.
+    Tip(u8, &'static str, Hello),
+    /// A tip's answer, with its number.
+    Answer(u8, Answer),
+}
+
+impl HandFrame<'_> {
+    /// Its bytes.
+    pub fn write(&self, start: FrameStart<'_>) {
+        match *self {
+            Self::Readings {
+                reports,
+                fraction_bits: (bits, shifts),
+            } => {
+                // All are of one instant; a tip that has no reading does not know when its filter's was.
+                let read = reports.iter().find(|report| report.outcome.is_ok());
+                let time = read
+                    .or(reports.first())
+                    .map_or(Microseconds(0), |report| report.time);
+                start.readings(time, bits, reports.iter().zip(shifts.iter().copied()));
+            }
+            Self::Board(ref hello, tips) => start.board(hello, tips),
+            Self::Tip(tip, name, ref hello) => start.tip(tip, name, hello),
+            Self::Answer(tip, ref answer) => start.answer(tip, answer),
+        }
+    }
+}
+
+/// What a hand is called.
+#[derive(Clone, Copy, Debug)]
+pub struct HandNames<const TIPS: usize> {
+    /// Hash of the hand: its tips, where they are, and their designs.
+    pub hash: u64,
+    /// The tips.
+    pub tips: [&'static str; TIPS],
+}
+
+/// A hand and its line.
+#[derive(Clone, Debug)]
+pub struct Hand<const TIPS: usize> {
+    names: HandNames<TIPS>,
+    bits: u8,
+    shifts: [u32; TIPS],
+    every: u16,
+    passed: u16,
+    statuses: [Option<Status>; TIPS],
+}
+
+impl<const TIPS: usize> Hand<TIPS> {
+    /// A hand of tips that have seen nothing yet.
+    pub fn new(names: HandNames<TIPS>, tips: &mut [&mut dyn HandTip; TIPS]) -> Self {
+        let bits = tips.each_ref().map(|tip| tip.pressure_fraction_bits());
+        let least = bits.iter().copied().min().unwrap_or(0);
+        let mut hand = Self {
+            names,
+            bits: least as u8,
+            shifts: bits.map(|bits| bits - least),
+            every: EVERY,
+            passed: 0,
+            statuses: [None; TIPS],
+        };
+        hand.slow_down(tips, EVERY);
+        hand
+    }
+
+    /// One of so many reports goes on the line; each tip tells so in its greeting.
+    fn slow_down(&mut self, tips: &mut [&mut dyn HandTip; TIPS], every: u16) {
+        self.every = every;
+        let request = Request {
+            sequence: 0,
+            command: Command::Rate { every },
+        };
+        for tip in tips {
+            tip.request(Microseconds(0), request, &mut |_| {});
+        }
+    }
+
+    /// The reports of one instant; what goes on the line is given to `put`.
+    pub fn step(
+        &mut self,
+        tips: &mut [&mut dyn HandTip; TIPS],
+        now: Microseconds,
+        samples: &[Result<Sample, Fault>; TIPS],
+        mut put: impl FnMut(&HandFrame<'_>),
+    ) -> [Report; TIPS] {
+        let names = self.names;
+        let mut number = 0;
+        let reports = tips.each_mut().map(|tip| {
+            let which = number;
+            number += 1;
+            let sample = samples.get(which).copied().unwrap_or(Err(Fault::SamplesLost));
+            tip.step(now, sample, &mut |message| tell(&names, which, message, &mut put))
+        });
+        self.passed = self.passed.saturating_add(1);
+        let statuses = reports.each_ref().map(|report| Some(report.status()));
+        // A change is never held back, at whatever rate.
+        if self.passed >= self.every || statuses != self.statuses {
+            self.passed = 0;
+            self.statuses = statuses;
+            put(&HandFrame::Readings {
+                reports: &reports,
+                fraction_bits: (self.bits, &self.shifts),
+            });
+        }
+        reports
+    }
+
+    /// Does what is asked of a tip, or of all; whether there is such a tip.
+    pub fn request(
+        &mut self,
+        tips: &mut [&mut dyn HandTip; TIPS],
+        now: Microseconds,
+        (tip, request): (u8, Request),
+        mut put: impl FnMut(&HandFrame<'_>),
+    ) -> bool {
+        let which = match usize::from(tip) {
+            tip if tip < TIPS => tip..tip + 1,
+            _ if tip == ALL_TIPS => 0..TIPS,
+            _ => return false,
+        };
+        if let Command::Rate { every } = request.command {
+            self.slow_down(tips, every);
+        }
+        let names = self.names;
+        for (number, tip) in tips
+            .iter_mut()
+            .enumerate()
+            .filter(|(number, _)| which.contains(number))
+        {
+            match request.command {
+                Command::Save { .. } | Command::Forget => put(&HandFrame::Answer(
+                    number as u8,
+                    Answer {
+                        time: now,
+                        command: request.command.kind(),
+                        command_sequence: request.sequence,
+                        outcome: Outcome::NotInImage,
+                        findings: 0,
+                        known: None,
+                    },
+                )),
+                _ => tip.request(now, request, &mut |message| {
+                    tell(&names, number, message, &mut put)
+                }),
+            }
+        }
+        true
+    }
+}
+
+/// What a tip gives beside its reports.
+fn tell<const TIPS: usize>(
+    names: &HandNames<TIPS>,
+    number: usize,
+    message: &Message,
+    put: &mut impl FnMut(&HandFrame<'_>),
+) {
+    let tip = number as u8;
+    match message {
+        Message::Hello(hello) => {
+            if tip == 0 {
+                let of_the_hand = Hello {
+                    design_hash: names.hash,
+                    ..*hello
+                };
+                put(&HandFrame::Board(of_the_hand, TIPS as u8));
+            }
+            put(&HandFrame::Tip(
+                tip,
+                names.tips.get(number).copied().unwrap_or_default(),
+                *hello,
+            ));
+        }
+        Message::Answer(answer) => put(&HandFrame::Answer(tip, *answer)),
+        // A frame has those of all tips.
+        Message::Report { .. } => {}
+        #[cfg(feature = "load-tip")]
+        Message::Load(_) => {}
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,260 @@
+//! Version 3 of the protocol: what a board of several fingertips (tips) sends and takes. `PROTOCOL.md` beside this file has the
+//! layout of every body.
+//!
+//! The readings of one instant share one frame. What qualifies them, faults and answers are those of version 2.
+
+mod deviation;
+mod read;
+
+use crate::link::command::{self, Outcome, Request};
+use crate::link::telemetry::{self, Answer, Frame, Hello};
+use crate::link::wire::{DecodeError, Deframer, Encoded, HAND_VERSION, unstuff};
+use crate::signal::report::Report;
+use crate::status::{Fault, Stored, Touch, code_of};
+use crate::units::Microseconds;
+use heapless::{String, Vec};
+
+pub use read::{read_body, read_request};
+
+/// Most tips of a board.
+pub const MOST_TIPS: usize = 12;
+/// Bytes of a tip's name, at most.
+pub const NAME: usize = 32;
+/// The tip of a command that all tips are to take.
+pub const ALL_TIPS: u8 = 255;
+
+const BOARD: u8 = 3;
+const ANSWER: u8 = 4;
+const READINGS: u8 = 5;
+const TIP: u8 = 6;
+
+/// Bytes of a tip in a frame of readings.
+const READING_BYTES: usize = 18;
+const FAULTY: u8 = 1 << 7;
+
+/// What a frame of version 3 tells.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TipsMessage {
+    /// The reports of all tips, in their order, of one instant.
+    Readings {
+        /// That instant.
+        time: Microseconds,
+        /// `k`: a count of their pressure rises is `1 / 2^k` pascal.
+        pressure_fraction_bits: u8,
+        /// One for each tip.
+        reports: Vec<Report, MOST_TIPS>,
+    },
+    /// The board: what a hello of version 2 has, its hash that of the hand, its stored calibration that of tip 0.
+    Board {
+        /// The greeting.
+        hello: Hello,
+        /// How many tips it has.
+        tips: u8,
+    },
+    /// A tip, once a second and when asked.
+    Tip(TipHello),
+    /// What came of a command to a tip.
+    Answer {
+        /// The tip.
+        tip: u8,
+        /// The answer.
+        answer: Answer,
+    },
+}
+
+/// A tip's greeting.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct TipHello {
+    /// When.
+    pub time: Microseconds,
+    /// Its number, from 0.
+    pub tip: u8,
+    /// Hash of its design.
+    pub design_hash: u64,
+    /// Version of its tables' layout.
+    pub table_version: u32,
+    /// From one of its reports on the wire to the next, microseconds.
+    pub report_period: u32,
+    /// What became of its stored calibration.
+    pub stored: Stored,
+    /// Number of that calibration.
+    pub stored_sequence: u32,
+    /// Samples replaced since reset.
+    pub samples_rejected: u32,
+    /// Its name.
+    pub name: String<NAME>,
+}
+
+impl TipsMessage {
+    /// The board's time.
+    pub fn time(&self) -> Microseconds {
+        match self {
+            Self::Readings { time, .. } => *time,
+            Self::Board { hello, .. } => hello.time,
+            Self::Tip(hello) => hello.time,
+            Self::Answer { answer, .. } => answer.time,
+        }
+    }
+}
+
+/// A message of version 3 and its place in the stream.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TipsFrame {
+    /// Counts frames, wraps.
+    pub sequence: u16,
+    /// Frames dropped since reset, wraps.
+    pub dropped: u16,
+    /// What it tells.
+    pub message: TipsMessage,
+}
+
+/// Where a frame is written, with its number and how many were dropped before it.
+#[derive(Debug)]
+pub struct FrameStart<'a> {
+    /// The frame.
+    pub body: &'a mut Encoded,
+    /// Its number.
+    pub sequence: u16,
+    /// Frames dropped since reset.
+    pub dropped: u16,
+}
+
+impl<'a> FrameStart<'a> {
+    fn header(self, kind: u8, time: Microseconds) -> &'a mut Encoded {
+        self.body.begin();
+        self.body.put([HAND_VERSION, kind]);
+        self.body.put(self.sequence.to_le_bytes());
+        self.body.put(time.0.to_le_bytes());
+        self.body.put(self.dropped.to_le_bytes());
+        self.body
+    }
+
+    /// A frame of readings: of each tip its report, and how many fraction bits its own pressures have beyond those of the frame.
+    pub fn readings<'r>(
+        self,
+        time: Microseconds,
+        pressure_fraction_bits: u8,
+        reports: impl ExactSizeIterator<Item = (&'r Report, u32)>,
+    ) {
+        let body = self.header(READINGS, time);
+        body.put([reports.len() as u8, pressure_fraction_bits]);
+        for (tip, (report, shift)) in reports.enumerate() {
+            write_reading(body, tip as u8, report, shift);
+        }
+        body.finish();
+    }
+
+    /// The board's greeting.
+    pub fn board(self, hello: &Hello, tips: u8) {
+        let body = self.header(BOARD, hello.time);
+        telemetry::write_hello(body, hello);
+        body.put([tips]);
+        body.finish();
+    }
+
+    /// A tip's greeting, from what the hello of version 2 has of it. Of a longer name the first [`NAME`] bytes are sent.
+    pub fn tip(self, tip: u8, name: &str, hello: &Hello) {
+        let body = self.header(TIP, hello.time);
+        body.put([tip]);
+        body.put(hello.design_hash.to_le_bytes());
+        for number in [hello.table_version, hello.report_period] {
+            body.put(number.to_le_bytes());
+        }
+        body.put([code_of(&Stored::CODES, hello.stored)]);
+        for number in [hello.stored_sequence, hello.samples_rejected] {
+            body.put(number.to_le_bytes());
+        }
+        let name = name.as_bytes();
+        let name = name.get(..NAME).unwrap_or(name);
+        body.put([name.len() as u8]);
+        for &byte in name {
+            body.put([byte]);
+        }
+        body.finish();
+    }
+
+    /// What came of a command to a tip.
+    pub fn answer(self, tip: u8, answer: &Answer) {
+        let body = self.header(ANSWER, answer.time);
+        body.put([tip, answer.command.code()]);
+        body.put(answer.command_sequence.to_le_bytes());
+        body.put([code_of(&Outcome::CODES, answer.outcome)]);
+        body.put(answer.findings.to_le_bytes());
+        body.finish();
+    }
+}
+
+fn write_reading(body: &mut Encoded, tip: u8, report: &Report, shift: u32) {
+    match &report.outcome {
+        Ok(measurement) => {
+            let touch = code_of(&Touch::CODES, measurement.touch);
+            body.put([tip | touch << 4]);
+            body.put(measurement.warnings.bits().to_le_bytes());
+            body.put((measurement.pressure_rise.0 >> shift).to_le_bytes());
+            body.put(measurement.force.0.to_le_bytes());
+            body.put(measurement.indentation.0.to_le_bytes());
+            let sigma = &measurement.sigma;
+            body.put([
+                deviation::eighths(sigma.pressure_rise.0 >> shift),
+                deviation::eighths(sigma.force.0),
+                deviation::eighths(sigma.indentation.0),
+            ]);
+        }
+        Err(fault) => {
+            body.put([tip | FAULTY, code_of(&Fault::CODES, *fault), 0]);
+            body.put([0; 15]);
+        }
+    }
+}
+
+/// The bytes of a command to a tip, or to [`ALL_TIPS`].
+pub fn encode_request(tip: u8, request: &Request) -> Encoded {
+    let inner = command::encode(request);
+    let mut body = Encoded::NOTHING;
+    body.begin();
+    // What was just encoded is a frame.
+    let plain = inner
+        .as_slice()
+        .split_last()
+        .and_then(|(_, stuffed)| unstuff(stuffed).ok());
+    if let Some(plain) = plain {
+        let (head, payload) = plain.split_at(plain.len().min(4));
+        for &byte in [HAND_VERSION]
+            .iter()
+            .chain(&head[1..])
+            .chain(&[tip])
+            .chain(payload)
+        {
+            body.put([byte]);
+        }
+    }
+    body.finish();
+    body
+}
+
+/// A frame of either version.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnyFrame {
+    /// Of a board of one fingertip.
+    One(Frame),
+    /// Of a board of several.
+    Tips(TipsFrame),
+}
+
+/// Frames of either version out of a stream of bytes that come one at a time.
+#[derive(Clone, Debug, Default)]
+pub struct AnyDecoder(Deframer);
+
+impl AnyDecoder {
+    /// Takes the next byte; at the zero that closes a frame, what it is. Zeros alone are none.
+    pub fn push(&mut self, byte: u8) -> Option<Result<AnyFrame, DecodeError>> {
+        let body = self.0.push(byte)?;
+        Some(body.and_then(|body| match body.first() {
+            Some(&HAND_VERSION) => read_body(&body).map(AnyFrame::Tips),
+            _ => telemetry::read_body(&body).map(AnyFrame::One),
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests;

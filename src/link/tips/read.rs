@@ -1,0 +1,188 @@
+//! Bodies of version 3 to messages and requests.
+
+use super::deviation::of_eighths;
+use super::{
+    ANSWER, BOARD, FAULTY, MOST_TIPS, READING_BYTES, READINGS, TIP, TipHello, TipsFrame, TipsMessage,
+};
+use crate::link::command::{self, CommandKind, Outcome, Request};
+use crate::link::telemetry::{self, Answer, HEADER};
+use crate::link::wire::{DecodeError, HAND_VERSION, PROTOCOL_VERSION, Reader};
+use crate::signal::report::{Measurement, Report, Sigma};
+use crate::status::{Fault, Stored, Touch, Warnings, named_by};
+use crate::units::Microseconds;
+use heapless::{String, Vec};
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
+
+/// The tip and the request of a body.
+///
+/// # Errors
+/// [`DecodeError`] for what is no command of version 3.
+pub fn read_request(body: &[u8]) -> Result<(u8, Request), DecodeError> {
+    let [HAND_VERSION, kind, low, high, tip, payload @ ..] = body else {
+        return Err(match body {
+            [HAND_VERSION, ..] | [] => DecodeError::Short,
+            [version, ..] => DecodeError::Version(*version),
+        });
+    };
+    // As in version 2, where the tip is left out.
+    let mut plain: Vec<u8, 16> = Vec::new();
+    let head = [PROTOCOL_VERSION, *kind, *low, *high];
+    if plain.extend_from_slice(&head).is_err() || plain.extend_from_slice(payload).is_err() {
+        return Err(DecodeError::Length);
+    }
+    let request = command::read_known_body::<false>(&plain)?;
+    Ok((*tip, request))
+}
+
+/// The frame in a body.
+///
+/// # Errors
+/// [`DecodeError`] for what no board of version 3 sends.
+pub fn read_body(body: &[u8]) -> Result<TipsFrame, DecodeError> {
+    if body.len() < HEADER {
+        return Err(DecodeError::Short);
+    }
+    let mut fields = Reader(body);
+    let [version, kind] = fields.take()?;
+    if version != HAND_VERSION {
+        return Err(DecodeError::Version(version));
+    }
+    let sequence = u16::from_le_bytes(fields.take()?);
+    let time = Microseconds(u64::from_le_bytes(fields.take()?));
+    let dropped = u16::from_le_bytes(fields.take()?);
+    let message = match kind {
+        READINGS => read_readings(&mut fields, time)?,
+        BOARD => {
+            let hello = telemetry::read_hello(&mut fields, time)?;
+            let [tips] = fields.take()?;
+            if !(1..=MOST_TIPS).contains(&usize::from(tips)) {
+                return Err(DecodeError::Field(61));
+            }
+            TipsMessage::Board { hello, tips }
+        }
+        TIP => TipsMessage::Tip(read_tip(&mut fields, time)?),
+        ANSWER => {
+            let [tip, command] = fields.take()?;
+            let command_sequence = u16::from_le_bytes(fields.take()?);
+            let [outcome] = fields.take()?;
+            let findings = u16::from_le_bytes(fields.take()?);
+            TipsMessage::Answer {
+                tip: numbered(tip, 14)?,
+                answer: Answer {
+                    time,
+                    command: CommandKind::from_code(command).ok_or(DecodeError::Field(15))?,
+                    command_sequence,
+                    outcome: named_by(&Outcome::CODES, outcome).ok_or(DecodeError::Field(18))?,
+                    findings,
+                    known: None,
+                },
+            }
+        }
+        _ => return Err(DecodeError::Kind(kind)),
+    };
+    if !fields.0.is_empty() {
+        return Err(DecodeError::Length);
+    }
+    Ok(TipsFrame {
+        sequence,
+        dropped,
+        message,
+    })
+}
+
+fn numbered(tip: u8, offset: u8) -> Result<u8, DecodeError> {
+    if usize::from(tip) < MOST_TIPS {
+        Ok(tip)
+    } else {
+        Err(DecodeError::Field(offset))
+    }
+}
+
+fn read_readings(fields: &mut Reader<'_>, time: Microseconds) -> Result<TipsMessage, DecodeError> {
+    let [tips, pressure_fraction_bits] = fields.take()?;
+    if !(1..=MOST_TIPS).contains(&usize::from(tips)) {
+        return Err(DecodeError::Field(14));
+    }
+    if pressure_fraction_bits > 31 {
+        return Err(DecodeError::Field(15));
+    }
+    if fields.0.len() != usize::from(tips) * READING_BYTES {
+        return Err(DecodeError::Length);
+    }
+    let mut reports = Vec::new();
+    for tip in 0..tips {
+        let outcome = read_reading(fields, tip)?;
+        // As many as are counted above.
+        let _ = reports.push(Report { time, outcome });
+    }
+    Ok(TipsMessage::Readings {
+        time,
+        pressure_fraction_bits,
+        reports,
+    })
+}
+
+fn read_reading(fields: &mut Reader<'_>, tip: u8) -> Result<Result<Measurement, Fault>, DecodeError> {
+    // Twelve tips of 18 bytes behind 16: below 233.
+    let at = 16 + tip * READING_BYTES as u8;
+    let [first, low, high] = fields.take()?;
+    let mut number = || fields.take().map(i32::from_le_bytes);
+    let (rise, force, indentation) = (number()?, number()?, number()?);
+    let deviations: [u8; 3] = fields.take()?;
+    if first & 0x0F != tip || first & 0x40 != 0 {
+        return Err(DecodeError::Field(at));
+    }
+    if first & FAULTY != 0 {
+        let fault = named_by(&Fault::CODES, low).ok_or(DecodeError::Field(at + 1))?;
+        let blank =
+            first & 0x30 == 0 && high == 0 && [rise, force, indentation] == [0; 3] && deviations == [0; 3];
+        return if blank {
+            Ok(Err(fault))
+        } else {
+            Err(DecodeError::Field(at + 2))
+        };
+    }
+    let warnings = Warnings::from_bits(u16::from_le_bytes([low, high])).ok_or(DecodeError::Field(at + 1))?;
+    let touch = named_by(&Touch::CODES, first >> 4 & 3).ok_or(DecodeError::Field(at))?;
+    let [rise_sigma, force_sigma, indentation_sigma] = deviations.map(of_eighths);
+    Ok(Ok(Measurement {
+        pressure_rise: PressureRise(rise),
+        force: Micronewtons(force),
+        indentation: Nanometres(indentation),
+        sigma: Sigma {
+            pressure_rise: PressureRise(rise_sigma),
+            force: Micronewtons(force_sigma),
+            indentation: Nanometres(indentation_sigma),
+        },
+        touch,
+        warnings,
+    }))
+}
+
+fn read_tip(fields: &mut Reader<'_>, time: Microseconds) -> Result<TipHello, DecodeError> {
+    let [tip] = fields.take()?;
+    let design_hash = u64::from_le_bytes(fields.take()?);
+    let mut number = || fields.take().map(u32::from_le_bytes);
+    let (table_version, report_period) = (number()?, number()?);
+    let [stored] = fields.take()?;
+    let mut number = || fields.take().map(u32::from_le_bytes);
+    let (stored_sequence, samples_rejected) = (number()?, number()?);
+    let [length] = fields.take()?;
+    let name = fields.0.get(..usize::from(length)).ok_or(DecodeError::Length)?;
+    fields.0 = fields.0.get(usize::from(length)..).unwrap_or_default();
+    let name = core::str::from_utf8(name)
+        .ok()
+        .and_then(|name| String::try_from(name).ok())
+        .ok_or(DecodeError::Field(41))?;
+    Ok(TipHello {
+        time,
+        tip: numbered(tip, 14)?,
+        design_hash,
+        table_version,
+        report_period,
+        stored: named_by(&Stored::CODES, stored).ok_or(DecodeError::Field(31))?,
+        stored_sequence,
+        samples_rejected,
+        name,
+    })
+}

@@ -1,0 +1,149 @@
+use super::*;
+use embassy_futures::block_on;
+use model_tables::constants::{Quantity, TransducerKind};
+use std::cell::Cell;
+
+const TIPS: usize = 2;
+const RANKS: usize = 3;
+const SCANS: usize = 20;
+/// 1.21 V of 3.3 V.
+const IN_PLACE: u16 = 1501;
+
+/// 4 % of the supply at 0, 94 % at 100 kPa.
+const MPX5100: Transducer = Transducer {
+    range: [0, 100_000],
+    resolution: 10_000,
+    noise: 10_000,
+    quantity: Quantity::Gauge,
+    kind: TransducerKind::Ratiometric {
+        output: [2621, 61604],
+        supply_measured: false,
+    },
+};
+
+/// A converter by hand: a block further at each tick.
+struct Hand {
+    ring: [ScanBlock<RANKS, SCANS>; 2],
+    position: Cell<usize>,
+    step: usize,
+    overrun: bool,
+    restarts: usize,
+}
+
+impl ScanConverter<RANKS, SCANS> for &mut Hand {
+    const PERIOD: u32 = 900;
+
+    fn restart(&mut self) {
+        self.position.set(2);
+        self.overrun = false;
+        self.restarts += 1;
+    }
+
+    async fn tick(&mut self) {
+        self.position
+            .set((self.position.get() + self.step) % (2 * RANKS * SCANS));
+    }
+
+    fn position(&self) -> Option<usize> {
+        (!self.overrun).then(|| self.position.get())
+    }
+
+    fn ring(&self) -> &[ScanBlock<RANKS, SCANS>; 2] {
+        &self.ring
+    }
+}
+
+/// Every scan has these codes.
+fn hand(codes: [u16; RANKS]) -> Hand {
+    let scan = || codes.map(AtomicU16::new);
+    let block = || core::array::from_fn(|_| scan());
+    Hand {
+        ring: [block(), block()],
+        position: Cell::new(0),
+        step: RANKS * SCANS,
+        overrun: false,
+        restarts: 0,
+    }
+}
+
+/// What so many looks give.
+fn looks(hand: &mut Hand, count: usize) -> Vec<[Result<Sample, Fault>; TIPS]> {
+    let mut scan = Scan::<_, TIPS, RANKS, SCANS>::new([MPX5100; TIPS], hand);
+    (0..count).map(|_| block_on(scan.next())).collect()
+}
+
+#[test]
+fn each_tip_has_its_own_pressure_and_all_one_age() {
+    // Vout = Vs (0.009 P + 0.04): codes 1000 and 2000 are 22.689 and 49.823 kPa.
+    let mut hand = hand([1000, 2000, IN_PLACE]);
+    for samples in looks(&mut hand, 9) {
+        let [a, b] = samples.map(|sample| sample.expect("nothing is wrong"));
+        for (sample, code) in [(a, 1000.0), (b, 2000.0)] {
+            let exact = 1e6 * (code / 4095.0 - 0.04) / 0.009;
+            assert!(
+                (f64::from(sample.pressure.0) - exact).abs() < 2000.0,
+                "{sample:?} for {exact}"
+            );
+            // The middle of its block, and two of sixty conversions since its end.
+            assert_eq!(sample.age, 450 + 30);
+        }
+    }
+    assert_eq!(hand.restarts, 1);
+}
+
+#[test]
+fn a_broken_wire_is_one_tips_fault() {
+    let mut hand = hand([1000, 2000, IN_PLACE]);
+    hand.ring[0][7][1].store(4095, Ordering::Relaxed);
+    hand.ring[1][19][0].store(0, Ordering::Relaxed);
+    let seen = looks(&mut hand, 2);
+    assert!(seen[0][0].is_ok());
+    assert_eq!(seen[0][1], Err(Fault::SensorOpen));
+    assert_eq!(seen[1][0], Err(Fault::SensorShort));
+    assert!(seen[1][1].is_ok());
+    assert_eq!(hand.restarts, 1);
+}
+
+#[test]
+fn channels_out_of_place_are_no_tips_pressure() {
+    for shift in 1..RANKS {
+        let mut codes = [600, 700, IN_PLACE];
+        codes.rotate_left(shift);
+        let mut hand = hand(codes);
+        for samples in looks(&mut hand, 3) {
+            assert_eq!(samples, [Err(Fault::ChannelIdentity); TIPS]);
+        }
+        // Started anew after each of them.
+        assert_eq!(hand.restarts, 3);
+    }
+    // One code is enough.
+    let mut hand = hand([600, 700, IN_PLACE]);
+    hand.ring[0][3][2].store(700, Ordering::Relaxed);
+    let seen = looks(&mut hand, 2);
+    assert_eq!(seen[0], [Err(Fault::ChannelIdentity); TIPS]);
+    assert_eq!(seen[1], [Err(Fault::ChannelIdentity); TIPS]);
+}
+
+#[test]
+fn the_window_of_the_reference_is_the_datasheets() {
+    let code = |volts: f64, supply: f64| 4095.0 * volts / supply;
+    assert_eq!(REFERENCE.short, code(1.18, 3.3 * 1.05) as u16 - 1);
+    assert_eq!(REFERENCE.open, code(1.24, 3.3 * 0.95).ceil() as u16);
+}
+
+#[test]
+fn a_converter_that_stands_or_overran_is_started_anew() {
+    let mut standing = hand([1000, 2000, IN_PLACE]);
+    standing.step = 0;
+    let seen = looks(&mut standing, 3);
+    // It is within the first block, stands there, and is started anew.
+    let faults = [Fault::SamplesLost, Fault::ConverterStalled, Fault::SamplesLost];
+    assert_eq!(seen, faults.map(|fault| [Err(fault); TIPS]));
+    assert_eq!(standing.restarts, 2);
+    let mut overrun = hand([1000, 2000, IN_PLACE]);
+    let mut scan = Scan::<_, TIPS, RANKS, SCANS>::new([MPX5100; TIPS], &mut overrun);
+    assert!(block_on(scan.next())[0].is_ok());
+    scan.converter.overrun = true;
+    assert_eq!(block_on(scan.next()), [Err(Fault::SamplesLost); TIPS]);
+    assert!(block_on(scan.next())[0].is_ok());
+}
