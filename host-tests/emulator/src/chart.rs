@@ -3,7 +3,7 @@
 
 use crate::accuracy::{force_error, indentation_error};
 use crate::record::Row;
-use fingertip::status::Status;
+use fingertip::status::{Fault, Status};
 use model_tables::curve::Contact;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
@@ -15,11 +15,20 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::fmt;
 
 /// Width and height in pixels.
-const SIZE: (u32, u32) = (1000, 1270);
+/// A page or a phone shows it 400 pixels wide: letters are then 11 pixels high.
+const SIZE: (u32, u32) = (720, 1560);
 /// Left of the panels, pixels.
 const MARGIN: u32 = 14;
 /// Left of the data, pixels.
-const LABELS: u32 = 96;
+const LABELS: u32 = 104;
+/// Heights of letters, pixels: title, subtitle, and everything else.
+const TITLE: u32 = 26;
+const SUBTITLE: u32 = 20;
+const LETTERS: u32 = 20;
+/// Width of a letter over its height, about: the font's true width is the viewer's business.
+const WIDTH_OF_LETTER: f64 = 0.53;
+/// Height of a line of the key, pixels.
+const KEY_LINE: i32 = 28;
 /// More points than this are thinned out: the eye sees no more.
 const POINTS: usize = 1500;
 /// Gap that ends a line, seconds.
@@ -30,6 +39,8 @@ const TRUTH: RGBColor = RGBColor(150, 150, 150);
 const REPORT: RGBColor = RGBColor(0, 114, 178);
 const SECOND: RGBColor = RGBColor(213, 94, 0);
 const FAULT: RGBColor = RGBColor(204, 121, 167);
+/// Before the first zero: nothing is wrong.
+const ZEROING: RGBColor = RGBColor(120, 150, 180);
 const WARNING: RGBColor = RGBColor(230, 159, 0);
 /// Opacity of the shades behind the data.
 const SHADE: f64 = 0.28;
@@ -108,7 +119,7 @@ fn draw(root: &Area<'_>, rows: &[Row], caption: &Caption) -> Result<(), ChartErr
         return Err(drawing("the firmware sent no report"));
     };
     let time = first.time..last.time;
-    let (head, body) = root.split_vertically(106);
+    let (head, body) = root.split_vertically(heading_height(caption));
     heading(&head, caption)?;
     let panels = body.split_evenly((4, 1));
     let spells = spells(rows);
@@ -132,20 +143,51 @@ fn draw(root: &Area<'_>, rows: &[Row], caption: &Caption) -> Result<(), ChartErr
     errors(&panels[3], rows, caption, time, &spells)
 }
 
+/// A text in lines that fit beside the margin, in letters of that height.
+fn wrapped(text: &str, letters: u32) -> Vec<String> {
+    let most = (f64::from(SIZE.0 - 2 * MARGIN) / (WIDTH_OF_LETTER * f64::from(letters))) as usize;
+    let mut lines: Vec<String> = vec![];
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= most => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Lines of title, subtitle and key, with their room.
+fn heading_height(caption: &Caption) -> u32 {
+    let title = wrapped(&caption.title, TITLE).len() as u32 * (TITLE + 8);
+    let subtitle = wrapped(&caption.subtitle, SUBTITLE).len() as u32 * (SUBTITLE + 6);
+    title + subtitle + 3 * KEY_LINE as u32 + 20
+}
+
 fn heading(area: &Area<'_>, caption: &Caption) -> Result<(), ChartError> {
-    let title = ("sans-serif", 24).into_font().color(&BLACK);
-    let subtitle = ("sans-serif", 16).into_font().color(&RGBColor(70, 70, 70));
-    area.draw(&Text::new(caption.title.clone(), (24, 18), title))
-        .map_err(drawing)?;
-    area.draw(&Text::new(caption.subtitle.clone(), (24, 48), subtitle))
-        .map_err(drawing)?;
+    let title = ("sans-serif", TITLE).into_font().color(&BLACK);
+    let subtitle = ("sans-serif", SUBTITLE).into_font().color(&RGBColor(70, 70, 70));
+    let mut y = 14;
+    for line in wrapped(&caption.title, TITLE) {
+        area.draw(&Text::new(line, (MARGIN as i32, y), title.clone()))
+            .map_err(drawing)?;
+        y += TITLE as i32 + 8;
+    }
+    for line in wrapped(&caption.subtitle, SUBTITLE) {
+        area.draw(&Text::new(line, (MARGIN as i32, y), subtitle.clone()))
+            .map_err(drawing)?;
+        y += SUBTITLE as i32 + 6;
+    }
     let entries = [
         Entry::line("truth: full model", TRUTH, 6),
         Entry::line("reported by the firmware", REPORT, 3),
+        Entry::area("zeroing", ZEROING.mix(SHADE)),
         Entry::area("warning", WARNING.mix(SHADE)),
         Entry::area("fault: no values", FAULT.mix(SHADE)),
     ];
-    key(area, (LABELS as i32, 90), &entries)
+    key(area, (MARGIN as i32, y + 18), &entries)
 }
 
 /// An empty panel with its axes.
@@ -160,7 +202,7 @@ fn panel<'a, 'b>(
         .margin_right(28)
         .margin_left(MARGIN)
         .margin_top(6)
-        .set_left_and_bottom_label_area_size(if time_label.is_empty() { 34 } else { 52 })
+        .set_left_and_bottom_label_area_size(if time_label.is_empty() { 40 } else { 66 })
         .y_label_area_size(LABELS - MARGIN)
         .build_cartesian_2d(time, values)
         .map_err(drawing)?;
@@ -168,11 +210,11 @@ fn panel<'a, 'b>(
         .configure_mesh()
         .y_desc(label)
         .x_desc(time_label)
-        .x_labels(9)
+        .x_labels(6)
         .y_labels(6)
         .x_label_formatter(&|seconds| format!("{seconds:.1}"))
-        .label_style(("sans-serif", 15))
-        .axis_desc_style(("sans-serif", 16))
+        .label_style(("sans-serif", LETTERS))
+        .axis_desc_style(("sans-serif", LETTERS))
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .draw()
@@ -206,19 +248,23 @@ impl Entry {
     }
 }
 
-/// Draws the entries side by side from `at` on, outside the data.
+/// Draws the entries side by side from `at` on, in as many lines as they need, outside the data.
 fn key(area: &Area<'_>, at: (i32, i32), entries: &[Entry]) -> Result<(), ChartError> {
     let middle = Pos::new(HPos::Left, VPos::Center);
-    let style = ("sans-serif", 15).into_font().color(&BLACK).pos(middle);
-    let (mut x, y) = at;
+    let style = ("sans-serif", LETTERS).into_font().color(&BLACK).pos(middle);
+    let (mut x, mut y) = at;
     for entry in entries {
+        let letters = WIDTH_OF_LETTER * f64::from(LETTERS) * entry.name.chars().count() as f64;
+        let width = 31 + letters as i32 + 20;
+        if x > at.0 && x + width > SIZE.0 as i32 {
+            (x, y) = (at.0, y + KEY_LINE);
+        }
         let corners = [(x, y - entry.height / 2), (x + 24, y + (entry.height + 1) / 2)];
         let swatch = Rectangle::new(corners, entry.colour.filled());
         area.draw(&swatch).map_err(drawing)?;
         area.draw(&Text::new(entry.name.clone(), (x + 31, y), style.clone()))
             .map_err(drawing)?;
-        // The font's true width is the viewer's business: eight pixels a letter are enough.
-        x += 31 + 8 * entry.name.chars().count() as i32 + 24;
+        x += width;
     }
     Ok(())
 }
@@ -279,6 +325,7 @@ fn shade(
     let boxes = spells.iter().map(|spell| {
         let corners = [(spell.time.start, values.start), (spell.time.end, values.end)];
         let colour = match spell.status {
+            Status::Fault(Fault::Zeroing) => ZEROING,
             Status::Fault(_) => FAULT,
             Status::Warning(_) | Status::Ok => WARNING,
         };
@@ -317,7 +364,7 @@ fn errors(
     let usual = sizes.get(sizes.len() * 99 / 100).copied().unwrap_or(0.0);
     let limit = (1.3 * usual).max(2.0 * target);
     let label = "error / % of reading";
-    let (strip, area) = area.split_vertically(24);
+    let (strip, area) = area.split_vertically(2 * KEY_LINE as u32);
     let mut panel = panel(&area, label, time.clone(), -limit..limit, "time / s")?;
     shade(&mut panel, spells, -limit..limit)?;
     let band = vec![
@@ -342,7 +389,7 @@ fn errors(
     let band = format!("\u{b1}{target} %");
     entries.push(Entry::area(&band, BLACK.mix(BAND_SHADE)));
     entries.push(Entry::area("shown from 5 % of full scale up", WHITE.mix(0.0)));
-    key(&strip, (LABELS as i32, 12), &entries)
+    key(&strip, (MARGIN as i32, 14), &entries)
 }
 
 /// Every n-th row, few enough to draw.
@@ -354,7 +401,7 @@ fn thinned(rows: &[Row]) -> impl Iterator<Item = &Row> {
 mod tests {
     use super::*;
     use crate::plant::tests::{press, ramp};
-    use fingertip::status::{Fault, Touch, Warnings};
+    use fingertip::status::{Touch, Warnings};
     use model_tables::random::Random;
 
     fn rows() -> (Vec<Row>, Contact) {
@@ -420,6 +467,34 @@ mod tests {
         assert_eq!(spells.len(), 2);
         assert!((spells[0].time.end - 0.079).abs() < 1e-9);
         assert!((spells[1].time.start - 0.3).abs() < 1e-9);
+    }
+
+    #[test]
+    fn letters_are_eleven_pixels_high_on_400_pixels_and_zeroing_is_no_fault() {
+        let (rows, full_scale) = rows();
+        let svg = svg(&rows, &caption(full_scale)).expect("it can be drawn");
+        // plotters writes the height in points of 1 / 1.24 pixel.
+        let least = svg
+            .split("font-size=\"")
+            .skip(1)
+            .filter_map(|text| text.split('"').next()?.parse::<f64>().ok())
+            .fold(f64::INFINITY, f64::min);
+        assert!(1.24 * least * 400.0 / f64::from(SIZE.0) >= 11.0, "{least}");
+        let fill = |colour: RGBColor| format!("#{:02X}{:02X}{:02X}", colour.0, colour.1, colour.2);
+        // Beside its entry in the key each panel has the shade: of zeroing, and no fault.
+        assert_eq!(svg.matches(&fill(ZEROING)).count(), 5);
+        assert_eq!(svg.matches(&fill(FAULT)).count(), 1);
+    }
+
+    #[test]
+    fn a_long_title_is_wrapped_within_the_chart() {
+        let lines = wrapped(&"letters and words ".repeat(10), TITLE);
+        assert!(lines.len() > 2);
+        for line in &lines {
+            let width = WIDTH_OF_LETTER * f64::from(TITLE) * line.chars().count() as f64;
+            assert!(width <= f64::from(SIZE.0), "{line}");
+        }
+        assert_eq!(wrapped("short", TITLE), ["short"]);
     }
 
     #[test]
