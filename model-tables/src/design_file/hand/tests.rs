@@ -85,7 +85,7 @@ fn what_a_hand_cannot_be_is_one_line_with_the_remedy() {
         (
             "channel = 5",
             "chanel = 5",
-            "hand.toml:10: `tip.chanel` is not a known key, did you mean `channel`?: allowed are channel",
+            "hand.toml:7: `tip.channel` is missing: needs an analogue input, 0 to 5, or bus for a part on a bus",
         ),
         (
             "channel = 5",
