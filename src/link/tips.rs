@@ -17,7 +17,7 @@ use heapless::{String, Vec};
 pub use read::{read_body, read_request};
 
 /// Most tips of a board.
-pub const MOST_TIPS: usize = 12;
+pub const MAX_TIPS: usize = 12;
 /// Bytes of a tip's name, at most.
 pub const NAME: usize = 32;
 /// The tip of a command that all tips are to take.
@@ -42,7 +42,7 @@ pub enum TipsMessage {
         /// `k`: a count of their pressure rises is `1 / 2^k` pascal.
         pressure_fraction_bits: u8,
         /// One for each tip.
-        reports: Vec<Report, MOST_TIPS>,
+        reports: Vec<Report, MAX_TIPS>,
     },
     /// The board: what a hello of version 2 has, its hash that of the hand, its stored calibration that of tip 0.
     Board {

@@ -23,7 +23,7 @@ pub struct ActuatorSection {
     pub gap_mm: Option<f64>,
     /// Stiffness of a foundation over it, kilopascals per millimetre, > 0; `None`: the plate over it is rigid.
     pub foundation_kpa_per_mm: Option<f64>,
-    /// Air trapped in the line to it, cubic millimetres at ambient pressure.
+    /// Air trapped in the line to it, cubic millimetres at ambient pressure; `None`: none.
     pub trapped_air_mm3: Option<f64>,
     /// Its law, and its series if it relaxes; `None`: the tip's, both.
     pub material: Option<(Law, Option<Relaxation>)>,

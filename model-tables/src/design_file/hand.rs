@@ -12,7 +12,7 @@ use toml::de::DeTable;
 /// Analogue inputs that every board offers a hand.
 pub const CHANNELS: u8 = 6;
 /// Tips that a frame can number.
-pub const MOST_TIPS: usize = 12;
+pub const MAX_TIPS: usize = 12;
 /// Bytes of a tip's name that a frame carries.
 const TIP_NAME: usize = 32;
 const NAME: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
@@ -321,8 +321,8 @@ fn integer(section: &Section<'_>, key: &str, number: f64) -> Result<u8, KeyFault
 
 /// A tip beside those before it.
 fn check(section: &Section<'_>, before: &[TipSection], tip: &TipSection) -> Result<(), KeyFault> {
-    if before.len() == MOST_TIPS {
-        return Err(section.refuse("name", &format!("one of at most {MOST_TIPS} tips of a hand")));
+    if before.len() == MAX_TIPS {
+        return Err(section.refuse("name", &format!("one of at most {MAX_TIPS} tips of a hand")));
     }
     if before.iter().any(|other| other.name == tip.name) {
         return Err(section.refuse("name", "another one than every other tip's of the hand"));

@@ -2,7 +2,7 @@
 
 use super::deviation::of_eighths;
 use super::{
-    ANSWER, BOARD, FAULTY, MOST_TIPS, READING_BYTES, READINGS, TIP, TipHello, TipsFrame, TipsMessage,
+    ANSWER, BOARD, FAULTY, MAX_TIPS, READING_BYTES, READINGS, TIP, TipHello, TipsFrame, TipsMessage,
 };
 use crate::link::command::{self, CommandKind, Outcome, Request};
 use crate::link::telemetry::{self, Answer, HEADER};
@@ -55,7 +55,7 @@ pub fn read_body(body: &[u8]) -> Result<TipsFrame, DecodeError> {
         BOARD => {
             let hello = telemetry::read_hello(&mut fields, time)?;
             let [tips] = fields.take()?;
-            if !(1..=MOST_TIPS).contains(&usize::from(tips)) {
+            if !(1..=MAX_TIPS).contains(&usize::from(tips)) {
                 return Err(DecodeError::Field(61));
             }
             TipsMessage::Board { hello, tips }
@@ -91,7 +91,7 @@ pub fn read_body(body: &[u8]) -> Result<TipsFrame, DecodeError> {
 }
 
 fn numbered(tip: u8, offset: u8) -> Result<u8, DecodeError> {
-    if usize::from(tip) < MOST_TIPS {
+    if usize::from(tip) < MAX_TIPS {
         Ok(tip)
     } else {
         Err(DecodeError::Field(offset))
@@ -100,7 +100,7 @@ fn numbered(tip: u8, offset: u8) -> Result<u8, DecodeError> {
 
 fn read_readings(fields: &mut Reader<'_>, time: Microseconds) -> Result<TipsMessage, DecodeError> {
     let [tips, pressure_fraction_bits] = fields.take()?;
-    if !(1..=MOST_TIPS).contains(&usize::from(tips)) {
+    if !(1..=MAX_TIPS).contains(&usize::from(tips)) {
         return Err(DecodeError::Field(14));
     }
     if pressure_fraction_bits > 31 {

@@ -221,11 +221,11 @@ fn six_tips_are_a_frame_and_version_2_is_none() {
         outcome: Ok(measurement()),
     };
     let frame = written([0, 0], |start| {
-        start.readings(Microseconds(0), 8, [(&report, 0); MOST_TIPS].into_iter())
+        start.readings(Microseconds(0), 8, [(&report, 0); MAX_TIPS].into_iter())
     });
-    assert_eq!(frame.len(), 16 + MOST_TIPS * 18 + 4);
+    assert_eq!(frame.len(), 16 + MAX_TIPS * 18 + 4);
     assert!(
-        matches!(read(&frame).message, TipsMessage::Readings { reports, .. } if reports.len() == MOST_TIPS)
+        matches!(read(&frame).message, TipsMessage::Readings { reports, .. } if reports.len() == MAX_TIPS)
     );
     assert_eq!(read_body(&[2; 40]), Err(DecodeError::Version(2)));
     assert_eq!(read_request(&[2, 0x81, 0, 0, 0]), Err(DecodeError::Version(2)));

@@ -53,7 +53,7 @@ impl ObjectErrors {
 pub struct ObjectScene {
     /// Wall, millimetres.
     pub wall: f64,
-    /// Radius of a ball, millimetres; nothing for a plate with friction.
+    /// Radius of a ball, millimetres; `None` for a plate with friction.
     pub radius: Option<f64>,
     /// By [`PARTS`]: of tables of a plate, whether the truth lies in their band, and of tables blended for the object.
     pub states: Vec<(ObjectErrors, bool, ObjectErrors)>,

@@ -19,7 +19,7 @@ const ENERGY_TOLERANCE: [f64; 2] = [0.05, 5e-3];
 /// The same while nothing has been done before.
 const FIRST_ENERGY_TOLERANCE: f64 = 0.4;
 /// Volume, over that of the disc, from which on energies are compared: a blocked disc takes only what its contact gives way.
-const LEAST_VOLUME: f64 = 1e-3;
+const MIN_VOLUME: f64 = 1e-3;
 /// Most growth of a step from one to the next.
 const LARGEST_GROWTH: f64 = 2.0;
 
@@ -180,7 +180,7 @@ impl DiscInTime {
         } else {
             [FIRST_ENERGY_TOLERANCE, 0.0]
         };
-        let least = self.trial.fluid.abs() * LEAST_VOLUME * PI * self.wall.mesh.thickness;
+        let least = self.trial.fluid.abs() * MIN_VOLUME * PI * self.wall.mesh.thickness;
         let allowed = of_step * supplied.abs().max(work.abs()).max(least) + of_all * self.most_work;
         ((work - supplied).abs() <= allowed + f64::EPSILON).then_some(StepWork {
             energy,

@@ -38,18 +38,18 @@ pub struct GraspReading {
     pub phase: GraspPhase,
     /// The part of its phase's time that it stands for.
     pub weight: f64,
-    /// What was read; nothing where no value holds.
+    /// What was read; `None` where no value holds.
     pub read: Option<GraspValues>,
     /// Newtons and metres.
     pub truth: [f64; 2],
-    /// The largest force and indentation of the scene so far.
+    /// The largest force, newtons, and indentation, metres, of the scene so far.
     pub peak: [f64; 2],
 }
 
 /// What is read, newtons and metres.
 #[derive(Clone, Copy, Debug)]
 pub struct GraspValues {
-    /// Force and indentation.
+    /// Force, newtons, and indentation, metres.
     pub values: [f64; 2],
     /// One standard deviation of each.
     pub sigma: [f64; 2],

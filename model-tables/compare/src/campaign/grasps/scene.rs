@@ -26,7 +26,7 @@ const DEEPEST: f64 = 0.3;
 const ABOVE: f64 = -0.03;
 /// Largest pressure rise over that of the design's deepest press: there a hand stops.
 const PRESSURE: f64 = 0.9;
-/// Degrees Celsius of the wall.
+/// Temperature of the wall, degrees Celsius.
 const ROOM: [f64; 2] = [15.0, 25.0];
 /// Instants of each phase.
 const INSTANTS: [u32; 4] = [48, 24, 32, 12];
@@ -51,7 +51,7 @@ pub enum GraspPhase {
 pub struct Grasp {
     /// Travel from first touch of the untouched wall, metres.
     pub depth: f64,
-    /// Seconds of press, hold, release, and until the next.
+    /// Press, hold, release, and until the next, seconds.
     pub seconds: [f64; 4],
 }
 
@@ -60,7 +60,7 @@ pub struct Grasp {
 pub struct Scene {
     /// What is grasped.
     pub object: Touched,
-    /// Degrees Celsius of the wall.
+    /// Temperature of the wall, degrees Celsius.
     pub celsius: f64,
     /// One after the other.
     pub grasps: [Grasp; 2],
@@ -73,7 +73,7 @@ pub struct SceneInstant {
     pub grasp: usize,
     /// In which part of it.
     pub phase: GraspPhase,
-    /// Seconds since the scene began.
+    /// Time since the scene began, seconds.
     pub time: f64,
     /// The solid.
     pub now: Instant,

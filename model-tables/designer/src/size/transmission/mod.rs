@@ -46,7 +46,7 @@ const TEMPERATURE: f64 = 293.15;
 /// A candidate: dimensions in metres in the order of [`target::NAMES`], and both materials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopCandidate {
-    /// The dimensions.
+    /// The dimensions, metres.
     pub dimensions: [f64; DIMENSIONS],
     /// Of the fingertip.
     pub tip: &'static Preset,
@@ -89,11 +89,11 @@ pub struct SizedLoop {
     pub misfit: f64,
     /// Relative change of the ratio for the tolerance in each dimension.
     pub by_tolerance: [f64; DIMENSIONS],
-    /// For the target's air, its compliance of the tubing more than now, and its kelvin.
+    /// Relative change of the ratio for the target's further air.
     pub by_air: f64,
-    /// See `by_air`.
+    /// Relative change of the ratio for the target's further compliance.
     pub by_tube: f64,
-    /// See `by_air`.
+    /// Relative change of the ratio for the target's kelvin.
     pub by_temperature: f64,
 }
 

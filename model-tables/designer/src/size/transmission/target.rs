@@ -44,11 +44,11 @@ pub struct WantedLoop {
     pub air: f64,
     /// How exactly a dimension is made, metres.
     pub tolerance: f64,
-    /// Further air, further compliance and kelvin whose effects are stated.
+    /// Further air whose effect is stated, cubic metres.
     pub disturbing_air: f64,
-    /// See `disturbing_air`; cubic metres per pascal.
+    /// Further compliance whose effect is stated, cubic metres per pascal.
     pub disturbing_tube: f64,
-    /// See `disturbing_air`.
+    /// Change of temperature whose effect is stated, kelvins.
     pub disturbing_kelvin: f64,
 }
 
