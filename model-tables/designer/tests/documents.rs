@@ -23,10 +23,14 @@ use std::process;
 use std::time::{Duration, Instant, SystemTime};
 
 /// Commands that begin so are not run, and why.
-const NOT_RUN: [(&str, &str); 7] = [
+const NOT_RUN: [(&str, &str); 8] = [
     ("cargo install ", "network"),
     ("stty -F /dev/ttyACM0 ", "board"),
     ("probe-rs run ", "board"),
+    (
+        "python3 host-tests/scripts/peers.py ",
+        "an hour, and packages from the network",
+    ),
     ("python3 host-tests/scripts/read_frames.py /dev/ttyACM0", "board"),
     ("python3 host-tests/scripts/read_hand.py /dev/ttyACM0", "board"),
     (

@@ -178,7 +178,11 @@ mod tests {
             ("[0.3, 1.5]", "[0.3, 1.5, 2]", "`bounds.thickness_mm`"),
             ("\"agilus30\"", "\"rubber\"", "`materials.presets`"),
             ("[0.0, 100.0]", "[-50, -10]", "`transducer.range_kpa`"),
-            ("tolerance_mm", "tolerence_mm", "`making.tolerance_mm` is missing"),
+            (
+                "tolerance_mm",
+                "tolerence_mm",
+                "`making.tolerence_mm` is not a known key, did you mean `tolerance_mm`?",
+            ),
             ("[bounds]", "[bound]", "`[bounds]` is missing"),
         ] {
             assert!(HUMAN.contains(from), "{from}");
