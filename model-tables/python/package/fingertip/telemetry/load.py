@@ -217,15 +217,23 @@ class _Job:
             raise self.refused(kind, answer.outcome, answer.findings)
         raise self.refused(kind, Outcome.NOT_ARMED)
 
-    def restart(self, kind: CommandKind, payload: bytes = b"") -> Hello:
-        """Sends what ends in a restart, and waits for the board to come back."""
+    def restart(self, kind: CommandKind, payload: bytes = b"", wanted: int | None = None) -> Hello:
+        """Sends what ends in a restart, and waits for the board to come back, with the design that is wanted of it if one is."""
         before = self.resets
         for _ in range(BEGINNINGS):
             answer = self.answer(kind, payload)
             # It had been done and the answer was lost: the board is restarting, or has.
             done = answer.outcome in (Outcome.DONE, Outcome.BUSY)
-            if done or self.was_reset and answer.outcome in (Outcome.NOT_ARMED, Outcome.OUT_OF_ORDER):
-                return self._back(before)
+            forgotten = answer.outcome in (Outcome.NOT_ARMED, Outcome.OUT_OF_ORDER)
+            if forgotten and wanted is not None:
+                # After a reset of before the command the load is forgotten too: the design in use tells which it was.
+                hello = self.hello()
+                if hello.design_hash == wanted:
+                    return hello
+            elif forgotten and self.was_reset:
+                done = True
+            if done:
+                return self._back(before, wanted)
             if answer.outcome == Outcome.NOT_ARMED:
                 self.arm()
                 continue
@@ -234,14 +242,24 @@ class _Job:
             raise self.refused(kind, answer.outcome, answer.findings)
         raise self.refused(kind, Outcome.NOT_ARMED)
 
-    def _back(self, resets: int) -> Hello:
-        """Waits for the board, which had so many resets before; another design in use is a sign of one too."""
+    def _back(self, resets: int, wanted: int | None) -> Hello:
+        """Waits for the board, which had so many resets before; another design in use is a sign of one too.
+
+        Where a design is wanted, another one ends the wait only when its time is over: a reset of before the command may be noticed late.
+        """
         until = time.monotonic() + RESTART
+        back: Hello | None = None
         while time.monotonic() < until:
             before = self.design_hash
             hello = self.hello()
-            if self.resets > resets or hello.design_hash != before:
+            if hello.design_hash == wanted:
                 return hello
+            if self.resets > resets or hello.design_hash != before:
+                back = hello
+                if wanted is None:
+                    return hello
+        if back is not None:
+            return back
         raise self.refuse("the board did not come back after the restart; switch it off and on")
 
 
@@ -284,7 +302,7 @@ def load(
                 kind = CommandKind.VERIFY
                 job.done(kind)
                 kind = CommandKind.ACTIVATE
-                hello = job.restart(kind, struct.pack("<Q", block.design_hash))
+                hello = job.restart(kind, struct.pack("<Q", block.design_hash), wanted=block.design_hash)
             except _BeginAgain as again:
                 outcome = again.outcome
                 continue
