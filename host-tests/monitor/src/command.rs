@@ -10,7 +10,7 @@ use crate::source::replay::Replay;
 use crate::source::{Source, SourceEvent, take};
 use crate::view::{self, ViewContext};
 use clap::{Parser, ValueEnum};
-use fingertip::link::wire::PROTOCOL_VERSION;
+use fingertip::link::wire::{HAND_VERSION, PROTOCOL_VERSION};
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event as Input, KeyEventKind};
 use std::ffi::OsString;
@@ -359,14 +359,14 @@ impl Watch {
             if let Some(version) = monitor.other_version().filter(|_| !is_told) {
                 is_told = true;
                 eprintln!(
-                    "warning: the board speaks version {version} of the protocol, this monitor version {PROTOCOL_VERSION}"
+                    "warning: the board speaks version {version} of the protocol, this monitor versions {PROTOCOL_VERSION} and {HAND_VERSION}"
                 );
             }
         }
         if output.is_none() && read {
             return Err(match monitor.other_version() {
                 Some(version) => format!(
-                    "{} speaks version {version} of the protocol, this monitor version {PROTOCOL_VERSION}; take the monitor of the \
+                    "{} speaks version {version} of the protocol, this monitor versions {PROTOCOL_VERSION} and {HAND_VERSION}; take the monitor of the \
                      board's firmware",
                     self.name
                 ),

@@ -7,7 +7,7 @@ use crate::frames::tip::TipChoice;
 use fingertip::link::command::{Command, Request};
 use fingertip::link::telemetry::{Hello, Message};
 use fingertip::link::tips::{AnyDecoder, AnyFrame};
-use fingertip::link::wire::{DecodeError, PROTOCOL_VERSION};
+use fingertip::link::wire::{DecodeError, HAND_VERSION, PROTOCOL_VERSION};
 use fingertip::signal::report::Report;
 use fingertip::status::{Status, Touch};
 use fingertip::units::Microseconds;
@@ -291,7 +291,7 @@ impl Monitor {
     fn met_version(&mut self, version: u8) {
         if self.other_version.replace(version) != Some(version) {
             self.note(format!(
-                "the board speaks version {version} of the protocol, this monitor version {PROTOCOL_VERSION}"
+                "the board speaks version {version} of the protocol, this monitor versions {PROTOCOL_VERSION} and {HAND_VERSION}"
             ));
         }
     }

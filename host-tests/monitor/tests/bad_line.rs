@@ -278,7 +278,7 @@ fn a_refused_connection_leaves_no_file() {
 #[test]
 fn a_board_of_another_protocol_is_named() {
     let address = board(|mut stream| {
-        let mut plain = vec![3, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+        let mut plain = vec![4, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
         let check = crc_16(&plain);
         plain.extend(check.to_le_bytes());
         let mut frame = Vec::new();
@@ -299,7 +299,7 @@ fn a_board_of_another_protocol_is_named() {
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success());
     assert!(
-        error.contains("speaks version 3 of the protocol, this monitor version 2"),
+        error.contains("speaks version 4 of the protocol, this monitor versions 2 and 3"),
         "{error}"
     );
 }
