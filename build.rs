@@ -232,16 +232,14 @@ fn chosen_board() -> Result<(&'static str, Option<&'static str>, u32), String> {
     let feature = |board: &str| board.to_uppercase().replace('-', "_");
     let chosen = |board: &str| env::var_os(format!("CARGO_FEATURE_BOARD_{}", feature(board))).is_some();
     let boards: Vec<_> = BOARDS.iter().filter(|(board, ..)| chosen(board)).collect();
-    match boards[..] {
-        [board] => Ok(*board),
-        _ => {
-            let known = BOARDS.map(|(board, ..)| format!("board-{board}")).join(" or ");
-            Err(format!(
-                "{} boards are chosen: choose one, with --package fingertip --no-default-features --features {known}",
-                boards.len()
-            ))
-        }
+    if let [board] = boards[..] {
+        return Ok(*board);
     }
+    let known = BOARDS.map(|(board, ..)| format!("board-{board}")).join(" or ");
+    Err(format!(
+        "{} boards are chosen: choose one, with --package fingertip --no-default-features --features {known}",
+        boards.len()
+    ))
 }
 
 fn link_for_the_chip() -> Result<(), String> {

@@ -214,7 +214,7 @@ impl<const TIPS: usize> Hand<TIPS> {
                     },
                 )),
                 _ => tip.request(now, request, &mut |message| {
-                    tell(&names, number, message, &mut put)
+                    tell(&names, number, message, &mut put);
                 }),
             }
         }

@@ -90,12 +90,11 @@ async fn signal(
     let mut scan = port.map(|port| Scan::<_, TIPS, RANKS, SCANS>::new(TRANSDUCERS, port));
     let (mut last_sample, mut next_look, mut next_note) = (None, 0, 0);
     loop {
-        let samples = match &mut scan {
-            Some(scan) => scan.next().await,
-            None => {
-                pace.next().await;
-                [Err(Fault::ResetLoop); TIPS]
-            }
+        let samples = if let Some(scan) = &mut scan {
+            scan.next().await
+        } else {
+            pace.next().await;
+            [Err(Fault::ResetLoop); TIPS]
         };
         let now = clock.now();
         if now.0 >= next_look && waiting.frames.borrow().is_empty() {

@@ -33,6 +33,10 @@ const READING_BYTES: usize = 18;
 const FAULTY: u8 = 1 << 7;
 
 /// What a frame of version 3 tells.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there is no allocator to box a variant with"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum TipsMessage {
     /// The reports of all tips, in their order, of one instant.
@@ -233,6 +237,10 @@ pub fn encode_request(tip: u8, request: &Request) -> Encoded {
 }
 
 /// A frame of either version.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there is no allocator to box a variant with"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum AnyFrame {
     /// Of a board of one fingertip.
