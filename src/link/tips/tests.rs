@@ -140,7 +140,7 @@ fn pressures_of_a_finer_unit_are_taken_to_the_frames() {
         outcome: Ok(measurement()),
     };
     let frame = written([0, 0], |start| {
-        start.readings(Microseconds(0), 6, [(&report, 2)].into_iter())
+        start.readings(Microseconds(0), 6, [(&report, 2)].into_iter());
     });
     let TipsMessage::Readings { reports, .. } = read(&frame).message else {
         panic!("readings")
@@ -221,7 +221,7 @@ fn six_tips_are_a_frame_and_version_2_is_none() {
         outcome: Ok(measurement()),
     };
     let frame = written([0, 0], |start| {
-        start.readings(Microseconds(0), 8, [(&report, 0); MAX_TIPS].into_iter())
+        start.readings(Microseconds(0), 8, [(&report, 0); MAX_TIPS].into_iter());
     });
     assert_eq!(frame.len(), 16 + MAX_TIPS * 18 + 4);
     assert!(

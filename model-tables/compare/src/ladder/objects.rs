@@ -24,7 +24,7 @@ const FRICTION: f64 = 0.3;
 /// Percent that a scene may allow.
 const ALLOWED: [f64; 3] = [25.0, 5.0, 2.0];
 
-/// ObjectErrors of force and indentation in one state, percent of the reading's truth.
+/// Errors of force and indentation in one state, percent of the reading's truth.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ObjectErrors([f64; 2]);
 
@@ -92,7 +92,7 @@ fn tip(wall: f64) -> Result<(DesignFile, Generated), NoScene> {
 
 /// The scenes of one wall.
 ///
-/// # ObjectErrors
+/// # Errors
 /// [`NoScene`] where a table or a state is missing.
 pub fn measure(wall: f64) -> Result<Vec<ObjectScene>, NoScene> {
     let (file, generated) = tip(wall)?;
@@ -151,7 +151,7 @@ pub fn measure(wall: f64) -> Result<Vec<ObjectScene>, NoScene> {
 
 /// Every wall.
 ///
-/// # ObjectErrors
+/// # Errors
 /// [`NoScene`].
 pub fn measure_all() -> Result<Vec<ObjectScene>, NoScene> {
     let mut all = Vec::new();
