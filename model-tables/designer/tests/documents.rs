@@ -23,20 +23,13 @@ use std::process;
 use std::time::{Duration, Instant, SystemTime};
 
 /// Commands that begin so are not run, and why.
-const NOT_RUN: [(&str, &str); 13] = [
+const NOT_RUN: [(&str, &str); 9] = [
     ("cargo install ", "network"),
     ("stty -F /dev/ttyACM0 ", "board"),
     ("probe-rs run ", "board"),
     (
         "python3 host-tests/scripts/peers.py ",
         "an hour, and packages from the network",
-    ),
-    ("pip install 'fingertip[cluster]'", "network"),
-    ("dask scheduler", "a cluster; the package's own tests have one"),
-    ("dask worker ", "a cluster; the package's own tests have one"),
-    (
-        "python -m fingertip.sweep ",
-        "a cluster; the package's own tests have one",
     ),
     (
         "python3 host-tests/scripts/a_thousand_designs.py ",
