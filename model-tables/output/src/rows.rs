@@ -95,16 +95,29 @@ impl Rows {
         Ok(serde_json::to_string_pretty(&objects)? + "\n")
     }
 
+    /// For people: a column without anything in it is left out.
     fn table(&self) -> String {
-        let header = self.columns.iter().map(|&column| column.to_owned()).collect();
-        let lines: Vec<Vec<String>> = core::iter::once(header)
-            .chain(
-                self.rows
-                    .iter()
-                    .map(|row| row.iter().map(|cell| cell.text(TABLE_DIGITS)).collect()),
-            )
+        let is_empty = |column: usize| {
+            let mut cells = self.rows.iter().map(|row| &row[column]);
+            !self.rows.is_empty() && cells.all(|cell| matches!(cell, Cell::Empty))
+        };
+        let shown: Vec<usize> = (0..self.columns.len())
+            .filter(|&column| !is_empty(column))
             .collect();
-        let widths: Vec<usize> = (0..self.columns.len())
+        let header = shown
+            .iter()
+            .map(|&column| self.columns[column].to_owned())
+            .collect();
+        let cells = |row: &Vec<Cell>| {
+            shown
+                .iter()
+                .map(|&column| row[column].text(TABLE_DIGITS))
+                .collect()
+        };
+        let lines: Vec<Vec<String>> = core::iter::once(header)
+            .chain(self.rows.iter().map(cells))
+            .collect();
+        let widths: Vec<usize> = (0..shown.len())
             .map(|column| {
                 lines
                     .iter()
@@ -171,6 +184,23 @@ pub fn plain(number: f64, digits: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_column_without_anything_is_left_out_for_people_and_kept_for_programs() {
+        let mut rows = Rows::new(&["force_n", "wrinkled", "status"]);
+        rows.push(vec![Cell::Number(1.0), Cell::Empty, Cell::word("ok")]);
+        rows.push(vec![Cell::Number(2.0), Cell::Empty, Cell::Empty]);
+        let table = rows.print(Format::Table).expect("a table");
+        assert!(!table.contains("wrinkled") && table.contains("status"), "{table}");
+        let csv = rows.print(Format::Csv).expect("rows");
+        assert!(csv.starts_with("force_n,wrinkled,status\n"), "{csv}");
+        assert!(
+            Rows::new(&["a", "b"])
+                .print(Format::Table)
+                .expect("a table")
+                .contains('b')
+        );
+    }
 
     fn rows() -> Rows {
         let mut rows = Rows::new(&["force_n", "status"]);

@@ -1,6 +1,7 @@
 //! `designer actuator`: the feedback membrane.
 
-use super::{finite, read};
+use super::numbers::{self, Numbers};
+use super::read;
 use model_tables::actuator::{Actuator, FREE_DIAMETER};
 use model_tables::design_file::DesignFile;
 use model_tables::membrane::disc::FlatMembrane;
@@ -20,10 +21,9 @@ const COLUMNS: &[&str] = &[
 pub(super) struct Arguments {
     /// The design file; its `[actuator] diameter_mm` is the free diameter, 9 mm if it has none; with `thickness_mm` the disc as a solid
     design: PathBuf,
-    /// Gauge pressures in kilopascals, separated by commas
-    #[arg(long, value_name = "LIST", required = true, value_delimiter = ',',
-          value_parser = finite, allow_hyphen_values = true)]
-    pressure_kpa: Vec<f64>,
+    /// Gauge pressures in kilopascals, separated by commas; or a range start:step:end
+    #[arg(long, value_name = "LIST", required = true, value_parser = numbers::list, allow_hyphen_values = true)]
+    pressure_kpa: Vec<Numbers>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
@@ -41,7 +41,7 @@ fn of_disc(arguments: &Arguments, design: &DiscDesign) -> Result<CommandAnswer, 
     let mut disc = Disc::new(design, DISC).map_err(refuse)?;
     let mut rows = Rows::new(COLUMNS);
     let mut notes = Vec::new();
-    for &pressure in &arguments.pressure_kpa {
+    for &pressure in &numbers::all("--pressure-kpa", &arguments.pressure_kpa) {
         let state = disc.at_pressure(pressure * 1e3).map_err(refuse)?;
         rows.push(vec![
             Cell::Number(pressure),
@@ -81,7 +81,7 @@ fn by_formula(arguments: &Arguments, design_file: &DesignFile) -> Result<Command
         &design_file.actuator_law(),
     );
     let mut rows = Rows::new(COLUMNS);
-    for &pressure in &arguments.pressure_kpa {
+    for &pressure in &numbers::all("--pressure-kpa", &arguments.pressure_kpa) {
         let state = actuator
             .at_pressure(pressure * 1e3)
             .map_err(|error| Refusal::about(file, &error))?;

@@ -1,6 +1,7 @@
 //! `designer estimate`: what the chip's table stage says at a pressure rise, bit for bit.
 
-use super::{estimate_in_time, finite, read, tip};
+use super::numbers::{self, Numbers};
+use super::{estimate_in_time, read, tip};
 use fingertip::signal::contact::contact;
 use fingertip::signal::design::Design;
 use fingertip::signal::loaded_design::LoadedDesign;
@@ -18,10 +19,9 @@ const COLUMNS: &[&str] = &["pressure_rise_pa", "force_n", "indentation_mm", "sta
 pub(super) struct Arguments {
     /// The design file, or a tip file of `designer tip`
     design: PathBuf,
-    /// Pressure rises over the rest pressure in pascals, separated by commas
-    #[arg(long, value_name = "LIST", required_unless_present = "history", value_delimiter = ',',
-          value_parser = finite, allow_hyphen_values = true)]
-    pressure_rise_pa: Vec<f64>,
+    /// Pressure rises over the rest pressure in pascals, separated by commas; or a range start:step:end
+    #[arg(long, value_name = "LIST", required_unless_present = "history", value_parser = numbers::list, allow_hyphen_values = true)]
+    pressure_rise_pa: Vec<Numbers>,
     /// CSV with columns `time_s` and `pressure_rise_kpa` or `pressure_rise_pa`, and `temperature_c` where the wall's is known; the first row is
     /// the untouched, recovered fingertip
     #[arg(long, value_name = "FILE", conflicts_with = "pressure_rise_pa")]
@@ -79,7 +79,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;
     let mut rows = Rows::new(COLUMNS);
-    for &pascals in &arguments.pressure_rise_pa {
+    for &pascals in &numbers::all("--pressure-rise-pa", &arguments.pressure_rise_pa) {
         let rise = PressureRise::from_pascals(pascals, bits);
         let reading = contact(&design, rise, Warnings::NONE);
         let status = Status::qualified(reading.warnings);

@@ -4,6 +4,7 @@
 //! was asked, the limit or the key, and the remedy; nothing on standard output, nothing half-written left behind.
 
 mod actuator;
+mod at_force;
 mod bench;
 mod calibration;
 mod estimate;
@@ -16,6 +17,7 @@ mod materials;
 mod mesh_error;
 mod model;
 mod monitor;
+mod numbers;
 mod profile;
 mod published;
 mod report;
@@ -162,9 +164,13 @@ pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
-            // A closed pipe is no reason to complain.
-            let _ = error.print();
-            return ExitCode::SUCCESS;
+            return match error.print() {
+                // A reader of help may stop reading.
+                Err(reason) if reason.kind() != std::io::ErrorKind::BrokenPipe => {
+                    refuse(&format!("standard output did not take the help: {reason}"))
+                }
+                _ => ExitCode::SUCCESS,
+            };
         }
         Err(error) => return refuse(&usage(&error)),
     };
@@ -320,12 +326,4 @@ fn read(design: &Path) -> Result<DesignFile, Refusal> {
         ));
     }
     Ok(file)
-}
-
-/// A finite number; `inf` and `nan` are words that a float would take.
-fn finite(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err("not a finite number".to_owned()),
-    }
 }

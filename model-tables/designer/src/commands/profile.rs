@@ -1,7 +1,8 @@
 //! `designer profile`: the meridian of one state.
 
 use super::model::{self, Model};
-use super::{Field, bench, finite, read, refuse_plain};
+use super::numbers::finite;
+use super::{Field, bench, read, refuse_plain};
 use model_tables::design_file::DesignFile;
 use model_tables::membrane::Zone;
 use model_tables::membrane::press::Press;

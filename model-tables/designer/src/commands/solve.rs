@@ -1,9 +1,12 @@
 //! `designer solve`: pressed states.
 
+use super::at_force::{self, NoForce};
 use super::model::{self, Model};
-use super::{Field, bench, finite, mesh_error, read, refuse_plain, warn, warn_of_instability};
+use super::numbers::{self, Numbers};
+use super::{Field, bench, mesh_error, read, refuse_plain, warn, warn_of_instability};
 use model_tables::curve::Contact;
 use model_tables::design_file::{Calibration, DesignFile};
+use model_tables::limit::Limit;
 use model_tables::material::stability::Margin;
 use model_tables::membrane::press::Press;
 use model_tables::membrane::state::PressedState;
@@ -32,13 +35,64 @@ const COLUMNS: &[&str] = &[
 pub(super) struct Arguments {
     /// The design file
     design: PathBuf,
-    /// Indentations in millimetres, separated by commas; of a calibrated design, as its bench reads them
-    #[arg(long, value_name = "LIST", required = true, value_delimiter = ',',
-          value_parser = finite, allow_hyphen_values = true)]
-    indentation_mm: Vec<f64>,
+    /// Indentations in millimetres, separated by commas, or a range start:step:end; of a calibrated design, as its bench reads them
+    #[arg(long, value_name = "LIST", required_unless_present = "force_n",
+          value_parser = numbers::list, allow_hyphen_values = true)]
+    indentation_mm: Vec<Numbers>,
+    /// Forces in newtons in the place of indentations
+    #[arg(long, value_name = "LIST", conflicts_with = "indentation_mm",
+          value_parser = numbers::list, allow_hyphen_values = true)]
+    force_n: Vec<Numbers>,
     /// What the membrane does where it would have to push
     #[arg(long, value_name = "FIELD", value_enum, default_value_t = Field::Relaxed)]
     tension_field: Field,
+}
+
+/// A state that is asked for.
+#[derive(Clone, Copy)]
+struct Asked {
+    /// As the bench reads its indentation, millimetres.
+    read_mm: f64,
+    /// From first touch on, metres.
+    depth: f64,
+}
+
+/// The states that the options ask for; `limit` and `contact_at` are those of the press.
+fn asked<P, E: Into<ModelError>>(
+    arguments: &Arguments,
+    calibration: &Calibration,
+    press: &mut P,
+    limit: impl Fn(&mut P) -> Result<Limit, E>,
+    contact_at: impl Fn(&mut P, f64) -> Result<Contact, E>,
+) -> Result<Vec<Asked>, Refusal> {
+    let file = &arguments.design;
+    let refuse = |error: E| Refusal::about(file, &bench::as_read(calibration, error));
+    let forces = numbers::all("--force-n", &arguments.force_n);
+    if forces.is_empty() {
+        let indentations = numbers::all("--indentation-mm", &arguments.indentation_mm);
+        let asked = |read_mm| Asked {
+            read_mm,
+            depth: bench::depth(calibration, read_mm),
+        };
+        return Ok(indentations.into_iter().map(asked).collect());
+    }
+    let end = limit(press).map_err(refuse)?;
+    forces
+        .into_iter()
+        .map(|force| {
+            let depth =
+                at_force::depth(force, &end, |depth| contact_at(press, depth)).map_err(
+                    |error| match error {
+                        NoForce::Beyond(reason) => Refusal::about(file, &reason),
+                        NoForce::Model(error) => refuse(error),
+                    },
+                )?;
+            Ok(Asked {
+                read_mm: 1e3 * calibration.indentation_read(depth),
+                depth,
+            })
+        })
+        .collect()
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
@@ -58,13 +112,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     let mut press = Press::new(&model.design, arguments.tension_field.into())
         .map_err(|error| Refusal::about(file, &error))?;
+    let asked = asked(
+        arguments,
+        calibration,
+        &mut press,
+        Press::limit,
+        Press::contact_at,
+    )?;
     // Solved from shallow to deep, given in the order asked.
-    let mut order: Vec<usize> = (0..arguments.indentation_mm.len()).collect();
-    order.sort_by(|&a, &b| arguments.indentation_mm[a].total_cmp(&arguments.indentation_mm[b]));
+    let mut order: Vec<usize> = (0..asked.len()).collect();
+    order.sort_by(|&a, &b| asked[a].depth.total_cmp(&asked[b].depth));
     let mut states: Vec<Option<PressedState>> = vec![None; order.len()];
     let (mut worst, mut deepest) = (None, 0.0_f64);
     for i in order {
-        let depth = bench::depth(calibration, arguments.indentation_mm[i]);
+        let Asked { read_mm, depth } = asked[i];
         let state = press
             .at_indentation(depth)
             .map_err(|error| Refusal::about(file, &bench::as_read(calibration, error)))?;
@@ -72,7 +133,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         states[i] = Some(state);
         let margin = press.stability();
         if worst.is_none_or(|(_, least): (f64, Margin)| margin.value < least.value) {
-            worst = Some((arguments.indentation_mm[i], margin));
+            worst = Some((read_mm, margin));
         }
     }
     if let Some((indentation, margin)) = worst {
@@ -82,9 +143,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     bench::warn_of_strain(file, &design_file, &mut tip, deepest);
     let error = model::note_of_error(&design_file, &mut tip, deepest);
     let mut rows = Rows::new(COLUMNS);
-    for (state, &asked) in states.iter().flatten().zip(&arguments.indentation_mm) {
+    for (state, asked) in states.iter().flatten().zip(&asked) {
         rows.push(vec![
-            Cell::Number(asked),
+            Cell::Number(asked.read_mm),
             Cell::Number(calibration.pressure_read(state.shape.pressure) * 1e-3),
             Cell::Number(calibration.pressure_read(state.pressure_rise) * 1e-3),
             Cell::Number(state.force),
@@ -115,8 +176,14 @@ fn solid(
     let mut rows = Rows::new(COLUMNS);
     let mut deepest = 0.0_f64;
     let mut contacts = Vec::new();
-    for &asked in &arguments.indentation_mm {
-        let depth = bench::depth(calibration, asked);
+    let asked = asked(
+        arguments,
+        calibration,
+        &mut press,
+        solid::press::Press::limit,
+        solid::press::Press::contact_at,
+    )?;
+    for Asked { read_mm, depth } in asked {
         let state = press
             .at_indentation(depth)
             .map_err(|error| refuse(error.into()))?;
@@ -127,7 +194,7 @@ fn solid(
             force: state.force,
         });
         rows.push(vec![
-            Cell::Number(asked),
+            Cell::Number(read_mm),
             Cell::Number(calibration.pressure_read(state.pressure) * 1e-3),
             Cell::Number(calibration.pressure_read(state.pressure_rise) * 1e-3),
             Cell::Number(state.force),

@@ -3,7 +3,8 @@
 mod diameters;
 mod in_time;
 
-use super::{bench, finite, model, read};
+use super::numbers::{self, Numbers};
+use super::{bench, model, read};
 use model_tables::design_file::DesignFile;
 use model_tables::model::feedback::{Loop, LoopState};
 use model_tables::solid::disc::{DISC, Disc, DiscDesign};
@@ -27,12 +28,12 @@ pub(super) struct Arguments {
     design: PathBuf,
     /// Indentations of the fingertip in millimetres, separated by commas
     #[arg(long, value_name = "LIST", required_unless_present = "history", conflicts_with = "history",
-          value_delimiter = ',', value_parser = finite, allow_hyphen_values = true)]
-    indentation_mm: Vec<f64>,
+          value_parser = numbers::list, allow_hyphen_values = true)]
+    indentation_mm: Vec<Numbers>,
     /// Diameters of the actuator in millimetres, separated by commas, in place of the design's
-    #[arg(long, value_name = "LIST", conflicts_with = "history", value_delimiter = ',', value_parser = finite,
+    #[arg(long, value_name = "LIST", conflicts_with = "history", value_parser = numbers::list,
           allow_hyphen_values = true)]
-    diameter_mm: Vec<f64>,
+    diameter_mm: Vec<Numbers>,
     /// The loop in time: CSV with columns `time_s` and `indentation_mm` or `force_n` (of the touch), which changes evenly from row to row; the first
     /// row is the untouched fingertip
     #[arg(long, value_name = "FILE")]
@@ -43,12 +44,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let file = &arguments.design;
     let design_file = read(file)?;
     let disc = disc(file, &design_file)?;
-    let indentations = &arguments.indentation_mm;
+    let indentations = &numbers::all("--indentation-mm", &arguments.indentation_mm);
+    let diameters = numbers::all("--diameter-mm", &arguments.diameter_mm);
     match &arguments.history {
         Some(history) => in_time::run(file, &design_file, &disc, history),
-        None if !arguments.diameter_mm.is_empty() => {
-            diameters::run(file, &design_file, &arguments.diameter_mm, indentations)
-        }
+        None if !diameters.is_empty() => diameters::run(file, &design_file, &diameters, indentations),
         None => at_indentations(file, &design_file, &disc, indentations),
     }
 }

@@ -5,7 +5,8 @@ mod from_data;
 mod relaxation;
 mod report;
 
-use super::{bench, finite, read};
+use super::numbers::finite;
+use super::{bench, read};
 use crate::fit::data::{Data, DataChoice, Direction};
 use crate::fit::findings::{findings, state};
 use crate::fit::parameter::Parameter;
