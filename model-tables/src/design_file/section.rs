@@ -115,6 +115,32 @@ impl<'a> Section<'a> {
         numbers.map(Some).ok_or_else(|| self.refuse(key, allowed))
     }
 
+    /// Every sub-table, in the order of the text.
+    ///
+    /// # Errors
+    /// [`KeyFault`] for a key that is no table.
+    pub fn every_sub(&self) -> Result<Vec<(&'a str, Section<'a>)>, KeyFault> {
+        let mut subs: Vec<(&'a str, Section<'a>)> = Vec::new();
+        for (name, value) in self.table {
+            let name = name.get_ref().as_ref();
+            let DeValue::Table(table) = value.get_ref() else {
+                return Err(self.refuse(name, "a table of keys"));
+            };
+            subs.push((
+                name,
+                Section {
+                    text: self.text,
+                    path: self.full(name),
+                    header: value.span().start,
+                    table,
+                    known: Vec::new(),
+                },
+            ));
+        }
+        subs.sort_by_key(|(_, section)| section.header);
+        Ok(subs)
+    }
+
     /// Whether the key is there.
     pub fn has(&mut self, key: &'static str) -> bool {
         self.get(key).is_some()
@@ -401,6 +427,11 @@ impl<'a> Section<'a> {
     pub fn line_of(&self, key: &str) -> Option<usize> {
         let (key, _) = self.table.get_key_value(key)?;
         Some(self.line_at(key.span().start))
+    }
+
+    /// The line of its header.
+    pub fn line(&self) -> Option<usize> {
+        Some(self.line_at(self.header))
     }
 
     fn line_at(&self, offset: usize) -> usize {

@@ -2,8 +2,13 @@
 //!
 //! [`target`] (what is wanted) -> a search over materials, aspects and stretches, in which one solved press covers every
 //! size and wall, because a membrane's force is proportional to modulus, wall and size -> least squares from the
-//! best -> [`Sized`] designs, ranked. [`transmission`] sizes fingertip and feedback actuator together.
+//! best -> [`Sized`] designs, ranked -> [`confirm`] (the model that each wall needs, and its tables).
+//!
+//! [`question`] is the same from a buyer's side: lightest touch, greatest force, rate -> designs with a transducer.
+//! [`transmission`] sizes fingertip and feedback actuator together.
 
+pub mod confirm;
+pub mod question;
 mod refine;
 mod search;
 pub mod target;
@@ -37,6 +42,8 @@ const REFINED: usize = 4;
 const SAME: f64 = 0.02;
 /// Walls thicker than this part of the smaller semi-axis are no membranes.
 const THICKEST: f64 = 0.3;
+/// The part of the transducer's range that a press may fill: the model that a wall needs may be a few percent off the membrane.
+const FILLED: f64 = 0.96;
 /// Misfits under this are as good as none: nobody makes a fingertip to a percent.
 const GOOD: f64 = 0.01;
 
@@ -89,7 +96,7 @@ impl Sized {
     fn is_possible(&self, target: &Target) -> bool {
         self.wrinkling == Wrinkling::Taut
             && self.strain_share.is_none_or(|share| share < 1.05)
-            && self.peak_pressure < 1.001e3 * target.range_kpa[1]
+            && self.peak_pressure < 1e3 * target.range_kpa[1]
             && self.limit > target.deepest()
     }
 
@@ -111,7 +118,7 @@ impl Sized {
     }
 
     /// What the ranking goes by: misfits of a percent count alike, and then the effect of making.
-    fn rank(&self) -> (u64, f64) {
+    pub fn rank(&self) -> (u64, f64) {
         let tier = libm::ceil(self.misfit.max(GOOD) / GOOD - 1e-9) as u64;
         (tier, self.making())
     }

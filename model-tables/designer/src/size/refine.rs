@@ -1,7 +1,7 @@
 //! Least squares from a start of the search, within the bounds: size, aspect, wall and stretch at once.
 
 use super::target::Target;
-use super::{Start, THICKEST, pressed};
+use super::{FILLED, Start, THICKEST, pressed};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn, OVector, U4};
@@ -64,7 +64,7 @@ impl Refinement<'_> {
             for (k, (force, wanted)) in forces.iter().zip(&self.target.forces).enumerate() {
                 residuals[k] = force / wanted - 1.0;
             }
-            let excess = peak / (1e3 * self.target.range_kpa[1]) - 1.0;
+            let excess = peak / (FILLED * 1e3 * self.target.range_kpa[1]) - 1.0;
             residuals[count] = BEYOND * excess.max(0.0);
             let most = self.start.material.largest_invariant().unwrap_or(f64::INFINITY);
             residuals[count + 5] = BEYOND * (strain / most - 1.0).max(0.0);

@@ -2,7 +2,7 @@
 //! nearest to the target.
 
 use super::target::Target;
-use super::{MESH, Start, THICKEST, invariant, root_mean_square};
+use super::{FILLED, MESH, Start, THICKEST, invariant, root_mean_square};
 use model_tables::design::Design;
 use model_tables::material::Law;
 use model_tables::material::preset::Preset;
@@ -153,7 +153,7 @@ impl Shape {
                 let wanted = ratios.iter().sum::<f64>() / squares;
                 let most = (THICKEST * radial * aspect.min(1.0))
                     .min(target.wall[1])
-                    .min(UNIT_WALL * 1e3 * target.range_kpa[1] / pressure);
+                    .min(UNIT_WALL * FILLED * 1e3 * target.range_kpa[1] / pressure);
                 if most < target.wall[0] {
                     return None;
                 }

@@ -43,9 +43,9 @@ fn curves(drawing: &mut Drawing, target: &Target, designs: &[Sized]) {
         Anchor::Middle,
         13.0,
         BLACK,
-        "indentation, mm",
+        "indentation / mm",
     );
-    drawing.upward([24.0, 0.5 * HEIGHT], 13.0, "force, N");
+    drawing.upward([24.0, 0.5 * HEIGHT], 13.0, "force / N");
     for (k, sized) in designs.iter().take(DRAWN).enumerate() {
         let Ok(mut press) = Press::new(&sized.design, TensionField::Relaxed) else {
             continue;
@@ -87,9 +87,13 @@ fn costs(drawing: &mut Drawing, designs: &[Sized]) {
         Anchor::Middle,
         13.0,
         BLACK,
-        "peak pressure, kPa (filled: nothing beats it)",
+        "peak pressure / kPa (filled: nothing beats it)",
     );
-    drawing.upward([524.0, 0.5 * HEIGHT], 13.0, "change of force by the tolerance, %");
+    drawing.upward(
+        [524.0, 0.5 * HEIGHT],
+        13.0,
+        "change of force by the tolerance / %",
+    );
     // The ranked ones last, so that they lie on top.
     for (rank, sized) in designs.iter().enumerate().rev() {
         let at = panel.at([1e-3 * sized.peak_pressure, 100.0 * sized.making()]);

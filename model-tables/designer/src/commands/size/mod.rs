@@ -1,9 +1,12 @@
 //! `designer size`: membranes for a wanted force over the indentation.
 
 mod chart;
+mod question;
 mod transmission;
 
 use super::bench;
+use crate::size::confirm::{Confirmed, NAME};
+use crate::size::question::SizingQuestion;
 use crate::size::target::Target;
 use crate::size::transmission::target::WantedLoop;
 use crate::size::{self, Sized};
@@ -11,7 +14,8 @@ use output::files;
 use output::progress::Progress;
 use output::rows::{Cell, Rows, significant};
 use output::{CommandAnswer, Refusal};
-use std::path::PathBuf;
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 const COLUMNS: &[&str] = &[
@@ -39,6 +43,13 @@ const COLUMNS: &[&str] = &[
 
 /// What `--help` says after the options.
 pub(super) const HELP: &str = "\
+With --lightest-touch-n and --greatest-force-n, or a file with [wanted]: finds tips with a transducer of the catalogue that tell the
+one and read the other, so many times a second, in the space given (see targets/egg.toml). `lightest_touch_n` is the least force that is
+a touch at the end of a grasp: six noise floors and what the weather adds, as the chip reads its tables; of a wall that relaxes, relaxed or
+pressed within the grasp, whichever is more. `transducer_step_n` and `weather_n` are one step of the transducer and the weather within a
+grasp there. The tolerance column says by how much the force at one pressure changes for a thicker wall. Designs are ranked by the
+lightest touch.
+
 TARGET.toml names the force wanted at indentations, bounds for the dimensions and the stretch at rest, materials to
 choose from, the transducer's range, and how exactly a dimension is made (see targets/human-fingertip.toml).
 Designs that wrinkle, leave the strain their material was tested in, or leave the transducer's range are left out.
@@ -51,49 +62,92 @@ A target with [transmission] is one of a haptic loop: fingertip and feedback act
 air, tube and temperature do to that (see targets/feedback.toml).
 
 Examples:
+  cargo designer size --lightest-touch-n 0.05 --greatest-force-n 20 --readings-per-second 200
+  cargo designer size model-tables/targets/egg.toml --out sized/
   cargo designer size model-tables/targets/human-fingertip.toml
   cargo designer size model-tables/targets/feedback.toml --out loops/
   cargo designer size model-tables/targets/human-fingertip.toml --best 20 --out sized/";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// The target file
-    target: PathBuf,
-    /// Designs to give
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=100))]
-    best: u16,
-    /// Folder to write the chart and the designs to; made if it is not there
+    /// The target file, or a file of the question
+    #[arg(required_unless_present = "lightest_touch_n")]
+    target: Option<PathBuf>,
+    #[command(flatten)]
+    words: question::Words,
+    /// A catalogue of transducers in the place of model-tables/transducers.toml, for a question
+    #[arg(long, value_name = "FILE")]
+    transducers: Option<PathBuf>,
+    /// Designs to give [default: 8 of a target, 3 of a question]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
+    best: Option<u16>,
+    /// Folder to write the chart (of a target) and the designs to; made if it is not there
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
+/// Designs of a target where `--best` does not say.
+const BEST: u16 = 8;
+
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
-    files::keep(&arguments.target);
-    if let Ok(text) = std::fs::read_to_string(&arguments.target)
-        && WantedLoop::is_in(&text)
-    {
-        let out = arguments.out.as_deref();
-        return transmission::run(&arguments.target, &text, arguments.best.into(), out);
+    let asked = match &arguments.target {
+        None => arguments.words.question()?,
+        Some(file) => {
+            files::keep(file);
+            SizingQuestion::read(file).map_err(Refusal::of)?
+        }
+    };
+    if let Some(question) = asked {
+        return question::run(question::Asked {
+            question,
+            transducers: arguments.transducers.as_ref(),
+            best: arguments.best,
+            out: arguments.out.as_ref(),
+        });
     }
-    let target = Target::read(&arguments.target).map_err(Refusal::of)?;
+    match &arguments.target {
+        Some(file) => match std::fs::read_to_string(file) {
+            Ok(text) if WantedLoop::is_in(&text) => {
+                let best = arguments.best.unwrap_or(BEST).into();
+                transmission::run(file, &text, best, arguments.out.as_deref())
+            }
+            _ => of_target(arguments, file),
+        },
+        None => Err(Refusal("a target file is needed".to_owned())),
+    }
+}
+
+/// Membranes for a wanted force over the indentation.
+fn of_target(arguments: &Arguments, file: &Path) -> Result<CommandAnswer, Refusal> {
+    let target = Target::read(file).map_err(Refusal::of)?;
     if let Some(out) = &arguments.out {
         files::expect_folder(out, &["size.svg"])?;
     }
     let start = Instant::now();
     let progress = Progress::new("sizing");
     let mut sizing = size::size(&target, &|part| progress.set(part));
-    progress.finish();
-    let seconds = start.elapsed().as_secs_f64();
     if sizing.designs.is_empty() {
-        return Err(Refusal::about(&arguments.target, &size::NOTHING_FOUND));
+        return Err(Refusal::about(file, &size::NOTHING_FOUND));
     }
     let found = sizing.designs.len();
     let all = sizing.designs.clone();
-    sizing.designs.truncate(arguments.best.into());
+    let (confirmed, refused) = confirm(&target, &sizing.designs, arguments.best.unwrap_or(BEST).into());
+    progress.finish();
+    sizing.designs = confirmed.iter().map(|found| found.sized.clone()).collect();
+    if sizing.designs.is_empty() {
+        return Err(Refusal::about(
+            file,
+            &format_args!(
+                "no membrane found gets tables when it is solved by the model that its wall needs: {}; widen `[bounds]`, or take another range",
+                refused.first().map_or("", String::as_str)
+            ),
+        ));
+    }
     let mut rows = Rows::new(COLUMNS);
     for (rank, sized) in sizing.designs.iter().enumerate() {
         rows.push(row(rank + 1, sized, &target, &all));
     }
+    let seconds = start.elapsed().as_secs_f64();
     let best = &sizing.designs[0];
     let mut notes = vec![
         format!(
@@ -107,10 +161,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
             1e3 * target.tolerance,
             100.0 * best.making()
         ),
-        "these are membranes: where the wall is thick and little stretched it also bends; solve the choice again with \
-         `[model] kind = \"solid\"`"
-            .to_owned(),
+        format!(
+            "force, misfit and pressures are those of the model that each wall needs: {}; stretches, tension and tolerances are the membrane's",
+            kinds(&confirmed)
+        ),
     ];
+    if !refused.is_empty() {
+        notes.push(format!(
+            "{} designs are left out: they get no tables ({})",
+            refused.len(),
+            refused[0]
+        ));
+    }
     let mut told: Vec<&str> = Vec::new();
     for sized in &sizing.designs {
         if !told.contains(&sized.material.name) {
@@ -120,11 +182,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     if let Some(out) = &arguments.out {
         let mut contents = vec![("size.svg".to_owned(), chart::draw(&target, &all).into_bytes())];
-        for (rank, sized) in sizing.designs.iter().enumerate() {
+        for (rank, found) in confirmed.iter().enumerate() {
             let name = format!("{}-{}", target.name, rank + 1);
             contents.push((
                 format!("{name}.toml"),
-                sized.design_file(&name, &target).into_bytes(),
+                found.text.replacen(NAME, &name, 1).into_bytes(),
             ));
         }
         let contents: Vec<(&str, Vec<u8>)> = contents
@@ -139,6 +201,47 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         ));
     }
     Ok(CommandAnswer { rows, notes })
+}
+
+/// The best designs that get tables by the model that their wall needs, ranked by it, and why others do not.
+fn confirm(target: &Target, designs: &[Sized], best: usize) -> (Vec<Confirmed>, Vec<String>) {
+    let (mut confirmed, mut refused) = (Vec::new(), Vec::new());
+    for group in designs.chunks(rayon::current_num_threads().min(best).max(1)) {
+        if confirmed.len() >= best {
+            break;
+        }
+        let found: Vec<_> = group
+            .par_iter()
+            .map(|sized| Confirmed::of(target, sized))
+            .collect();
+        for found in found {
+            match found {
+                Ok(found) => confirmed.push(found),
+                Err(reason) => refused.push(reason),
+            }
+        }
+    }
+    confirmed.truncate(best);
+    confirmed.sort_by(|a: &Confirmed, b| {
+        let (a, b) = (a.sized.rank(), b.sized.rank());
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    (confirmed, refused)
+}
+
+/// The models of some designs, each once.
+fn kinds(confirmed: &[Confirmed]) -> String {
+    let mut names: Vec<String> = Vec::new();
+    for name in confirmed
+        .iter()
+        .filter_map(|found| found.kind)
+        .map(|kind| kind.to_string())
+    {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names.join(", ")
 }
 
 fn row(rank: usize, sized: &Sized, target: &Target, all: &[Sized]) -> Vec<Cell> {
