@@ -21,8 +21,8 @@ pub(super) fn draw(file: &DesignFile, data: &Data, fit: &Fit) -> String {
             .collect()
     };
     let panels: Vec<(Vec<&Residual>, &str, f64)> = [
-        (of(DataQuantity::Force), "force, N", 1.0),
-        (of(DataQuantity::Rise), "pressure rise, kPa", 1e-3),
+        (of(DataQuantity::Force), "force / N", 1.0),
+        (of(DataQuantity::Rise), "pressure rise / kPa", 1e-3),
     ]
     .into_iter()
     .filter(|panel| !panel.0.is_empty())
@@ -55,9 +55,9 @@ pub(super) fn draw(file: &DesignFile, data: &Data, fit: &Fit) -> String {
         panel.draw(&mut drawing);
         let middle = 0.5 * (panel.x.pixels[0] + panel.x.pixels[1]);
         let depth = if by_depth {
-            "indentation, mm"
+            "indentation / mm"
         } else {
-            "pressure rise, kPa"
+            "pressure rise / kPa"
         };
         drawing.text([middle, HEIGHT - 22.0], Anchor::Middle, 13.0, BLACK, depth);
         drawing.upward([left - 52.0, 0.5 * HEIGHT], 13.0, label);

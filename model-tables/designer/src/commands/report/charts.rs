@@ -10,13 +10,13 @@ use output::drawing::{
 use output::linear::{LinearAxis, LinearPanel};
 use output::rows::plain;
 
-const SIZE: [f64; 2] = [420.0, 330.0];
-const LEFT: f64 = 64.0;
-const RIGHT: f64 = 404.0;
-const BOTTOM: f64 = 276.0;
-const TOP: f64 = 16.0;
+pub(super) const SIZE: [f64; 2] = [420.0, 330.0];
+pub(super) const LEFT: f64 = 64.0;
+pub(super) const RIGHT: f64 = 404.0;
+pub(super) const BOTTOM: f64 = 276.0;
+pub(super) const TOP: f64 = 16.0;
 /// Height of a line of the key.
-const LINE: f64 = 18.0;
+pub(super) const LINE: f64 = 18.0;
 /// One colour and marker a line.
 const COLORS: [&str; 4] = [BLACK, BLUE, ORANGE, GREEN];
 const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Triangle];
@@ -24,13 +24,13 @@ const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Diamond, M
 const MARKED: usize = 6;
 
 /// A line of a chart.
-struct Series {
-    label: String,
-    color: &'static str,
+pub(super) struct Series {
+    pub(super) label: String,
+    pub(super) color: &'static str,
     /// Markers on the line, so that it is told from others without its colour; or alone.
-    marker: Option<Marker>,
-    line: bool,
-    points: Vec<[f64; 2]>,
+    pub(super) marker: Option<Marker>,
+    pub(super) line: bool,
+    pub(super) points: Vec<[f64; 2]>,
 }
 
 /// An axis in words: what, and its unit.
@@ -248,41 +248,6 @@ pub(super) fn depth(found: &Findings) -> String {
     let axes = [Named("pressure rise", KPA), Named("indentation", MM)];
     let series = known(found, |state| state.indentation, |reading| reading.indentation);
     lines("Indentation against pressure rise", axes, true, &series)
-}
-
-/// Errors of the tables against the model over the pressure rise.
-pub(super) fn errors(found: &Findings) -> Option<String> {
-    let of = |output: usize| -> Vec<[f64; 2]> {
-        found
-            .table_readings
-            .iter()
-            .filter_map(|reading| Some([reading.pressure_rise, reading.errors?[output]]))
-            .collect()
-    };
-    if of(0).is_empty() {
-        return None;
-    }
-    let series = [
-        ("force", BLUE, Marker::Square, 0),
-        ("indentation", VERMILION, Marker::Diamond, 1),
-    ]
-    .map(|(label, color, marker, output)| Series {
-        label: label.to_owned(),
-        color,
-        marker: Some(marker),
-        line: true,
-        points: of(output),
-    });
-    let axes = [
-        Named("pressure rise", KPA),
-        Named("error of reading", super::labels::PERCENT),
-    ];
-    Some(lines(
-        "Error of the tables against the model",
-        axes,
-        false,
-        &series,
-    ))
 }
 
 /// A quantity along the meridian, a line a state.

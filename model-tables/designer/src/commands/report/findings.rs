@@ -5,7 +5,9 @@ use super::super::model::{self, Model};
 use super::super::{bench, read};
 use super::cost::{self, Cost};
 use super::in_time::{self, TimedPress};
+use crate::size::question::catalogue::TOUCH_FLOORS;
 use model_tables::actuator::{Actuator, Blocked};
+use model_tables::constants::Quantity;
 use model_tables::design::{Design, RestBy};
 use model_tables::design_file::{Axes, Calibration, DesignFile};
 use model_tables::generate::{Generated, from_design};
@@ -61,6 +63,8 @@ pub(super) struct Findings {
     pub(super) actuator: Vec<(f64, Blocked)>,
     /// The design with the semi-axes that the model takes.
     pub(super) design: Design,
+    /// The least that the tip tells; `None` where there are no tables.
+    pub(super) least: Option<Least>,
     /// What a reader has to know, a line each.
     pub(super) warnings: Vec<String>,
 }
@@ -81,6 +85,18 @@ pub(super) struct TableReading {
     pub(super) indentation: f64,
     /// Errors of force and indentation against the model, percent of reading; `None` of tables from data.
     pub(super) errors: Option<[f64; 2]>,
+}
+
+/// The least that a tip tells, as the chip reads its tables.
+pub(super) struct Least {
+    /// The force at six noise floors of the transducer, where a touch begins, newtons.
+    pub(super) touch: f64,
+    /// One step of the transducer there, newtons.
+    pub(super) step: f64,
+    /// An hour of weather there, newtons; `None` of a gauge part.
+    pub(super) weather: Option<f64>,
+    /// Readings a second.
+    pub(super) rate: f64,
 }
 
 /// Membrane and solid at one indentation.
@@ -142,6 +158,7 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     let mut warnings = warnings(&file, &mut tip, limit, deepest);
     warnings.extend(bench::caution(&file));
     Ok(Findings {
+        least: tables.as_ref().ok().map(least),
         actuator: actuator(&file, &design),
         design,
         rest: tip.rest(),
@@ -184,6 +201,30 @@ fn tables(
     match missing {
         Some(section) => Ok(Err(section)),
         None => Ok(Ok(from_design(file.clone())?)),
+    }
+}
+
+/// Pascals by which an hour of weather moves the zero of an absolute part.
+const WEATHER: f64 = 100.0;
+
+fn least(generated: &Generated) -> Least {
+    let transducer = &generated.transducer;
+    let tables = &generated.certified.tables;
+    let bits = tables.layout.pressure_fraction_bits;
+    let force_at = |pascals: f64| {
+        tables
+            .lookup(PressureRise::from_pascals(pascals, bits))
+            .force
+            .newtons()
+    };
+    let touch = TOUCH_FLOORS * transducer.noise_pa.max(transducer.resolution_pa);
+    // The slope over a half of it on either side, so that the steps of the tables do not count.
+    let slope = (force_at(1.5 * touch) - force_at(0.5 * touch)) / touch;
+    Least {
+        touch: force_at(touch),
+        step: slope * transducer.resolution_pa,
+        weather: (transducer.quantity == Quantity::Absolute).then_some(slope * WEATHER),
+        rate: 1e6 / f64::from(generated.transducer().kind.period()),
     }
 }
 

@@ -3,10 +3,12 @@
 mod charts;
 mod cost;
 mod feedback;
+mod figures;
 mod findings;
 mod in_time;
 mod inputs;
 mod labels;
+mod logarithmic;
 mod page;
 mod shapes;
 
@@ -25,6 +27,9 @@ pub(super) struct Arguments {
     /// The folder to write to; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "target/report")]
     out: PathBuf,
+    /// Write the figures too, each as SVG, and the numbers behind them as CSV
+    #[arg(long)]
+    figures: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
@@ -36,13 +41,25 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     let found = found?;
     let name = format!("{}.html", found.file.name);
     let text = page::html(&found, &arguments.design);
-    let size = text.len();
-    files::write_all(&arguments.out, &[(&name, text.into_bytes())])?;
+    // The page last: it stands for the whole set.
+    let mut contents = if arguments.figures {
+        figures::files(&found)?
+    } else {
+        Vec::new()
+    };
+    contents.push((name, text.into_bytes()));
+    let contents: Vec<(&str, Vec<u8>)> = contents
+        .iter()
+        .map(|(name, content)| (name.as_str(), content.clone()))
+        .collect();
+    files::write_all(&arguments.out, &contents)?;
     let mut rows = Rows::new(COLUMNS);
-    rows.push(vec![
-        Cell::Text(arguments.out.join(name).display().to_string()),
-        Cell::Count(size),
-    ]);
+    for (name, content) in contents.iter().rev() {
+        rows.push(vec![
+            Cell::Text(arguments.out.join(name).display().to_string()),
+            Cell::Count(content.len()),
+        ]);
+    }
     Ok(CommandAnswer {
         rows,
         notes: found.note.into_iter().collect(),

@@ -1,12 +1,12 @@
 //! The page: words and tables around the charts. Everything is in the one file: no script, no font, no picture from elsewhere.
 
-use super::charts;
 use super::feedback;
 use super::findings::Findings;
 use super::in_time;
 use super::inputs::{Row, inputs, rows};
 use super::labels::{KPA, MILLISECONDS, MM, MM3, NEWTON, PERCENT, count};
 use super::shapes;
+use super::{charts, logarithmic};
 use maud::{Markup, PreEscaped, html};
 use model_tables::design_file::DesignFile;
 use model_tables::generate::object::Band;
@@ -25,10 +25,10 @@ pub(super) fn html(found: &Findings, path: &Path) -> String {
     let body = html! {
         main {
             (head(found, path))
+            (shapes_section(found))
             (warnings(found))
             (inputs(found))
             (press(found))
-            (shapes_section(found))
             (meridians(found))
             (tables(found))
             @if !found.in_time.is_empty() { (in_time::section(&found.in_time)) }
@@ -100,6 +100,15 @@ fn head(found: &Findings, path: &Path) -> Markup {
                 }
                 @if let Ok(generated) = &found.tables {
                     div { dt { "tables" } dd { (count(generated.certified.tables.bytes(), "bytes")) } }
+                }
+                @if let Some(least) = &found.least {
+                    div { dt { "lightest touch" } dd { (NEWTON.say(least.touch)) } }
+                    div { dt { "a step of the transducer there" } dd { (NEWTON.say(least.step)) } }
+                    div {
+                        dt { "an hour of weather there" }
+                        dd { @match least.weather { Some(newtons) => (NEWTON.say(newtons)), None => "none: a gauge part" } }
+                    }
+                    div { dt { "readings" } dd { (count(plain(least.rate, 4), "per second")) } }
                 }
             }
         }
@@ -291,8 +300,8 @@ fn certified(found: &Findings, generated: &Generated) -> Markup {
         @if let Some(band) = &generated.band { (unknown_object(band)) }
         div.figures {
             (figure(charts::depth(found), &html! { "The other table: what a pressure reading says of the indentation." }))
-            @if let Some(svg) = charts::errors(found) {
-                (figure(svg, &html! { "What the chip says less what the model gives, at the states of this report." }))
+            @if let Some(svg) = logarithmic::errors(found) {
+                (figure(svg, &html! { "What the chip reads less what the model gives, at the states of this report: magnitudes." }))
             }
         }
         details {

@@ -72,7 +72,7 @@ pub(super) fn draw(file: &DesignFile, record: &HoldRecord, fit: &RelaxationFit) 
         Anchor::Middle,
         13.0,
         BLACK,
-        "time since the press began, s",
+        "time since the press began / s",
     );
     drawing.upward(
         [30.0, 0.5 * HEIGHT],
