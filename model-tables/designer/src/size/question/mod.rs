@@ -230,7 +230,7 @@ mod tests {
             ),
             ("filling = \"water\"", "filling = \"milk\"", "wanted.filling"),
             ("grasp_s", "grasp_ms", "wanted.grasp_ms"),
-            ("height_mm", "hight_mm", "space.height_mm"),
+            ("height_mm", "hight_mm", "space.hight_mm"),
         ] {
             assert!(EGG.contains(from), "{from}");
             let (_, problem) = parse(&EGG.replacen(from, to, 1)).expect_err("refused");
