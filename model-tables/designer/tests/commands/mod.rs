@@ -313,7 +313,7 @@ pub(crate) fn assert_names_exist(line: &str, arguments: &[String]) {
         assert!(
             tests
                 .iter()
-                .all(|option| ["--nocapture", "--include-ignored"].contains(&option.as_str())),
+                .all(|option| ["--nocapture", "--ignored", "--include-ignored"].contains(&option.as_str())),
             "{line}: {tests:?}"
         );
     }
