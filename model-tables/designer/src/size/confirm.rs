@@ -19,7 +19,7 @@ pub struct Confirmed {
     pub sized: Sized,
     /// Its design file, with `NAME` for its name.
     pub text: String,
-    /// The model that its wall needs.
+    /// The model that its wall needs; `None` where the tables are of data.
     pub kind: Option<Kind>,
     /// Its tables.
     pub generated: Generated,

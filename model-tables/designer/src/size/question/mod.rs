@@ -41,9 +41,9 @@ pub struct SizingQuestion {
     pub rate: f64,
     /// How long a grasp lasts, seconds.
     pub grasp_s: f64,
-    /// What presses on the transducer, of [`MEDIA`]; any where not given.
+    /// What presses on the transducer, of [`MEDIA`]; `None`: any.
     pub filling: Option<String>,
-    /// Radius of a ball that is grasped, millimetres; a plate where not given.
+    /// Radius of a ball that is grasped, millimetres; `None`: a plate.
     pub radius_mm: Option<f64>,
     /// Outer diameter and height that the tip may have, millimetres.
     pub space_mm: [f64; 2],
