@@ -102,6 +102,8 @@ pub struct Loading {
     board: u64,
     /// Since the command was asked first.
     was_reset: bool,
+    /// The restart is taken from a refusal after a reset, which may be one of before the command.
+    assumed: bool,
     hash: Option<u64>,
     /// Since when there is no connection.
     gone: Option<(Duration, String)>,
@@ -125,6 +127,7 @@ impl Loading {
             restart: None,
             board: 0,
             was_reset: false,
+            assumed: false,
             hash: None,
             gone: None,
             outcome: None,
@@ -267,6 +270,11 @@ impl Loading {
             LoadJob::Load { hash, .. } => hash,
             LoadJob::RollBack | LoadJob::ReadBack => hash,
         };
+        if hash != expected && std::mem::take(&mut self.assumed) {
+            // The reset was one of before the activation, noticed late: the load is forgotten, and goes on from arming.
+            self.restart = None;
+            return self.ask(LoadCommand::Arm);
+        }
         self.outcome = Some(if hash == expected {
             Ok(self.result(hash))
         } else {
@@ -288,7 +296,10 @@ impl Loading {
             LoadOutcome::Done if ends => self.restarts(now),
             // It had been done, and the answer was lost: the board is restarting, or has.
             LoadOutcome::Busy => self.restarts(now),
-            LoadOutcome::NotArmed | LoadOutcome::OutOfOrder if ends && self.was_reset => self.restarts(now),
+            LoadOutcome::NotArmed | LoadOutcome::OutOfOrder if ends && self.was_reset => {
+                self.assumed = true;
+                self.restarts(now);
+            }
             LoadOutcome::Done => self.go_on(kind),
             LoadOutcome::NotArmed if kind != LoadKind::Arm => self.ask(LoadCommand::Arm),
             // The board was reset, or what lies in the slot is not what was sent: from the begin.
