@@ -1,4 +1,4 @@
-//! One board: the [`logic`] between samples and line, and the [`supervisor`] of tasks and resets; with the feature `load-tip` the
+//! One board: the [`logic`] between samples and line, and the [`task_monitor`] of tasks and resets; with the feature `load-tip` the
 //! loader of a tip's data.
 
 #[cfg(tips)]

@@ -6,7 +6,7 @@
 //! times the contact area: at light touch the wall's bending carries most of it.
 //!
 //! [`mesh`] (the undeformed wall) -> [`element`] (the mechanics of a point) -> [`batch`] (forces and stiffness of four elements side by side,
-//! in [`lanes`]), [`fluid`] (the volume inside) and [`object`] with [`plate`] and `friction` (contact) -> [`front`] (linear equations, column by column) -> [`equilibrium`]
+//! in [`lanes`]), [`fluid`] (the volume inside) and [`object`] with [`plate`] and `friction` (contact) -> [`frontal`] (linear equations, column by column) -> [`equilibrium`]
 //! (Newton's method) -> [`inflation`] -> [`path`] (the
 //! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units, and by `branch` those beside the path)
 //! -> [`section`] (what is read off along the meridian). [`disc`] is the feedback actuator: a flat wall that goes by the fluid's

@@ -55,7 +55,7 @@ pub struct ObjectScene {
     pub wall: f64,
     /// Radius of a ball, millimetres; `None` for a plate with friction.
     pub radius: Option<f64>,
-    /// By [`PARTS`]: of tables of a plate, whether the truth lies in their band, and of tables blended for the object.
+    /// By `PARTS`: of tables of a plate, whether the truth lies in their band, and of tables blended for the object.
     pub states: Vec<(ObjectErrors, bool, ObjectErrors)>,
 }
 
