@@ -50,6 +50,17 @@ pub enum Problem {
     },
 }
 
+impl DesignFileError {
+    /// A fault (the line, where there is one, and what is wrong there) in a file of that name.
+    pub fn at(file: &str, (line, problem): (Option<usize>, Problem)) -> Self {
+        Self {
+            file: file.to_owned(),
+            line,
+            problem,
+        }
+    }
+}
+
 impl fmt::Display for DesignFileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.file)?;

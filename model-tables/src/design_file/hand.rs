@@ -1,8 +1,9 @@
 //! The file of a hand: its tips, each with a design of its own and the place of its transducer on the board.
 
 use super::bounds::Bounds;
+use super::document;
 use super::error::{DesignFileError, Problem};
-use super::section::{KeyFault, Section, line_at};
+use super::section::{KeyFault, Section};
 use super::{DesignFile, Supply, TransducerKindSection};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
@@ -15,7 +16,6 @@ pub const CHANNELS: u8 = 6;
 pub const MAX_TIPS: usize = 12;
 /// Bytes of a tip's name that a frame carries.
 const TIP_NAME: usize = 32;
-const NAME: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
 const KEYS: &str = "a `[[tip]]` with name, design, and channel or bus";
 
 /// A hand file's content.
@@ -94,13 +94,7 @@ impl HandFile {
     /// # Errors
     /// [`DesignFileError`] with the file's name, and the line where there is one.
     pub fn read(path: &Path) -> Result<Self, DesignFileError> {
-        let file = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| DesignFileError {
-            file: file.clone(),
-            line: None,
-            problem: Problem::Unreadable(error.to_string()),
-        })?;
-        Self::parse(&text, &file)
+        Self::parse(&document::read(path)?, &path.display().to_string())
     }
 
     /// Checks the text of a hand file. `file` is its path: designs are relative to its folder, and errors give it as the name.
@@ -108,11 +102,7 @@ impl HandFile {
     /// # Errors
     /// [`DesignFileError`] for the first thing that is wrong.
     pub fn parse(text: &str, file: &str) -> Result<Self, DesignFileError> {
-        hand(text, file).map_err(|(line, problem)| DesignFileError {
-            file: file.to_owned(),
-            line,
-            problem,
-        })
+        hand(text, file).map_err(|fault| DesignFileError::at(file, fault))
     }
 
     /// The designs of its tips, in their order, each checked against the place that its tip names.
@@ -223,12 +213,9 @@ fn address_text(place: TransducerPlace) -> String {
 }
 
 fn hand(text: &str, file: &str) -> Result<HandFile, KeyFault> {
-    let document = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map(|span| line_at(text, span.start));
-        (line, Problem::Syntax(error.message().to_owned()))
-    })?;
-    let mut root = Section::root(text, document.get_ref());
-    let name = name(&mut root, 64, NAME)?;
+    let tables = document::tables(text)?;
+    let mut root = Section::root(text, tables.get_ref());
+    let name = root.name(64, document::NAME)?;
     let folder = Path::new(file).parent().unwrap_or(Path::new(""));
     let mut tips: Vec<TipSection> = Vec::new();
     let sections = root.subs("tip", KEYS)?;
@@ -246,21 +233,9 @@ fn hand(text: &str, file: &str) -> Result<HandFile, KeyFault> {
     })
 }
 
-fn name(section: &mut Section<'_>, most: usize, allowed: &str) -> Result<String, KeyFault> {
-    let name = section.needed_text("name", allowed)?;
-    let plain = name
-        .chars()
-        .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
-    if plain && (1..=most).contains(&name.len()) {
-        Ok(name.to_owned())
-    } else {
-        Err(section.refuse("name", allowed))
-    }
-}
-
 fn tip(section: &mut Section<'_>, folder: &Path) -> Result<TipSection, KeyFault> {
     const DESIGN: &str = "a design file in quotes, relative to the hand's file";
-    let name = name(section, TIP_NAME, "1 to 32 letters, digits, `-` or `_` in quotes")?;
+    let name = section.name(TIP_NAME, "1 to 32 letters, digits, `-` or `_` in quotes")?;
     let design = folder.join(section.needed_text("design", DESIGN)?);
     let line = section.line_of("design");
     let channel = section.number(

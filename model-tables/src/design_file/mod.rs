@@ -7,6 +7,7 @@
 mod actuator;
 pub mod bounds;
 mod calibration;
+pub mod document;
 mod error;
 pub mod hand;
 mod material;
@@ -271,12 +272,7 @@ impl DesignFile {
     /// # Errors
     /// [`DesignFileError`] with the file's name, and the line where there is one.
     pub fn read(path: &Path) -> Result<Self, DesignFileError> {
-        let text = std::fs::read_to_string(path).map_err(|error| DesignFileError {
-            file: path.display().to_string(),
-            line: None,
-            problem: Problem::Unreadable(error.to_string()),
-        })?;
-        Self::parse(&text, &path.display().to_string())
+        Self::parse(&document::read(path)?, &path.display().to_string())
     }
 
     /// Checks the text of a design file; `file` is the name that errors give it.
@@ -284,11 +280,7 @@ impl DesignFile {
     /// # Errors
     /// [`DesignFileError`] for the first thing that is wrong.
     pub fn parse(text: &str, file: &str) -> Result<Self, DesignFileError> {
-        sections::parse(text).map_err(|(line, problem)| DesignFileError {
-            file: file.to_owned(),
-            line,
-            problem,
-        })
+        sections::parse(text).map_err(|fault| DesignFileError::at(file, fault))
     }
 
     /// The design's canonical text: every value written out, comments left out.

@@ -3,10 +3,11 @@
 use super::actuator::ActuatorSection;
 use super::bounds::{Bounds, LENGTH, SEMI_AXIS};
 use super::calibration::Calibration;
+use super::document;
 use super::error::Problem;
 use super::hand;
 use super::material::material;
-use super::section::{KeyFault, Section, line_at};
+use super::section::{KeyFault, Section};
 use super::transducer::transducer;
 use super::zero::{self, ZeroSection};
 use super::{
@@ -14,7 +15,6 @@ use super::{
     ObjectSection, RestSection,
 };
 use crate::constants::AirReference;
-use toml::de::DeTable;
 
 /// Pole stretches of a rest state.
 const STRETCH: Bounds = Bounds::above(1.0, 10.0, "(no stretch is 1)");
@@ -23,15 +23,12 @@ const PRESSURE: Bounds = Bounds::above(0.0, 10_000.0, "kPa");
 
 /// The design in a text.
 pub(super) fn parse(text: &str) -> Result<DesignFile, KeyFault> {
-    let document = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map(|span| line_at(text, span.start));
-        (line, Problem::Syntax(error.message().to_owned()))
-    })?;
-    let mut root = Section::root(text, document.get_ref());
-    if let Some(designs) = hand::designs_in(document.get_ref()) {
+    let tables = document::tables(text)?;
+    let mut root = Section::root(text, tables.get_ref());
+    if let Some(designs) = hand::designs_in(tables.get_ref()) {
         return Err((None, Problem::Hand { designs }));
     }
-    let name = name(&mut root)?;
+    let name = root.name(64, document::NAME)?;
     let membrane = membrane(root.needed_sub(
         "membrane",
         "radial_semi_axis_mm, axial_semi_axis_mm, thickness_mm",
@@ -95,19 +92,6 @@ pub(super) fn parse(text: &str) -> Result<DesignFile, KeyFault> {
         actuator,
         calibration: calibration.unwrap_or_default(),
     })
-}
-
-fn name(root: &mut Section<'_>) -> Result<String, KeyFault> {
-    const ALLOWED: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
-    let name = root.needed_text("name", ALLOWED)?;
-    let plain = name
-        .chars()
-        .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
-    if plain && (1..=64).contains(&name.len()) {
-        Ok(name.to_owned())
-    } else {
-        Err(root.refuse("name", ALLOWED))
-    }
 }
 
 fn membrane(mut section: Section<'_>) -> Result<MembraneSection, KeyFault> {

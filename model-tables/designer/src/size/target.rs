@@ -1,11 +1,10 @@
 //! The target file of a sizing (TOML).
 
 use model_tables::design_file::bounds::Bounds;
-use model_tables::design_file::section::{KeyFault, Section, line_at};
-use model_tables::design_file::{DesignFileError, Problem};
+use model_tables::design_file::section::{KeyFault, Section};
+use model_tables::design_file::{DesignFileError, document};
 use model_tables::material::preset::{PRESETS, Preset};
 use std::path::Path;
-use toml::de::DeTable;
 
 /// What is wanted, and within which bounds. SI units where a name does not say otherwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,13 +39,7 @@ impl Target {
     /// # Errors
     /// [`DesignFileError`] with the file's name, and the line where there is one.
     pub fn read(path: &Path) -> Result<Self, DesignFileError> {
-        let file = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| DesignFileError {
-            file: file.clone(),
-            line: None,
-            problem: Problem::Unreadable(error.to_string()),
-        })?;
-        Self::parse(&text, &file)
+        Self::parse(&document::read(path)?, &path.display().to_string())
     }
 
     /// Checks the text of a target file; `file` is the name that errors give it.
@@ -54,11 +47,7 @@ impl Target {
     /// # Errors
     /// [`DesignFileError`] for the first thing that is wrong.
     pub fn parse(text: &str, file: &str) -> Result<Self, DesignFileError> {
-        parse(text).map_err(|(line, problem)| DesignFileError {
-            file: file.to_owned(),
-            line,
-            problem,
-        })
+        parse(text).map_err(|fault| DesignFileError::at(file, fault))
     }
 
     /// The deepest indentation, metres.
@@ -67,19 +56,25 @@ impl Target {
     }
 }
 
+/// The materials that a key names, each of [`PRESETS`].
+pub(super) fn presets(listed: &mut Section<'_>, key: &'static str) -> Result<Vec<&'static Preset>, KeyFault> {
+    let names: Vec<String> = PRESETS
+        .iter()
+        .map(|preset| format!("{:?}", preset.name))
+        .collect();
+    let allowed = format!("names in brackets, each of {}", names.join(", "));
+    listed
+        .texts(key, &allowed)?
+        .into_iter()
+        .map(|name| Preset::named(name).ok_or_else(|| listed.refuse(key, &allowed)))
+        .collect()
+}
+
 fn parse(text: &str) -> Result<Target, KeyFault> {
     const LENGTH: Bounds = Bounds::above(0.0, 100.0, "mm");
-    const NAME: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
-    let document = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map(|span| line_at(text, span.start));
-        (line, Problem::Syntax(error.message().to_owned()))
-    })?;
-    let mut root = Section::root(text, document.get_ref());
-    let name = root.needed_text("name", NAME)?;
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if !(1..=64).contains(&name.len()) || !name.chars().all(plain) {
-        return Err(root.refuse("name", NAME));
-    }
+    let tables = document::tables(text)?;
+    let mut root = Section::root(text, tables.get_ref());
+    let name = root.name(64, document::NAME)?;
     let mut wanted = root.needed_sub("target", "indentation_mm, force_n")?;
     let indentations = wanted.increasing("indentation_mm", LENGTH, [1, 100])?;
     let forces = wanted.increasing("force_n", Bounds::above(0.0, 1e4, "N"), [1, 100])?;
@@ -99,16 +94,7 @@ fn parse(text: &str) -> Result<Target, KeyFault> {
     let stretch = bounds.span("pole_stretch", Bounds::above(1.0, 5.0, "(no stretch is 1)"))?;
     bounds.finish()?;
     let mut listed = root.needed_sub("materials", "presets")?;
-    let names: Vec<String> = PRESETS
-        .iter()
-        .map(|preset| format!("{:?}", preset.name))
-        .collect();
-    let allowed = format!("names in brackets, each of {}", names.join(", "));
-    let materials = listed
-        .texts("presets", &allowed)?
-        .into_iter()
-        .map(|name| Preset::named(name).ok_or_else(|| listed.refuse("presets", &allowed)))
-        .collect::<Result<_, KeyFault>>()?;
+    let materials = presets(&mut listed, "presets")?;
     listed.finish()?;
     let mut transducer = root.needed_sub("transducer", "range_kpa")?;
     let range_kpa = transducer.needed_pair("range_kpa", Bounds::within(-101.325, 10_000.0, "kPa"))?;
@@ -135,7 +121,7 @@ fn parse(text: &str) -> Result<Target, KeyFault> {
     };
     root.finish()?;
     Ok(Target {
-        name: name.to_owned(),
+        name,
         indentations: indentations.iter().map(|depth| 1e-3 * depth).collect(),
         forces,
         radial,

@@ -1,7 +1,7 @@
 //! The file of a sweep and its design as one text, for a machine that has neither file.
 
 use super::space::Space;
-use model_tables::design_file::{DesignFileError, Problem};
+use model_tables::design_file::{DesignFileError, Problem, document};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Table};
 
@@ -11,16 +11,11 @@ use toml_edit::{DocumentMut, Item, Table};
 /// [`DesignFileError`] for the first thing that is wrong with either file.
 pub fn whole(path: &Path) -> Result<String, DesignFileError> {
     let space = Space::read(path)?;
-    let refuse = |problem| DesignFileError {
-        file: path.display().to_string(),
-        line: None,
-        problem,
-    };
-    let text =
-        std::fs::read_to_string(path).map_err(|error| refuse(Problem::Unreadable(error.to_string())))?;
-    let mut document: DocumentMut = text
-        .parse()
-        .map_err(|error: toml_edit::TomlError| refuse(Problem::Syntax(error.message().to_owned())))?;
+    let text = document::read(path)?;
+    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
+        let problem = Problem::Syntax(error.message().to_owned());
+        DesignFileError::at(&path.display().to_string(), (None, problem))
+    })?;
     if document.remove("design").is_some() {
         let mut base = Table::new();
         for (key, item) in space.base() {

@@ -4,13 +4,12 @@ use super::sample::{SamplePoints, Sampling};
 use super::sobol::MAX_DIMENSIONS;
 use super::vary::{Variable, missing, refuse, variables};
 use model_tables::design_file::bounds::Bounds;
-use model_tables::design_file::section::{KeyFault, Section, line_at};
-use model_tables::design_file::{DesignFile, DesignFileError, Problem};
+use model_tables::design_file::section::{KeyFault, Section};
+use model_tables::design_file::{DesignFile, DesignFileError, Problem, document};
 use output::files;
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 use std::path::Path;
-use toml::de::DeTable;
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 
 /// Designs of a part where a file does not say.
@@ -61,8 +60,8 @@ impl Space {
     pub fn read(path: &Path) -> Result<Self, DesignFileError> {
         let file = path.display().to_string();
         files::keep(path);
-        let text = read(path)?;
-        parse(&text, path).map_err(|(line, problem)| DesignFileError { file, line, problem })
+        let text = document::read(path)?;
+        parse(&text, path).map_err(|fault| DesignFileError::at(&file, fault))
     }
 
     /// Checks the text of a sweep's file that has its design in `[base]`; `name` is what errors call it.
@@ -70,11 +69,7 @@ impl Space {
     /// # Errors
     /// [`DesignFileError`] for the first thing that is wrong.
     pub fn parse(text: &str, name: &str) -> Result<Self, DesignFileError> {
-        parse(text, Path::new(name)).map_err(|(line, problem)| DesignFileError {
-            file: name.to_owned(),
-            line,
-            problem,
-        })
+        parse(text, Path::new(name)).map_err(|fault| DesignFileError::at(name, fault))
     }
 
     /// The values of design `number`, in the order of [`Space::variables`].
@@ -179,14 +174,6 @@ fn set(table: &mut dyn TableLike, key: &str, value: Value) {
     }
 }
 
-fn read(path: &Path) -> Result<String, DesignFileError> {
-    std::fs::read_to_string(path).map_err(|error| DesignFileError {
-        file: path.display().to_string(),
-        line: None,
-        problem: Problem::Unreadable(error.to_string()),
-    })
-}
-
 fn whole(section: &mut Section<'_>, key: &'static str, bounds: Bounds) -> Result<Option<u64>, KeyFault> {
     match section.number(key, bounds)? {
         Some(number) if libm::fmod(number, 1.0) > 0.0 => Err(section.refuse(key, "a whole number")),
@@ -196,10 +183,7 @@ fn whole(section: &mut Section<'_>, key: &'static str, bounds: Bounds) -> Result
 
 fn parse(text: &str, path: &Path) -> Result<Space, KeyFault> {
     const METHODS: &str = "\"grid\", \"latin-hypercube\", \"sobol\" or \"random\"";
-    let parsed = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map(|span| line_at(text, span.start));
-        (line, Problem::Syntax(error.message().to_owned()))
-    })?;
+    let parsed = document::tables(text)?;
     let document: DocumentMut = text
         .parse()
         .map_err(|error: toml_edit::TomlError| (None, Problem::Syntax(error.message().to_owned())))?;
@@ -334,7 +318,7 @@ fn base(root: &mut Section<'_>, document: &DocumentMut, path: &Path) -> Result<D
         (Some(name), false) => {
             let file = path.parent().unwrap_or(Path::new("")).join(name);
             files::keep(&file);
-            let text = read(&file)
+            let text = document::read(&file)
                 .or_else(|error| refuse("design", format!("{name:?}"), format!("readable: {error}")))?;
             text.parse().or_else(|error: toml_edit::TomlError| {
                 refuse(

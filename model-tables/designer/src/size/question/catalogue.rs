@@ -2,13 +2,12 @@
 
 use model_tables::constants::{Quantity, period};
 use model_tables::design_file::bounds::Bounds;
-use model_tables::design_file::section::{KeyFault, Section, line_at};
+use model_tables::design_file::section::{KeyFault, Section};
 use model_tables::design_file::{
-    DesignFile, DesignFileError, Problem, TransducerKindSection, TransducerSection,
+    DesignFile, DesignFileError, Problem, TransducerKindSection, TransducerSection, document,
 };
 use std::fmt::Write as _;
 use std::path::Path;
-use toml::de::DeTable;
 
 /// The shipped catalogue.
 pub const SHIPPED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../transducers.toml"));
@@ -75,13 +74,7 @@ impl CataloguePart {
 /// # Errors
 /// [`DesignFileError`] with the file's name, and the line where there is one.
 pub fn read(path: &Path) -> Result<Vec<CataloguePart>, DesignFileError> {
-    let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| DesignFileError {
-        file: file.clone(),
-        line: None,
-        problem: Problem::Unreadable(error.to_string()),
-    })?;
-    parse(&text, &file)
+    parse(&document::read(path)?, &path.display().to_string())
 }
 
 /// Checks the text of a catalogue; `file` is the name that errors give it.
@@ -89,19 +82,12 @@ pub fn read(path: &Path) -> Result<Vec<CataloguePart>, DesignFileError> {
 /// # Errors
 /// [`DesignFileError`] for the first thing that is wrong.
 pub fn parse(text: &str, file: &str) -> Result<Vec<CataloguePart>, DesignFileError> {
-    parts(text).map_err(|(line, problem)| DesignFileError {
-        file: file.to_owned(),
-        line,
-        problem,
-    })
+    parts(text).map_err(|fault| DesignFileError::at(file, fault))
 }
 
 fn parts(text: &str) -> Result<Vec<CataloguePart>, KeyFault> {
-    let document = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map(|span| line_at(text, span.start));
-        (line, Problem::Syntax(error.message().to_owned()))
-    })?;
-    let mut root = Section::root(text, document.get_ref());
+    let tables = document::tables(text)?;
+    let mut root = Section::root(text, tables.get_ref());
     let listed = root.needed_sub("part", "a table for each transducer, as [part.NAME]")?;
     root.finish()?;
     listed

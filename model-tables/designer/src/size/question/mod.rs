@@ -8,14 +8,14 @@ pub mod catalogue;
 pub mod judge;
 pub mod presses;
 
+use crate::size::target::presets;
 use catalogue::{CataloguePart, MEDIA};
 use model_tables::design_file::bounds::Bounds;
-use model_tables::design_file::section::{KeyFault, Section, line_at};
-use model_tables::design_file::{DesignFileError, Problem};
+use model_tables::design_file::section::{KeyFault, Section};
+use model_tables::design_file::{DesignFileError, document};
 use model_tables::material::preset::{PRESETS, Preset};
 use model_tables::object::{Friction, Object, Shape};
 use std::path::Path;
-use toml::de::DeTable;
 
 /// Bounds of forces.
 pub const FORCE: Bounds = Bounds::above(0.0, 1e4, "N");
@@ -80,14 +80,7 @@ impl SizingQuestion {
     /// [`DesignFileError`] with the file's name, and the line where there is one.
     pub fn read(path: &Path) -> Result<Option<Self>, DesignFileError> {
         let file = path.display().to_string();
-        let fault = |(line, problem)| DesignFileError {
-            file: file.clone(),
-            line,
-            problem,
-        };
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| fault((None, Problem::Unreadable(error.to_string()))))?;
-        parse(&text).map_err(fault)
+        parse(&document::read(path)?).map_err(|fault| DesignFileError::at(&file, fault))
     }
 
     /// The object in SI units.
@@ -115,13 +108,9 @@ impl SizingQuestion {
 }
 
 fn parse(text: &str) -> Result<Option<SizingQuestion>, KeyFault> {
-    const NAME: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
     const FILLING: &str = "\"air\", \"oil\" or \"water\"";
-    let document = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map(|span| line_at(text, span.start));
-        (line, Problem::Syntax(error.message().to_owned()))
-    })?;
-    let mut root = Section::root(text, document.get_ref());
+    let tables = document::tables(text)?;
+    let mut root = Section::root(text, tables.get_ref());
     let Some(mut wanted) = root.sub("wanted")? else {
         return Ok(None);
     };
@@ -144,7 +133,7 @@ fn parse(text: &str) -> Result<Option<SizingQuestion>, KeyFault> {
         question.filling = Some(filling.to_owned());
     }
     wanted.finish()?;
-    name_of(&mut root, NAME)?.clone_into(&mut question.name);
+    question.name = root.name(64, document::NAME)?;
     if let Some(mut object) = root.sub("object")? {
         question.radius_mm = Some(object.needed_number("radius_mm", RADIUS)?);
         object.finish()?;
@@ -169,16 +158,7 @@ fn parse(text: &str) -> Result<Option<SizingQuestion>, KeyFault> {
         making.finish()?;
     }
     if let Some(mut listed) = root.sub("materials")? {
-        let names: Vec<String> = PRESETS
-            .iter()
-            .map(|preset| format!("{:?}", preset.name))
-            .collect();
-        let allowed = format!("names in brackets, each of {}", names.join(", "));
-        question.materials = listed
-            .texts("presets", &allowed)?
-            .into_iter()
-            .map(|name| Preset::named(name).ok_or_else(|| listed.refuse("presets", &allowed)))
-            .collect::<Result<_, KeyFault>>()?;
+        question.materials = presets(&mut listed, "presets")?;
         listed.finish()?;
     }
     if let Some(mut listed) = root.sub("transducers")? {
@@ -191,15 +171,6 @@ fn parse(text: &str) -> Result<Option<SizingQuestion>, KeyFault> {
     }
     root.finish()?;
     Ok(Some(question))
-}
-
-fn name_of<'a>(root: &mut Section<'a>, allowed: &str) -> Result<&'a str, KeyFault> {
-    let name = root.needed_text("name", allowed)?;
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if !(1..=64).contains(&name.len()) || !name.chars().all(plain) {
-        return Err(root.refuse("name", allowed));
-    }
-    Ok(name)
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! The target file of a haptic loop (TOML), with `[transmission]` where that of a fingertip has `[target]`.
 
 use super::Circuit;
+use crate::size::target::presets;
 use model_tables::design_file::bounds::Bounds;
-use model_tables::design_file::section::{KeyFault, Section, line_at};
-use model_tables::design_file::{DesignFileError, Problem};
-use model_tables::material::preset::{PRESETS, Preset};
+use model_tables::design_file::section::{KeyFault, Section};
+use model_tables::design_file::{DesignFileError, document};
+use model_tables::material::preset::Preset;
 use model_tables::solid::disc::FarSide;
 use toml::de::DeTable;
 
@@ -63,11 +64,7 @@ impl WantedLoop {
     /// # Errors
     /// [`DesignFileError`] for the first thing that is wrong.
     pub fn parse(text: &str, file: &str) -> Result<Self, DesignFileError> {
-        parse(text).map_err(|(line, problem)| DesignFileError {
-            file: file.to_owned(),
-            line,
-            problem,
-        })
+        parse(text).map_err(|fault| DesignFileError::at(file, fault))
     }
 
     /// Whether a dimension has two bounds.
@@ -94,34 +91,13 @@ impl WantedLoop {
     }
 }
 
-fn materials(listed: &mut Section<'_>, key: &'static str) -> Result<Vec<&'static Preset>, KeyFault> {
-    let names: Vec<String> = PRESETS
-        .iter()
-        .map(|preset| format!("{:?}", preset.name))
-        .collect();
-    let allowed = format!("names in brackets, each of {}", names.join(", "));
-    listed
-        .texts(key, &allowed)?
-        .into_iter()
-        .map(|name| Preset::named(name).ok_or_else(|| listed.refuse(key, &allowed)))
-        .collect()
-}
-
 fn parse(text: &str) -> Result<WantedLoop, KeyFault> {
     const LENGTH: Bounds = Bounds::above(0.0, 100.0, "mm");
-    const NAME: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
     const COMPLIANCE: Bounds = Bounds::within(0.0, 1e6, "mm^3/kPa");
     const VOLUME: Bounds = Bounds::within(0.0, 1e6, "mm^3");
-    let document = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map(|span| line_at(text, span.start));
-        (line, Problem::Syntax(error.message().to_owned()))
-    })?;
-    let mut root = Section::root(text, document.get_ref());
-    let name = root.needed_text("name", NAME)?;
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if !(1..=64).contains(&name.len()) || !name.chars().all(plain) {
-        return Err(root.refuse("name", NAME));
-    }
+    let tables = document::tables(text)?;
+    let mut root = Section::root(text, tables.get_ref());
+    let name = root.name(64, document::NAME)?;
     let mut wanted = root.needed_sub("transmission", "feedback_over_touch, indentation_mm")?;
     let ratio = wanted.needed_number("feedback_over_touch", Bounds::above(0.0, 100.0, "N/N"))?;
     let indentation = 1e-3 * wanted.needed_number("indentation_mm", LENGTH)?;
@@ -142,9 +118,9 @@ fn parse(text: &str) -> Result<WantedLoop, KeyFault> {
     }
     bounded.finish()?;
     let mut listed = root.needed_sub("materials", "presets")?;
-    let tips = materials(&mut listed, "presets")?;
+    let tips = presets(&mut listed, "presets")?;
     let actuators = if listed.has("actuator_presets") {
-        materials(&mut listed, "actuator_presets")?
+        presets(&mut listed, "actuator_presets")?
     } else {
         Vec::new()
     };
@@ -177,7 +153,7 @@ fn parse(text: &str) -> Result<WantedLoop, KeyFault> {
     }
     root.finish()?;
     Ok(WantedLoop {
-        name: name.to_owned(),
+        name,
         ratio,
         indentation,
         far_side,
