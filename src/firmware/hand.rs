@@ -1,34 +1,22 @@
 //! The tasks of a hand's firmware: [`signal`] makes the reports of all tips, [`send`] puts them on the line, [`listen`] takes
 //! commands from it. The first one feeds the watchdog, while all report.
 
-use crate::firmware::queues::{
-    FRAMES, IDLE, LISTEN, OUTBOX, REFUSED, REMEMBER, REQUESTS, SEND, SENT, TASK_MONITOR, Waiting, alive,
-    refuse,
-};
+use crate::firmware::line::{listen, send};
+use crate::firmware::queues::{self, REFUSED, REMEMBER, REQUESTS, SEND, SENT, Waiting, alive, refuse};
 use crate::firmware::retained;
-use core::cell::RefCell;
+use crate::firmware::watch::{self, NOTES, WATCHDOG_PERIOD, missing, version};
 use core::sync::atomic::Ordering;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
-use embassy_sync::signal::Signal;
-use embassy_time::{Duration, Ticker, with_timeout};
-use fingertip::board::{self, Board, Clock, Line, Port, SerialRx, Watchdog};
+use embassy_time::{Duration, Ticker};
+use fingertip::board::{self, Board, Clock, Port, Watchdog};
 use fingertip::device::hand::Hand;
 use fingertip::device::logic::Beginning;
 use fingertip::device::task_monitor::{CrashRecord, GOOD_RUN, Stage};
 use fingertip::image::{NAME, NAMES, PERIOD, RANKS, SCANS, TIPS, TRANSDUCERS, Tips};
-use fingertip::link::outbox::Outbox;
-use fingertip::link::tips::read_request;
-use fingertip::link::wire::{Deframer, Encoded};
 use fingertip::signal::report::Report;
-use fingertip::status::{Fault, LastFault, Status, Stored};
+use fingertip::status::{Fault, Status, Stored};
 use fingertip::transducer::scan::Scan;
-
-/// From one look at the tasks, and one feed of the watchdog, to the next, microseconds.
-const LOOK: u64 = 16_000;
-
-/// From one note for the next run to the next, microseconds.
-const NOTES: u64 = 1_000_000;
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
@@ -38,7 +26,6 @@ async fn main(spawner: Spawner) {
     retained::write(&start.crash_record);
     let board = Board::take(start.give_up);
     retained::enter(Stage::Transducer);
-    let number = |text: &str| text.parse().unwrap_or(u8::MAX);
     let beginning = Beginning {
         reset_cause,
         start,
@@ -46,11 +33,7 @@ async fn main(spawner: Spawner) {
         stored_sequence: 0,
         calibration: None,
         clock_failed: !board.crystal,
-        firmware: [
-            number(env!("CARGO_PKG_VERSION_MAJOR")),
-            number(env!("CARGO_PKG_VERSION_MINOR")),
-            number(env!("CARGO_PKG_VERSION_PATCH")),
-        ],
+        firmware: version(),
     };
     defmt::info!(
         "fingertip {=str}, hand {=str} ({=u64:016x}), reset by {=str}",
@@ -60,10 +43,7 @@ async fn main(spawner: Spawner) {
         reset_cause.word()
     );
     let clock = board.clock;
-    let waiting = OUTBOX.init_with(|| Waiting {
-        frames: RefCell::new(Outbox::new(FRAMES.take().each_mut())),
-        more: Signal::new(),
-    });
+    let waiting = queues::outbox();
     spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
     spawner.spawn(listen(board.serial_rx, clock).expect("spawned once"));
     signal(clock, board.port, waiting, board.watchdog, &beginning).await
@@ -88,7 +68,7 @@ async fn signal(
     let mut log = Log::default();
     let mut pace = Ticker::every(Duration::from_micros(u64::from(PERIOD)));
     let mut scan = port.map(|port| Scan::<_, TIPS, RANKS, SCANS>::new(TRANSDUCERS, port));
-    let (mut last_sample, mut next_look, mut next_note) = (None, 0, 0);
+    let (mut last_sample, mut next_feed, mut next_note) = (None, 0, 0);
     loop {
         let samples = if let Some(scan) = &mut scan {
             scan.next().await
@@ -97,13 +77,13 @@ async fn signal(
             [Err(Fault::ResetLoop); TIPS]
         };
         let now = clock.now();
-        if now.0 >= next_look && waiting.frames.borrow().is_empty() {
+        if now.0 >= next_feed && waiting.frames.borrow().is_empty() {
             // All that was put there before was taken.
             alive(SEND, clock);
         }
         if let Some(sample) = samples.iter().find_map(|sample| sample.ok()) {
             let measured = now.0.saturating_sub(u64::from(sample.age));
-            let lost = missing(last_sample.replace(measured), measured);
+            let lost = missing(last_sample.replace(measured), measured, PERIOD);
             for tip in tips.each() {
                 let counters = tip.counters();
                 counters.samples_lost = counters.samples_lost.saturating_add(lost);
@@ -116,10 +96,10 @@ async fn signal(
         {
             refuse();
         }
-        if now.0 < next_look {
+        if now.0 < next_feed {
             continue;
         }
-        next_look = now.0.saturating_add(LOOK);
+        next_feed = now.0.saturating_add(WATCHDOG_PERIOD);
         // Nothing is stored.
         alive(REMEMBER, clock);
         for tip in tips.each() {
@@ -127,66 +107,12 @@ async fn signal(
             counters.frames_dropped = waiting.frames.borrow().dropped();
             counters.commands_refused = REFUSED.load(Ordering::Relaxed);
         }
-        match TASK_MONITOR.lock(|task_monitor| task_monitor.borrow().late(now)) {
-            None => watchdog.pet(),
-            Some(task) => retained::record_fault(LastFault::Late, task as u32),
-        }
+        watch::feed(&mut watchdog, now);
         if now.0 >= next_note {
             next_note = now.0.saturating_add(NOTES);
             crash_record.good = now.0 >= GOOD_RUN;
             retained::write(&crash_record);
         }
-    }
-}
-
-/// Samples missing between the last one and the one measured at this time.
-fn missing(last: Option<u64>, measured: u64) -> u32 {
-    last.map_or(0, |last| {
-        let passed = u32::try_from(measured.saturating_sub(last)).unwrap_or(u32::MAX);
-        // Rounded, because the time of a block is known to a conversion or two.
-        (passed.saturating_add(PERIOD / 2) / PERIOD).saturating_sub(1)
-    })
-}
-
-/// Sends frames. Period: as they come. Deadline: a period on average (a report takes 0.5 ms on the line); when late,
-/// the queue drops its oldest, and the signal task is none the later for it.
-#[embassy_executor::task]
-async fn send(mut line: Line, waiting: &'static Waiting, mut frame: &'static mut Encoded) {
-    loop {
-        waiting.more.wait().await;
-        while waiting.frames.borrow_mut().take(&mut frame) {
-            // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
-            let _ = line.write(frame.as_slice()).await;
-        }
-    }
-}
-
-/// Takes commands. Period: as they come. Deadline: the ring of bytes is full, 2.8 ms of a line that never pauses; when
-/// late, bytes are lost, which is counted. Work is bounded by the rate of the line, and other tasks run in between.
-#[embassy_executor::task]
-async fn listen(mut serial_rx: SerialRx, clock: Clock) {
-    let mut deframer = Deframer::default();
-    let mut bytes = [0; 32];
-    loop {
-        alive(LISTEN, clock);
-        let received = match with_timeout(IDLE, serial_rx.read(&mut bytes)).await {
-            Ok(Ok(length)) => bytes.get(..length).unwrap_or(&[]),
-            Ok(Err(_lost)) => {
-                refuse();
-                &[]
-            }
-            Err(_idle) => continue,
-        };
-        for &byte in received {
-            let Some(body) = deframer.push(byte) else {
-                continue;
-            };
-            let taken = body.and_then(|body| read_request(&body));
-            if !taken.is_ok_and(|asked| REQUESTS.try_send(asked).is_ok()) {
-                refuse();
-            }
-        }
-        embassy_futures::yield_now().await;
     }
 }
 

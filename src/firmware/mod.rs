@@ -3,6 +3,7 @@
 
 #[cfg(hand)]
 mod hand;
+mod line;
 mod queues;
 mod retained;
 #[cfg(not(hand))]
@@ -11,3 +12,4 @@ mod tasks;
 mod tip;
 #[cfg(not(hand))]
 mod transducer;
+mod watch;

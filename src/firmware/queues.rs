@@ -44,10 +44,17 @@ pub(super) struct Waiting {
 }
 
 /// The frames themselves, and the one on the line.
-pub(super) static FRAMES: ConstStaticCell<[Encoded; WAITING]> =
-    ConstStaticCell::new([Encoded::NOTHING; WAITING]);
+static FRAMES: ConstStaticCell<[Encoded; WAITING]> = ConstStaticCell::new([Encoded::NOTHING; WAITING]);
 pub(super) static SENT: ConstStaticCell<Encoded> = ConstStaticCell::new(Encoded::NOTHING);
-pub(super) static OUTBOX: StaticCell<Waiting> = StaticCell::new();
+static OUTBOX: StaticCell<Waiting> = StaticCell::new();
+
+/// No frames waiting yet; taken once.
+pub(super) fn outbox() -> &'static Waiting {
+    OUTBOX.init_with(|| Waiting {
+        frames: RefCell::new(Outbox::new(FRAMES.take().each_mut())),
+        more: Signal::new(),
+    })
+}
 
 impl Waiting {
     #[cfg(not(hand))]

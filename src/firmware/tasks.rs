@@ -1,35 +1,29 @@
 //! The tasks of the firmware: [`signal`] makes reports, [`send`] puts them on the line, [`listen`] takes commands from
 //! it, [`remember`] stores the calibration. The first one feeds the watchdog, while all four report.
 
+use crate::firmware::line::{listen, send};
+use crate::firmware::queues::{self, REFUSED, REQUESTS, SEND, SENT, STORED, TO_STORE, Waiting, alive};
 #[cfg(not(feature = "load-tip"))]
-use crate::firmware::queues::REMEMBER;
-use crate::firmware::queues::{
-    FRAMES, IDLE, LISTEN, OUTBOX, REFUSED, REQUESTS, SEND, SENT, STORED, TASK_MONITOR, TO_STORE, Waiting,
-    alive, refuse,
-};
+use crate::firmware::queues::{IDLE, REMEMBER};
 use crate::firmware::retained;
 #[cfg(feature = "load-tip")]
 use crate::firmware::tip;
 use crate::firmware::transducer::{self as chosen, SampleTimer};
-use core::cell::RefCell;
+use crate::firmware::watch::{self, NOTES, WATCHDOG_PERIOD, missing, version};
 use core::sync::atomic::Ordering;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
-use embassy_sync::signal::Signal;
-use embassy_time::{Delay, with_timeout};
-use fingertip::board::{self, Board, Clock, Line, SLOT, SerialRx, Watchdog};
+use embassy_time::Delay;
+#[cfg(not(feature = "load-tip"))]
+use embassy_time::with_timeout;
+use fingertip::board::{self, Board, Clock, SLOT, Watchdog};
 use fingertip::device::logic::{Beginning, Device};
 use fingertip::device::task_monitor::{CrashRecord, GOOD_RUN, Stage};
+use fingertip::image::ImageDesign;
 use fingertip::image::generated::NAME;
-use fingertip::image::{self, ImageDesign};
-use fingertip::link::command;
-#[cfg(feature = "load-tip")]
-use fingertip::link::load;
-use fingertip::link::outbox::Outbox;
-use fingertip::link::wire::{Deframer, Encoded};
 use fingertip::signal::design::Design;
 use fingertip::signal::report::Report;
-use fingertip::status::{Fault, LastFault, Status, Stored};
+use fingertip::status::{Fault, Status, Stored};
 use fingertip::storage::store::{Identity, Store};
 use fingertip::transducer::driver::Driver;
 use fingertip::transducer::supervisor::TransducerSupervisor;
@@ -43,12 +37,6 @@ const LOGGED: u32 = 250;
 
 /// From one report to the next, microseconds.
 const PERIOD: u32 = ImageDesign::PARAMETERS.period;
-
-/// From one look at the tasks, and one meal of the watchdog, to the next, microseconds.
-const WATCHDOG_PERIOD: u64 = 16_000;
-
-/// From one note of the zero for the next run to the next, microseconds.
-const NOTES: u64 = 1_000_000;
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
@@ -73,12 +61,7 @@ async fn main(spawner: Spawner) {
     let constants = ImageDesign::CONSTANTS;
     #[cfg(feature = "load-tip")]
     let constants = design.parameters().constants;
-    let number = |text: &str| text.parse().unwrap_or(u8::MAX);
-    let firmware = [
-        number(env!("CARGO_PKG_VERSION_MAJOR")),
-        number(env!("CARGO_PKG_VERSION_MINOR")),
-        number(env!("CARGO_PKG_VERSION_PATCH")),
-    ];
+    let firmware = version();
     let identity = Identity {
         design_hash: constants.hash,
         table_version: constants.table_version,
@@ -113,10 +96,7 @@ async fn main(spawner: Spawner) {
         reset_cause.word()
     );
     let clock = board.clock;
-    let waiting = OUTBOX.init_with(|| Waiting {
-        frames: RefCell::new(Outbox::new(FRAMES.take().each_mut())),
-        more: Signal::new(),
-    });
+    let waiting = queues::outbox();
     spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
     spawner.spawn(listen(board.serial_rx, clock).expect("spawned once"));
     #[cfg(not(feature = "load-tip"))]
@@ -161,7 +141,7 @@ async fn signal(
         }
         if let Ok(sample) = sample {
             let measured = now.0.saturating_sub(u64::from(sample.age));
-            let lost = missing(last_sample.replace(measured), measured);
+            let lost = missing(last_sample.replace(measured), measured, PERIOD);
             device.counters.samples_lost = device.counters.samples_lost.saturating_add(lost);
         }
         let report = device.step(now, sample, |message| waiting.put(message));
@@ -181,79 +161,13 @@ async fn signal(
         }
         device.counters.frames_dropped = waiting.frames.borrow().dropped();
         device.counters.commands_refused = REFUSED.load(Ordering::Relaxed);
-        match TASK_MONITOR.lock(|task_monitor| task_monitor.borrow().late(now)) {
-            None => watchdog.pet(),
-            Some(task) => retained::record_fault(LastFault::Late, task as u32),
-        }
+        watch::feed(&mut watchdog, now);
         if now.0 >= next_note {
             next_note = now.0.saturating_add(NOTES);
             crash_record.good = now.0 >= GOOD_RUN;
             crash_record.zero = device.zero();
             retained::write(&crash_record);
         }
-    }
-}
-
-/// Samples missing between the last one and the one measured at this time.
-fn missing(last: Option<u64>, measured: u64) -> u32 {
-    last.map_or(0, |last| {
-        let passed = u32::try_from(measured.saturating_sub(last)).unwrap_or(u32::MAX);
-        // Rounded, because the time of a block is known to a conversion or two.
-        (passed.saturating_add(PERIOD / 2) / PERIOD).saturating_sub(1)
-    })
-}
-
-/// Sends frames. Period: as they come. Deadline: a period on average (a report takes 0.5 ms on the line); when late,
-/// the queue drops its oldest, and the signal task is none the later for it.
-#[embassy_executor::task]
-async fn send(mut line: Line, waiting: &'static Waiting, mut frame: &'static mut Encoded) {
-    loop {
-        waiting.more.wait().await;
-        while waiting.frames.borrow_mut().take(&mut frame) {
-            // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
-            let _ = line.write(frame.as_slice()).await;
-        }
-    }
-}
-
-/// A loaded tip may have an `[object]` where the image's design has none.
-const OBJECT: bool = image::HAS_OBJECT || cfg!(feature = "load-tip");
-
-/// Takes commands. Period: as they come. Deadline: the ring of bytes is full, 2.8 ms of a line that never pauses; when
-/// late, bytes are lost, which is counted. Work is bounded by the rate of the line, and other tasks run in between.
-#[embassy_executor::task]
-async fn listen(mut serial_rx: SerialRx, clock: Clock) {
-    let mut deframer = Deframer::default();
-    let mut bytes = [0; 32];
-    loop {
-        alive(LISTEN, clock);
-        let heard = match with_timeout(IDLE, serial_rx.read(&mut bytes)).await {
-            Ok(Ok(length)) => bytes.get(..length).unwrap_or(&[]),
-            Ok(Err(_lost)) => {
-                refuse();
-                &[]
-            }
-            Err(_idle) => continue,
-        };
-        for &byte in heard {
-            let Some(body) = deframer.push(byte) else {
-                continue;
-            };
-            #[cfg(feature = "load-tip")]
-            if let Ok(body) = &body
-                && load::is_load(body)
-            {
-                if !load::read_body(body).is_ok_and(|request| tip::LOADS.try_send(request).is_ok()) {
-                    refuse();
-                }
-                continue;
-            }
-            let taken = body.and_then(|body| command::read_known_body::<OBJECT>(&body));
-            if !taken.is_ok_and(|request| REQUESTS.try_send(request).is_ok()) {
-                refuse();
-            }
-        }
-        embassy_futures::yield_now().await;
     }
 }
 

@@ -1,0 +1,40 @@
+//! What the signal task watches beside its samples: those that are missing, tasks that are late, and the watchdog.
+
+use crate::firmware::queues::TASK_MONITOR;
+use crate::firmware::retained;
+use fingertip::board::Watchdog;
+use fingertip::status::LastFault;
+use fingertip::units::Microseconds;
+
+/// From one look at the tasks, and one feed of the watchdog, to the next, microseconds.
+pub(super) const WATCHDOG_PERIOD: u64 = 16_000;
+
+/// From one note for the next run to the next, microseconds.
+pub(super) const NOTES: u64 = 1_000_000;
+
+/// The firmware: major, minor, patch.
+pub(super) fn version() -> [u8; 3] {
+    let number = |text: &str| text.parse().unwrap_or(u8::MAX);
+    [
+        number(env!("CARGO_PKG_VERSION_MAJOR")),
+        number(env!("CARGO_PKG_VERSION_MINOR")),
+        number(env!("CARGO_PKG_VERSION_PATCH")),
+    ]
+}
+
+/// Samples missing between the last one and the one measured at this time, of one each `period`, all in microseconds.
+pub(super) fn missing(last: Option<u64>, measured: u64, period: u32) -> u32 {
+    last.map_or(0, |last| {
+        let passed = u32::try_from(measured.saturating_sub(last)).unwrap_or(u32::MAX);
+        // Rounded, because the time of a block is known to a conversion or two.
+        (passed.saturating_add(period / 2) / period).saturating_sub(1)
+    })
+}
+
+/// Feeds the watchdog while no task is late; leaves the one that is for the next run to report.
+pub(super) fn feed(watchdog: &mut Watchdog, now: Microseconds) {
+    match TASK_MONITOR.lock(|task_monitor| task_monitor.borrow().late(now)) {
+        None => watchdog.pet(),
+        Some(task) => retained::record_fault(LastFault::Late, task as u32),
+    }
+}
