@@ -183,7 +183,7 @@ pub struct Choice {
     pub fingertip: Fingertip,
 }
 
-/// Climbs the ladder for a design whose semi-axes are the outer surface's. Rungs that do not apply, or find no state, are
+/// Climbs the ladder for a design whose semi-axes are the outer surface's. Fidelities that do not apply, or find no state, are
 /// passed over.
 ///
 /// # Errors
