@@ -83,18 +83,18 @@ def encoded(arguments):
     return encode(COMMANDS[kind], int(sequence), payload)
 
 
-def main(arguments):
+def run(arguments, encoded, described, splitter):
+    """Writes the frame of a command, or prints a line for each frame of a source; gives the exit status."""
     try:
         if arguments[:1] == ["--encode"]:
             sys.stdout.buffer.write(encoded(arguments[1:]))
             sys.stdout.buffer.flush()
             return 0
         with opened(arguments[0]) if arguments else sys.stdin.buffer as source:
-            splitter = Splitter()
             while read := source.read(4096):
                 for coded in splitter.feed(read):
                     try:
-                        print(describe(decode(body_of(coded))), flush=True)
+                        print(described(body_of(coded)), flush=True)
                     except FrameError as error:
                         print(f"no frame: {error}", flush=True)
     except BrokenPipeError:
@@ -109,4 +109,4 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(run(sys.argv[1:], encoded, lambda body: describe(decode(body)), Splitter()))

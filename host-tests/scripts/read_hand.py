@@ -6,18 +6,16 @@ its words with read_frames.py beside it.
     stty -F /dev/ttyACM0 921600 raw && python3 read_hand.py /dev/ttyACM0
     python3 read_hand.py --encode 255 rate 1 0a00 > /dev/ttyACM0
 """
-import os
 import struct
 import sys
 
 import read_frames
-from fingertip.errors import TelemetryError
 from fingertip.telemetry.codes import FAULT_WORDS, WARNING_WORDS, Fault, Stored, Touch, Warnings
-from fingertip.telemetry.frames import FrameError, body_of, decode, framed
+from fingertip.telemetry.frames import FrameError, Splitter, body_of, decode, framed
 
 VERSION = 3
 ALL_TIPS = 255
-MOST_TIPS = 12
+MAX_TIPS = 12
 #: Bytes of the longest frame without its zero: more of them in a row are no frame.
 LONGEST = 243
 
@@ -49,7 +47,7 @@ def describe(body):
         raise FrameError("version, kind or length")
     _, kind, sequence, time, dropped = struct.unpack_from("<BBHQH", body)
     head = f"{sequence} {time} us, {dropped} dropped: "
-    if kind == 5 and 1 <= body[14] <= MOST_TIPS and len(body) == 16 + 18 * body[14] and body[15] <= 31:
+    if kind == 5 and 1 <= body[14] <= MAX_TIPS and len(body) == 16 + 18 * body[14] and body[15] <= 31:
         parts = [body[16 + 18 * tip:34 + 18 * tip] for tip in range(body[14])]
         return head + " | ".join(reading(part, tip, body[15]) for tip, part in enumerate(parts))
     if kind == 3 and len(body) == 62:
@@ -71,39 +69,11 @@ def describe(body):
 def encoded(arguments):
     """The frame of a command to a tip, or an error that says what is wrong with the arguments."""
     tip, *rest = arguments or [""]
-    if not tip.isdecimal() or not (int(tip) < MOST_TIPS or int(tip) == ALL_TIPS):
-        raise ValueError(f"`{tip}` is no tip from 0 to {MOST_TIPS - 1}, nor {ALL_TIPS} for all")
+    if not tip.isdecimal() or not (int(tip) < MAX_TIPS or int(tip) == ALL_TIPS):
+        raise ValueError(f"`{tip}` is no tip from 0 to {MAX_TIPS - 1}, nor {ALL_TIPS} for all")
     body = body_of(read_frames.encoded(rest)[:-1])
     return framed(bytes([VERSION]) + body[1:4] + bytes([int(tip)]) + body[4:])
 
 
-def main(arguments):
-    try:
-        if arguments[:1] == ["--encode"]:
-            sys.stdout.buffer.write(encoded(arguments[1:]))
-            sys.stdout.buffer.flush()
-            return 0
-        with read_frames.opened(arguments[0]) if arguments else sys.stdin.buffer as source:
-            waiting = b""
-            while read := source.read(4096):
-                *frames, waiting = (waiting + read).split(b"\0")
-                # Of a stretch without a zero the first bytes are enough to be no frame.
-                waiting = waiting[:LONGEST + 1]
-                for coded in filter(None, frames):
-                    try:
-                        print(describe(body_of(coded)), flush=True)
-                    except FrameError as error:
-                        print(f"no frame: {error}", flush=True)
-    except BrokenPipeError:
-        # Nobody reads on; what Python still holds must not fail a second time.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except KeyboardInterrupt:
-        pass
-    except (OSError, ValueError, TelemetryError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(read_frames.run(sys.argv[1:], encoded, describe, Splitter(LONGEST)))

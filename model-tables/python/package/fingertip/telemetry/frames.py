@@ -237,14 +237,19 @@ _FIELDS = {1: _reading, 2: _fault, 3: _hello, 4: _answer, 7: _tip_data}
 
 
 class Splitter:
-    """Bytes as they come to frames without their zeros; a stretch that has no zero is cut off."""
+    """Bytes as they come to frames without their zeros; a stretch that has no zero is cut off.
 
-    def __init__(self) -> None:
+    Args:
+        longest: bytes of the longest frame without its zero.
+    """
+
+    def __init__(self, longest: int = LONGEST) -> None:
         self._waiting = b""
+        self._longest = longest
 
     def feed(self, read: bytes) -> Iterator[bytes]:
         """The frames that end in these bytes."""
         *ended, self._waiting = (self._waiting + read).split(b"\0")
         # Of a stretch without a zero the first bytes are enough to be no frame.
-        self._waiting = self._waiting[: LONGEST + 1]
+        self._waiting = self._waiting[: self._longest + 1]
         return filter(None, ended)
