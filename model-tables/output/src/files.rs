@@ -165,14 +165,15 @@ fn place(path: &Path) -> Result<(&Path, &str), Refusal> {
 ///
 /// # Errors
 /// [`Refusal`] with the file and the reason; nothing half-written is left.
-pub fn write_all(folder: &Path, contents: &[(&str, Vec<u8>)]) -> Result<(), Refusal> {
+pub fn write_all<N: AsRef<str>>(folder: &Path, contents: &[(N, Vec<u8>)]) -> Result<(), Refusal> {
     for (name, _) in contents {
-        expect_replaceable(&folder.join(name))?;
+        expect_replaceable(&folder.join(name.as_ref()))?;
     }
     fs::create_dir_all(folder).map_err(|error| cannot(folder, &error))?;
     let places: Vec<(PathBuf, PathBuf)> = contents
         .iter()
         .map(|(name, _)| {
+            let name = name.as_ref();
             let temporary = format!(".{name}.{}", std::process::id());
             (folder.join(temporary), folder.join(name))
         })

@@ -58,16 +58,12 @@ pub fn run(arguments: &RobustnessMapArguments) -> Result<CommandAnswer, Refusal>
     let costs = cost::measure(stride)?;
     contents.push(("cost.svg".to_owned(), cost::svg(&costs).into_bytes()));
     contents.push(("cost.csv".to_owned(), cost::csv(&costs).into_bytes()));
-    let files: Vec<(&str, Vec<u8>)> = contents
-        .iter()
-        .map(|(name, content)| (name.as_str(), content.clone()))
-        .collect();
-    files::write_all(&arguments.out, &files)?;
+    files::write_all(&arguments.out, &contents)?;
     Ok(CommandAnswer {
         rows,
         notes: vec![format!(
             "wrote {} files to {}",
-            files.len(),
+            contents.len(),
             arguments.out.display()
         )],
     })

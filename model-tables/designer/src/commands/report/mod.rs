@@ -48,10 +48,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         Vec::new()
     };
     contents.push((name, text.into_bytes()));
-    let contents: Vec<(&str, Vec<u8>)> = contents
-        .iter()
-        .map(|(name, content)| (name.as_str(), content.clone()))
-        .collect();
     files::write_all(&arguments.out, &contents)?;
     let mut rows = Rows::new(COLUMNS);
     for (name, content) in contents.iter().rev() {

@@ -189,10 +189,6 @@ fn of_target(arguments: &Arguments, file: &Path) -> Result<CommandAnswer, Refusa
                 found.text.replacen(NAME, &name, 1).into_bytes(),
             ));
         }
-        let contents: Vec<(&str, Vec<u8>)> = contents
-            .iter()
-            .map(|(name, content)| (name.as_str(), content.clone()))
-            .collect();
         files::write_all(out, &contents)?;
         notes.push(format!(
             "wrote size.svg and {} designs to {}",

@@ -168,10 +168,6 @@ pub(super) fn run(asked: Asked<'_>) -> Result<CommandAnswer, Refusal> {
                 (format!("{name}.toml"), text.into_bytes())
             })
             .collect();
-        let contents: Vec<(&str, Vec<u8>)> = contents
-            .iter()
-            .map(|(name, content)| (name.as_str(), content.clone()))
-            .collect();
         files::write_all(out, &contents)?;
         notes.push(format!("wrote {} designs to {}", met.len(), out.display()));
     }

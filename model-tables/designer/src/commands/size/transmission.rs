@@ -95,10 +95,6 @@ pub(super) fn run(
                 (format!("{name}.toml"), design(&name, sized, &wanted).into_bytes())
             })
             .collect();
-        let contents: Vec<(&str, Vec<u8>)> = contents
-            .iter()
-            .map(|(name, content)| (name.as_str(), content.clone()))
-            .collect();
         files::write_all(out, &contents)?;
         notes.push(format!("wrote {} designs to {}", found.len(), out.display()));
     }
