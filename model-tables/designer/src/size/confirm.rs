@@ -4,7 +4,6 @@ use super::question::judge::tabled;
 use super::refine::refine;
 use super::target::Target;
 use super::{Sized, Start, judge, root_mean_square};
-use model_tables::design::RestBy;
 use model_tables::design_file::DesignFile;
 use model_tables::generate::Generated;
 use model_tables::model::{Fingertip, Kind};
@@ -98,45 +97,13 @@ impl Start {
             radial: membrane.radial_semi_axis,
             axial: membrane.axial_semi_axis,
             wall: membrane.thickness,
-            stretch: match sized.design.rest {
-                RestBy::PoleStretch(stretch) => stretch,
-                _ => f64::NAN,
-            },
+            stretch: sized.stretch(),
         }
     }
 }
 
 /// The design file of a sized membrane, its tables of an accuracy in percent.
 fn design(sized: &Sized, target: &Target, percent: f64) -> String {
-    let membrane = &sized.design.membrane;
-    let micrometres = |metres: f64| libm::round(1e6 * metres) / 1e3;
-    let [low, high] = target.range_kpa;
-    // A 12-bit converter over four fifths of its range, averaged over sixteen samples.
-    let resolution = 1e3 * (high - low) / 4096.0 / 0.8;
-    format!(
-        "# Sized for `{}`: misfit of the membrane {:.2} %, force changed by {:.1} % by a tolerance of {} mm.\n\
-         name = \"{NAME}\"\n\n\
-         [membrane]\nradial_semi_axis_mm = {:?}\naxial_semi_axis_mm = {:?}\nthickness_mm = {:?}\n\n\
-         [material]\npreset = \"{}\"\n\n\
-         [rest]\npole_stretch = {:?}\n\n\
-         [model]\nkind = \"auto\"\naxes = \"mid\"\n\n\
-         [fluid]\ncompliance_mm3_per_kpa = {:?}\n\n\
-         [press]\nmax_indentation_mm = {:?}\n\n\
-         # A ratiometric gauge read through a 12-bit converter: put in the one you have.\n\
-         [transducer]\nkind = \"ratiometric\"\nrange_kpa = [{low:?}, {high:?}]\nresolution_pa = {:?}\n\n\
-         [accuracy]\nforce_percent_of_reading = {percent:?}\nindentation_percent_of_reading = {percent:?}\n\
-         from_percent_of_full_scale = 1.0\n",
-        target.name,
-        100.0 * sized.misfit,
-        100.0 * sized.making(),
-        1e3 * target.tolerance,
-        micrometres(membrane.radial_semi_axis),
-        micrometres(membrane.axial_semi_axis),
-        micrometres(membrane.thickness),
-        sized.material.name,
-        libm::round(1e5 * Start::of(sized).stretch) / 1e5,
-        target.compliance_mm3_per_kpa,
-        micrometres(target.deepest()),
-        libm::round(10.0 * resolution) / 10.0,
-    )
+    let model = "[model]\nkind = \"auto\"\naxes = \"mid\"\n\n";
+    sized.text(NAME, target, "misfit of the membrane", model, percent)
 }
