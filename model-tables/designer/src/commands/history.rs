@@ -96,14 +96,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         ]);
     }
     progress.finish();
-    let mut notes = Vec::new();
-    if design.model == ModelSection::Auto {
-        notes.push(format!(
+    let notes = note_of_auto(&design, elements).into_iter().collect();
+    Ok(CommandAnswer { rows: answer, notes })
+}
+
+/// The solid that `auto` takes in time; `None` where the design says which.
+pub(super) fn note_of_auto(design: &DesignFile, elements: Elements) -> Option<String> {
+    (design.model == ModelSection::Auto).then(|| {
+        format!(
             "in time auto takes the solid {} x {}",
             elements.through, elements.along
-        ));
-    }
-    Ok(CommandAnswer { rows: answer, notes })
+        )
+    })
 }
 
 /// Rounding of a first touch in other units, metres.

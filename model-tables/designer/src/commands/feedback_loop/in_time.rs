@@ -4,7 +4,7 @@ use super::super::history::{self, FORCE, INDENTATION};
 use super::super::time_rows::{self, TimeRows};
 use super::super::warn;
 use super::{COLUMNS, at_rest, cells};
-use model_tables::design_file::{DesignFile, ModelSection};
+use model_tables::design_file::DesignFile;
 use model_tables::material::relaxation::Relaxation;
 use model_tables::solid::disc::{DISC, DiscDesign, DiscInTime};
 use model_tables::solid::history::History;
@@ -83,13 +83,7 @@ pub(super) fn run(
         ]);
     }
     progress.finish();
-    let mut notes = Vec::new();
-    if design.model == ModelSection::Auto {
-        notes.push(format!(
-            "in time auto takes the solid {} x {}",
-            elements.through, elements.along
-        ));
-    }
+    let notes = history::note_of_auto(design, elements).into_iter().collect();
     Ok(CommandAnswer { rows: answer, notes })
 }
 
