@@ -14,6 +14,13 @@ fn scratch(name: &str) -> PathBuf {
     folder
 }
 
+/// A file in a folder: its path.
+fn written(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    fs::write(&path, text).expect("written");
+    path.to_str().expect("text").to_owned()
+}
+
 fn targets(name: &str) -> String {
     format!("{}/../targets/{name}", env!("CARGO_MANIFEST_DIR"))
 }
@@ -64,22 +71,14 @@ fn holds(answer: &Answer, out: &Path, name: &str, lightest: f64, greatest: f64, 
 #[test]
 fn a_question_gets_a_design_that_its_own_commands_confirm() {
     let folder = scratch("narrow");
-    let file = folder.join("narrow.toml");
-    fs::write(
-        &file,
+    let file = written(
+        &folder,
+        "narrow.toml",
         "name = \"narrow\"\n[wanted]\nlightest_touch_n = 0.05\ngreatest_force_n = 15\nreadings_per_second = 200\n\
          [materials]\npresets = [\"sortaclear-40\"]\n[transducers]\nparts = [\"hsc-100kpa\"]\n",
-    )
-    .expect("written");
+    );
     let out = folder.join("sized");
-    let answer = Answer::of(&[
-        "size",
-        file.to_str().expect("text"),
-        "--best",
-        "1",
-        "--out",
-        out.to_str().expect("text"),
-    ]);
+    let answer = Answer::of(&["size", &file, "--best", "1", "--out", out.to_str().expect("text")]);
     assert_eq!(answer.text(0, "transducer"), "hsc-100kpa");
     assert!(answer.number(0, "readings_per_second") >= 200.0);
     assert!(
@@ -196,14 +195,13 @@ fn a_question_without_an_answer_is_refused_by_the_nearest_one() {
 #[test]
 fn lists_are_ranges_or_have_blanks_and_a_decimal_comma_is_doubted() {
     let folder = scratch("lists");
-    let design = folder.join("thin.toml");
-    fs::write(
-        &design,
+    let design = written(
+        &folder,
+        "thin.toml",
         "name = \"thin\"\n[membrane]\nradial_semi_axis_mm = 9\naxial_semi_axis_mm = 7\nthickness_mm = 0.3\n\
          [material]\npreset = \"skin\"\n[rest]\npole_stretch = 1.3\n",
-    )
-    .expect("written");
-    let design = design.to_str().expect("text");
+    );
+    let design = design.as_str();
     let plain = Answer::of(&["solve", design, "--indentation-mm", "0,0.5,1,1.5,2"]);
     for list in ["0:0.5:2", "0, 0.5, 1, 1.5, 2", "0 0.5 1:0.5:2"] {
         let other = Answer::of(&["solve", design, "--indentation-mm", list]);
@@ -225,14 +223,13 @@ fn lists_are_ranges_or_have_blanks_and_a_decimal_comma_is_doubted() {
 #[test]
 fn a_state_at_a_force_is_the_one_whose_force_it_is() {
     let folder = scratch("forces");
-    let design = folder.join("solid.toml");
-    fs::write(
-        &design,
+    let design = written(
+        &folder,
+        "solid.toml",
         "name = \"solid\"\n[membrane]\nradial_semi_axis_mm = 9\naxial_semi_axis_mm = 7\nthickness_mm = 1\n\
          [material]\npreset = \"skin\"\n[model]\nkind = \"solid\"\nthrough = 1\nalong = 24\n",
-    )
-    .expect("written");
-    let design = design.to_str().expect("text");
+    );
+    let design = design.as_str();
     let at_force = Answer::of(&["solve", design, "--force-n", "0.02,1,0.3"]);
     for (row, force) in [0.02, 1.0, 0.3].into_iter().enumerate() {
         assert!((at_force.number(row, "force_n") / force - 1.0).abs() < 1e-9);
