@@ -40,7 +40,8 @@ const x = [0, 5, 10, 20, 30, 40, 50, 60];
 const y = x.map(model([3, 20]));
 const options = { initialValues: [2, 10], maxIterations: 200 };
 const show = (r) => `${r.parameterValues.map((v) => v.toFixed(3)).join(', ')} (${r.iterations})`;
-const right = ({ parameterValues: [a, b] }) => Math.abs(a / 3 - 1) < 0.01 && Math.abs(b / 20 - 1) < 0.02;
+const right = ({ parameterValues: [a, b] }) =>
+  Math.abs(a / 3 - 1) < 0.01 && Math.abs(b / 20 - 1) < 0.02;
 
 let ok = true;
 console.log('weights   5.0.1: limit, constant (iterations)   5.1.0');

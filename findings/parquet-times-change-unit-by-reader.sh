@@ -6,12 +6,12 @@
 #   and 0.5 ms between samples.
 # Seen: apache-arrow gives `time` as a number of milliseconds, whatever unit its type names, and
 #   `hold` as a BigInt of its own unit: the same 0.5 ms reads 0.5 in one column and 500n in the
-#   other. hyparquet gives `time` as a Date, which holds whole milliseconds: the fraction is cut, and
-#   every time occurs twice. Its `hold` is 500n with no unit anywhere in the Parquet schema: Parquet
-#   has no duration, and the unit stands only in the Arrow schema that is stored beside it.
+#   other. hyparquet gives `time` as a Date, which holds whole milliseconds: the fraction is cut,
+#   and every time occurs twice. Its `hold` is 500n with no unit anywhere in the Parquet schema:
+#   Parquet has no duration, and the unit stands only in the Arrow schema that is stored beside it.
 # Why it matters: a rate from neighbouring times is infinite at every second sample, or a time
-#   constant is off by 1000, although file, types and values are right. Store seconds as float64 with
-#   the unit in the name, or compare one known interval through each reader.
+#   constant is off by 1000, although file, types and values are right. Store seconds as float64
+#   with the unit in the name, or compare one known interval through each reader.
 set -euo pipefail
 
 dir=$(mktemp -d)
