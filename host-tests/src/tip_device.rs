@@ -51,6 +51,7 @@ pub fn tip(hash: u64, gain: i32) -> Vec<u8> {
         }),
         relaxation: None,
         object: None,
+        feedback: None,
     }
     .write()
 }

@@ -44,6 +44,7 @@ fn shipped() -> Vec<Vec<u8>> {
                 calibration: $calibration,
                 relaxation: $relaxation,
                 object: None,
+                feedback: None,
             }
             .write()
         };

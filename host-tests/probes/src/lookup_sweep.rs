@@ -69,6 +69,7 @@ mod tests {
             calibration: None,
             relaxation: None,
             object: None,
+            feedback: None,
         }
         .write();
         let (loaded, _) = LoadedDesign::read(&block).expect("the image's tables can be loaded");

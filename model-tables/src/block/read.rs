@@ -8,6 +8,7 @@ use super::{
 };
 use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions};
 use crate::material::series::{SeriesStep, WallSeries};
+use crate::table::feedback::{FeedbackScale, LoadedFeedback};
 use crate::table::law::{BlendLaw, Touched};
 use crate::table::loaded::LoadedTables;
 use crate::table::objects::LoadedObjects;
@@ -18,6 +19,9 @@ const WIDEST_RANGE: i32 = 2_000_000;
 
 /// Largest value of the section of the zero, millipascals: 100 kPa, so that no sum of them leaves a word.
 pub const LARGEST_STATED: i32 = 100_000_000;
+
+/// Forces of the feedback actuator at rest are below this, micronewtons.
+const LARGEST_FORCE: i32 = 1 << 30;
 
 /// The data of one tip, checked; words and name stay in the block.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +38,8 @@ pub struct TipBlock<'a> {
     pub relaxation: Option<WallSeries>,
     /// Tables of other objects; `None` where the design has no `[object]`.
     pub objects: Option<LoadedObjects<'a>>,
+    /// The force of the feedback actuator; `None` where the design has none that presses.
+    pub feedback: Option<LoadedFeedback<'a>>,
 }
 
 impl<'a> TipBlock<'a> {
@@ -94,6 +100,10 @@ impl<'a> TipBlock<'a> {
             None => None,
             Some(own) => Some(objects(own, tables)?),
         };
+        let feedback = match sections.of_kind(SectionKind::Feedback) {
+            None => None,
+            Some(own) => Some(feedback(own, tables)?),
+        };
         Ok(Self {
             constants,
             tables,
@@ -101,6 +111,7 @@ impl<'a> TipBlock<'a> {
             calibration,
             relaxation,
             objects,
+            feedback,
         })
     }
 
@@ -113,6 +124,7 @@ impl<'a> TipBlock<'a> {
             true,
             self.relaxation.is_some(),
             self.objects.is_some(),
+            self.feedback.is_some(),
             self.constants.zero != ZeroAssumptions::NONE,
         ];
         SectionKind::ALL
@@ -175,6 +187,21 @@ fn objects<'a>(mut own: Cursor<'a>, plate: LoadedTables<'a>) -> Result<LoadedObj
         return Err(BlockError::Value(SectionKind::Object, "start"));
     }
     Ok(LoadedObjects::new(start, law, plate, words)?)
+}
+
+/// The section of the feedback actuator, beside the tables.
+fn feedback<'a>(mut own: Cursor<'a>, tables: LoadedTables<'a>) -> Result<LoadedFeedback<'a>, BlockError> {
+    let mut scale = FeedbackScale::default();
+    section::feedback(&mut scale, &mut own)?;
+    let (words, []) = own.bytes.as_chunks::<4>() else {
+        return Err(BlockError::SectionLength(SectionKind::Feedback));
+    };
+    if !(0..LARGEST_FORCE).contains(&scale.at_rest) {
+        return Err(BlockError::Value(SectionKind::Feedback, "at_rest"));
+    }
+    let layout = tables.layout();
+    let segments = tables.words().len() / layout.words();
+    Ok(LoadedFeedback::new(layout, segments, scale, words)?)
 }
 
 /// The bytes of a block that is of this layout, complete and unchanged, and its head from the identity on.

@@ -5,6 +5,7 @@ use super::field::Visit;
 use crate::constants::{DesignConstants, Transducer, ZeroAssumptions};
 use crate::material::series::WallSeries;
 use crate::table::Layout;
+use crate::table::feedback::FeedbackScale;
 use crate::table::law::{BlendLaw, Touched};
 
 /// The kinds of sections, by their number.
@@ -22,23 +23,22 @@ pub enum SectionKind {
     Relaxation = 5,
     /// The reference ball's tables, and how much of it other objects have.
     Object = 6,
+    /// The force of the feedback actuator.
+    Feedback = 7,
     /// What the design states of its zero, if anything.
     Zero = 8,
 }
 
-/// The number that a later layout gives to the feedback membrane. A block with it is for newer firmware: without it its readings
-/// would be wrong.
-pub const RESERVED: [u16; 1] = [7];
-
 impl SectionKind {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Constants,
         Self::Tables,
         Self::Calibration,
         Self::Name,
         Self::Relaxation,
         Self::Object,
+        Self::Feedback,
         Self::Zero,
     ];
 
@@ -63,6 +63,7 @@ impl SectionKind {
             Self::Relaxation => "relaxation",
             Self::Zero => "zero",
             Self::Object => "object",
+            Self::Feedback => "feedback",
         }
     }
 }
@@ -163,4 +164,13 @@ pub fn object<V: Visit>(start: &mut Touched, law: &mut BlendLaw, visit: &mut V) 
     visit.field("last", &mut law.last)?;
     visit.field("force", &mut law.force)?;
     visit.field("indentation", &mut law.indentation)
+}
+
+/// Of the feedback actuator: how a sum is read; the words follow.
+///
+/// # Errors
+/// The visitor's.
+pub fn feedback<V: Visit>(value: &mut FeedbackScale, visit: &mut V) -> Result<(), V::Stop> {
+    visit.field("shift", &mut value.shift)?;
+    visit.field("at_rest", &mut value.at_rest)
 }

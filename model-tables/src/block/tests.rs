@@ -7,6 +7,7 @@ use crate::constants::{
     AirReference, DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions,
 };
 use crate::material::series::{Factor, SeriesStep, TermStep, WallSeries};
+use crate::table::feedback::FeedbackScale;
 use crate::table::law::{BlendLaw, Touched};
 use crate::table::{Constant, Layout, Powers};
 use crate::units::PressureRise;
@@ -83,6 +84,7 @@ const DATA: TipData<'_> = TipData {
     calibration: Some(CALIBRATION),
     relaxation: None,
     object: None,
+    feedback: None,
 };
 
 /// A half of a term is lost, and it takes a tenth of a change.
@@ -118,6 +120,41 @@ fn a_wall_in_time_is_written_and_read() {
     }
     let elastic = DATA.write();
     assert_eq!(TipBlock::read(&elastic).expect("it is whole").relaxation, None);
+}
+
+/// The force is the rise and 50 uN at rest: one word for the constant, one for both coefficients.
+#[test]
+fn a_feedback_force_is_written_and_read() {
+    const FEEDBACK: [i32; 4] = [4 << 18, (16 << 2) << 16, 0, (8 << 2) << 16];
+    let scale = FeedbackScale {
+        shift: 4,
+        at_rest: 50,
+    };
+    let with = |scale: FeedbackScale, words: &'static [i32]| {
+        TipData {
+            feedback: Some((scale, words)),
+            ..DATA
+        }
+        .write()
+    };
+    let block = with(scale, &FEEDBACK);
+    let tip = TipBlock::read(&block).expect("it is whole");
+    let feedback = tip.feedback.expect("it has one");
+    for rise in -1..=12 {
+        let force = feedback.lookup(PressureRise(rise)).0;
+        assert_eq!(force, 50 + tip.tables.lookup(PressureRise(rise)).force.0);
+    }
+    assert!(tip.sections().any(|kind| kind == SectionKind::Feedback));
+    let plain = DATA.write();
+    assert!(TipBlock::read(&plain).expect("it is whole").feedback.is_none());
+    let below = FeedbackScale { at_rest: -1, ..scale };
+    let value = BlockError::Value(SectionKind::Feedback, "at_rest");
+    assert_eq!(error(&with(below, &FEEDBACK)), value);
+    let wide = FeedbackScale { shift: 32, ..scale };
+    let layout = BlockError::Tables(TablesError::Layout("feedback_shift"));
+    assert_eq!(error(&with(wide, &FEEDBACK)), layout);
+    let short = BlockError::Tables(TablesError::Words { needed: 4, found: 3 });
+    assert_eq!(error(&with(scale, &FEEDBACK[..3])), short);
 }
 
 #[test]
@@ -251,7 +288,7 @@ fn what_a_design_states_of_its_zero_is_a_section_of_its_own() {
 #[test]
 fn a_section_that_is_not_known_fails_the_whole_block() {
     let entry = |section: usize| HEAD + ENTRY * section;
-    for number in section::RESERVED.into_iter().chain([0, 9, u16::MAX]) {
+    for number in [0, 9, u16::MAX] {
         let block = changed(entry(3), &number.to_le_bytes());
         assert_eq!(error(&block), BlockError::UnknownSection(number));
     }
@@ -359,6 +396,8 @@ fn the_page_lists_every_field_where_it_lies() {
     let mut rows = Rows(0);
     let (mut start, mut law) = (Touched::Plate, LAW);
     let Ok(()) = section::object(&mut start, &mut law, &mut rows);
+    let mut rows = Rows(0);
+    let Ok(()) = section::feedback(&mut FeedbackScale::default(), &mut rows);
     let numbers: BTreeSet<String> = SectionKind::ALL
         .iter()
         .map(|&kind| format!("| {} | {} |", kind as u16, kind.word()))

@@ -6,6 +6,7 @@ use super::{CHECK_AT, ENTRY, HEAD, LAYOUT_VERSION, MAGIC, StoredCalibration, ali
 use crate::constants::{DesignConstants, ZeroAssumptions};
 use crate::material::series::WallSeries;
 use crate::table::Layout;
+use crate::table::feedback::FeedbackScale;
 use crate::table::law::{BlendLaw, Touched};
 use core::convert::Infallible;
 
@@ -26,6 +27,8 @@ pub struct TipData<'a> {
     pub relaxation: Option<WallSeries>,
     /// Tables of other objects; `None` where the design has no `[object]`.
     pub object: Option<ObjectData<'a>>,
+    /// The force of the feedback actuator, and its words; `None` where the design has none that presses.
+    pub feedback: Option<(FeedbackScale, &'a [i32])>,
 }
 
 /// Tables of other objects than a plate.
@@ -67,6 +70,7 @@ impl TipData<'_> {
             mut calibration,
             mut relaxation,
             object,
+            feedback,
             ..
         } = *self;
         let identity = described(|visit| section::identity(&mut constants, visit));
@@ -105,6 +109,13 @@ impl TipData<'_> {
                 all(object.words, visit)
             });
             sections.push((SectionKind::Object, bytes));
+        }
+        if let Some((mut scale, words)) = feedback {
+            let bytes = described(|visit| {
+                section::feedback(&mut scale, visit)?;
+                all(words, visit)
+            });
+            sections.push((SectionKind::Feedback, bytes));
         }
         if constants.zero != ZeroAssumptions::NONE {
             let bytes = described(|visit| section::zero(&mut constants.zero, visit));

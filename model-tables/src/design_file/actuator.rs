@@ -125,6 +125,16 @@ impl DesignFile {
         file
     }
 
+    /// The same fingertip without its actuator, and with another compliance, cubic metres per pascal.
+    #[must_use]
+    pub fn alone(&self, compliance: f64) -> Self {
+        let mut file = self.clone();
+        file.actuator = None;
+        file.compliance_mm3_per_kpa = compliance * 1e12;
+        file.calibration.compliance_mm3_per_kpa = None;
+        file
+    }
+
     /// The law of the actuator: its own, or the tip's as it is calibrated.
     pub fn actuator_law(&self) -> Law {
         self.actuator

@@ -85,6 +85,15 @@ impl Candidate<'_> {
         Some(assemble(layout, &found[0].1, &found[1].1))
     }
 
+    /// The sums of the force alone and their shift, segments upwards: without a shift of its own, or with one that lets rounding keep to the tolerance.
+    pub(super) fn force_alone(&self, accuracy: &Accuracy) -> Option<(u32, Vec<Coefficients>)> {
+        let Segmentation { layout, spans } = &self.segmentation;
+        let most = self.spare_bits(0)?;
+        std::iter::once(0)
+            .chain((1..=most).rev())
+            .find_map(|shift| Some((shift, self.integers(layout, 0, shift, accuracy, spans, 0)?)))
+    }
+
     /// What others read at the end of their lowest segment.
     pub(super) fn shared_end(&self, others: &OwnedTables) -> Option<[i32; 2]> {
         let (lowest, _) = self.segmentation.spans.split_first()?;
@@ -324,6 +333,22 @@ pub(super) fn counts(span: &Span, bias: i32) -> Vec<i32> {
         .collect();
     counts.dedup();
     counts
+}
+
+/// Tables with these sums of the force, and the indentation of others.
+pub(super) fn with_force(others: &OwnedTables, shift: u32, force: &[Coefficients]) -> OwnedTables {
+    let mut layout = others.layout;
+    layout.force_shift = shift;
+    let none = vec![[0; MAX_COEFFICIENTS]; force.len()];
+    let mut tables = assemble(layout, force, &none);
+    for (at, (own, other)) in tables.words.iter_mut().zip(&others.words).enumerate() {
+        match at % layout.words() {
+            0 => {}
+            1 => *own = *other,
+            _ => *own |= i32::from(*other as u16),
+        }
+    }
+    tables
 }
 
 /// The words of the tables, the segment of the largest inputs first.

@@ -116,6 +116,35 @@ pub(super) fn certify_by(
     })
 }
 
+/// The errors of the force of tables alone, over every input. `None` where they are soon seen to exceed what is allowed.
+pub(super) fn force_errors(tables: &OwnedTables, truth: &Truth, accuracy: &Accuracy) -> Option<Errors> {
+    let segments = Segmentation::of(tables.layout)?;
+    let allowed = accuracy.force_percent_of_reading;
+    let full = truth.full_scale[0];
+    let mut tally = Tally::new(full, full * accuracy.from_percent_of_full_scale / 100.0);
+    let parts: Vec<Part> = parts(tables, &segments, truth).collect();
+    let every = truth.maximum < EVALUATED;
+    if !every {
+        for part in &parts {
+            tally.sound(&part.of(0));
+        }
+    }
+    if tally.misses(allowed) {
+        return None;
+    }
+    for part in &parts {
+        match part.piece {
+            Piece::Polynomial(_) if !(every || part.range.is_short()) => tally.bound(&part.of(0)),
+            _ => {
+                for count in part.range.first..=part.range.last {
+                    tally.add(part.reading(count).force.0, part.piece.at(count)[0]);
+                }
+            }
+        }
+    }
+    Some(tally.finish(allowed))
+}
+
 /// Inputs of one segment over which the curve is one piece.
 struct Part<'a> {
     range: Range,

@@ -4,6 +4,7 @@
 
 use super::TABLE_VERSION;
 use super::design::{Generated, integer};
+use super::feedback::CertifiedFeedback;
 use super::object::ObjectTables;
 use super::owned::OwnedTables;
 use crate::block::StoredCalibration;
@@ -65,6 +66,11 @@ impl Generated {
                 law: object.law,
                 words: &object.ball.words,
             }),
+            feedback: self
+                .certified
+                .feedback
+                .as_ref()
+                .map(|feedback| (feedback.scale, feedback.words.as_slice())),
         }
         .write()
     }
@@ -84,7 +90,7 @@ impl Generated {
         })
     }
 
-    /// The tables as CSV: one row a word.
+    /// The tables as CSV: one row a word; those of the feedback force follow those of force and indentation in each segment.
     pub fn csv(&self) -> String {
         csv(self)
     }
@@ -165,6 +171,9 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     if let Some(object) = &generated.certified.object {
         write_objects(object, out)?;
     }
+    if let Some(feedback) = &generated.certified.feedback {
+        write_feedback(feedback, out)?;
+    }
     match generated.wall() {
         Some(wall) => write_wall(wall, out),
         None => Ok(()),
@@ -221,6 +230,24 @@ fn write_objects(object: &ObjectTables, out: &mut String) -> fmt::Result {
     )
 }
 
+fn write_feedback(feedback: &CertifiedFeedback, out: &mut String) -> fmt::Result {
+    const OF: &str = "model_tables::table::feedback";
+    let width = feedback.layout.feedback_words();
+    let segments = feedback.words.len() / width;
+    writeln!(
+        out,
+        "\n/// Pressure rise -> force of the feedback actuator, in the layout of [`TABLES`].\n\
+         pub const FEEDBACK: {OF}::FeedbackTables<{segments}, {width}> = {OF}::FeedbackTables {{\n\
+         \x20   scale: {OF}::{:?},\n\
+         \x20   segments: [",
+        feedback.scale
+    )?;
+    for index in 0..segments {
+        writeln!(out, "        {:?},", feedback.segment(index))?;
+    }
+    writeln!(out, "    ],\n}};")
+}
+
 /// A line of Rust source for each field.
 struct Source<'a> {
     out: &'a mut String,
@@ -241,7 +268,9 @@ fn csv(generated: &Generated) -> String {
     let tables = &generated.certified.tables;
     let mut text = String::from("segment,from_count,word,value,upper_half,lower_half\n");
     for (index, from) in first_counts(tables).iter().enumerate() {
-        for (at, &word) in tables.segment(index).iter().enumerate() {
+        let feedback = generated.certified.feedback.as_ref();
+        let beside = feedback.map_or(&[][..], |feedback| feedback.segment(index));
+        for (at, &word) in tables.segment(index).iter().chain(beside).enumerate() {
             let (upper, lower) = (word >> 16, word as i16);
             writeln!(text, "{index},{from},{at},{word},{upper},{lower}").expect(NEVER);
         }

@@ -8,6 +8,7 @@ mod candidate;
 mod certify;
 mod design;
 mod emit;
+pub mod feedback;
 pub mod minimax;
 pub mod object;
 mod owned;
@@ -20,6 +21,7 @@ mod truth;
 use crate::curve::{Contact, Curve};
 use crate::design_file::Accuracy;
 use candidate::Work;
+use feedback::{CertifiedFeedback, FeedbackCurve};
 use object::{ObjectTables, SolvedObjects};
 use truth::Truth;
 
@@ -60,6 +62,8 @@ pub struct Certified {
     pub certificate: Certificate,
     /// Tables of other objects; `None` where the design has no `[object]`.
     pub object: Option<ObjectTables>,
+    /// Tables of the feedback actuator's force; `None` where the design has none that presses.
+    pub feedback: Option<CertifiedFeedback>,
     /// Segmentations looked at before these tables were found to be the smallest.
     pub tried: usize,
     /// Half of what the transducer tells apart, in percent of reading of force and indentation, where that is least. Tables are
@@ -118,10 +122,19 @@ pub fn tables(
     accuracy: &Accuracy,
     resolution: f64,
 ) -> Result<Certified, NoTables> {
-    tables_with(curve, end, accuracy, resolution, None)
+    tables_with(curve, end, accuracy, resolution, &Beside::default())
 }
 
-/// The same, with tables of other objects in the same layout.
+/// What else is to have tables of the same layout.
+#[derive(Clone, Debug, Default)]
+pub struct Beside {
+    /// Other objects than the plate; `None`: the plate alone.
+    pub objects: Option<SolvedObjects>,
+    /// The feedback actuator; `None`: there is none that presses.
+    pub feedback: Option<FeedbackCurve>,
+}
+
+/// The same, with tables of what else is to have some, in the same layout.
 ///
 /// # Errors
 /// [`NoTables`], with the numbers.
@@ -130,23 +143,28 @@ pub fn tables_with(
     end: Contact,
     accuracy: &Accuracy,
     resolution: f64,
-    objects: Option<&SolvedObjects>,
+    beside: &Beside,
 ) -> Result<Certified, NoTables> {
     let resolvable = resolvable_percent(curve, end, accuracy, resolution);
     let accuracy = &held_to(accuracy, resolvable);
     let found = search(curve, end, accuracy, resolution, |tables, truth| {
-        let object = match objects {
+        let object = match &beside.objects {
             None => None,
             Some(objects) => Some(objects.tables(tables, end, truth, accuracy)?),
         };
+        let feedback = match &beside.feedback {
+            None => None,
+            Some(feedback) => Some(feedback.tables(tables, truth, end.pressure_rise, accuracy)?),
+        };
         let certificate = certify::certify(tables, curve, truth, accuracy).filter(Certificate::holds)?;
-        Some((certificate, object))
+        Some((certificate, object, feedback))
     })?;
-    let (certificate, object) = found.accepted;
+    let (certificate, object, feedback) = found.accepted;
     Ok(Certified {
         tables: found.tables,
         certificate,
         object,
+        feedback,
         tried: found.tried,
         resolvable_percent: resolvable,
     })

@@ -1,37 +1,60 @@
 //! The haptic loop: fingertip and feedback actuator share one fluid, `V_tip(P, H) + V_actuator(P) + V_gas(P) + c P = const`.
 //!
 //! At one indentation the actuator is to the fingertip a compliance, its volume over its pressure since rest, and so is trapped gas: the state of the loop is that of a
-//! fingertip with the compliance for which both have one pressure. What is looked for is this compliance.
+//! fingertip with the compliance for which both have one pressure. What is looked for is this compliance. States of neighbouring compliances are
+//! solved from one another.
+
+mod curve;
+
+pub use curve::LoopCurve;
 
 use super::{Fingertip, Kind, ModelError};
 use crate::curve::Contact;
 use crate::design::Design;
+use crate::design_file::{DesignFile, ModelSection};
 use crate::membrane::TensionField;
+use crate::membrane::adapt::Resolution;
 use crate::membrane::press;
 use crate::solid;
 use crate::solid::disc::{Disc, DiscError, DiscState};
 use crate::solid::gas::TrappedGas;
+use crate::solid::inflation::mid_surface;
+use crate::solid::mesh::Elements;
 use crate::solid::section::WallPoint;
 use std::fmt;
 
 /// Accuracy of the compliance, relative: a solid has its pressure to some 1e-8.
 const TOLERANCE: f64 = 1e-7;
+/// Accuracy that is enough where rounding leaves no better one: at the lightest touches.
+const ROUNDED: f64 = 1e-5;
+/// Part of the disc's volume by which a sum of its compliances may be off a finer one to be taken for it. It is then right to the square of that.
+const SMOOTH: f64 = 1e-4;
+/// Part by which the sum of two compliances may be off the volume for a third one to be looked at, from this part of the pressure on.
+const ABOUT: f64 = 1e-2;
+const LIGHT: f64 = 0.05;
 /// Iterations after which there is no balance: doublings, then halvings of a bracket.
 const MAX_ITERATIONS: u32 = 80;
 
 /// Why the loop gives no answer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum LoopError {
     /// Of the fingertip.
     Fingertip(ModelError),
     /// Of the actuator, at the pressure of the rest state.
     Actuator(DiscError),
+    /// The design has no actuator, or only the paper's formula of one.
+    NoActuator,
     /// At no pressure that the actuator stands do both have the fluid's volume.
     NoBalance {
         /// The indentation, metres.
         asked: f64,
         /// The least pressure at which the actuator failed, and why, if it did.
         failed: Option<DiscError>,
+    },
+    /// The actuator presses from some state of the press on, and tables are of forces from rest on.
+    Apart {
+        /// The last pressure rise without a force, pascals.
+        rise: f64,
     },
 }
 
@@ -40,6 +63,9 @@ impl fmt::Display for LoopError {
         match self {
             Self::Fingertip(error) => error.fmt(f),
             Self::Actuator(error) => write!(f, "at the rest pressure of the fingertip: {error}"),
+            Self::NoActuator => f.write_str(
+                "the loop needs the actuator as a disc: give [actuator] diameter_mm and thickness_mm",
+            ),
             Self::NoBalance { asked, failed } => {
                 write!(
                     f,
@@ -51,6 +77,10 @@ impl fmt::Display for LoopError {
                     None => write!(f, "; press less deep, or take a stiffer actuator"),
                 }
             }
+            Self::Apart { rise } => write!(
+                f,
+                "the actuator does not reach what is over it up to a pressure rise of {rise:.1} Pa, and its force has tables only                  where it presses from the first touch on; set actuator.gap_mm to 0, or leave actuator.thickness_mm out"
+            ),
         }
     }
 }
@@ -96,6 +126,10 @@ pub struct Loop {
     gas: TrappedGas,
     /// The compliance of the latest state.
     compliance: f64,
+    /// A fingertip of about that compliance, pressed.
+    near: Option<Box<Fingertip>>,
+    /// Of the fingertip, where it is a membrane.
+    resolution: Resolution,
 }
 
 impl Loop {
@@ -104,7 +138,7 @@ impl Loop {
     /// # Errors
     /// [`LoopError::Fingertip`], [`LoopError::Actuator`].
     pub fn new(kind: Kind, design: &Design, mut actuator: Disc) -> Result<Self, LoopError> {
-        let rest_pressure = fingertip(kind, design)?.rest_pressure();
+        let rest_pressure = fingertip(kind, design, press::FULL)?.rest_pressure();
         let actuator_at_rest = actuator
             .at_pressure(rest_pressure.max(0.0))
             .map_err(LoopError::Actuator)?;
@@ -116,7 +150,34 @@ impl Loop {
             compliance: design.compliance + actuator_at_rest.compliance,
             actuator_at_rest,
             gas: TrappedGas::NONE,
+            near: None,
+            resolution: press::FULL,
         })
+    }
+
+    /// The loop of a design with `[actuator] thickness_mm`, its fingertip of this model and its disc of these elements; `None` of one without.
+    ///
+    /// # Errors
+    /// As [`Loop::new`].
+    pub fn of_file(file: &DesignFile, kind: Kind, elements: Elements) -> Result<Option<Self>, LoopError> {
+        let Some(disc) = file.disc() else {
+            return Ok(None);
+        };
+        let mut design = file.design();
+        if kind == Kind::Membrane && file.model != ModelSection::Membrane {
+            design.membrane = mid_surface(&design.membrane);
+        }
+        let actuator = Disc::new(&disc, elements).map_err(LoopError::Actuator)?;
+        Ok(Some(
+            Self::new(kind, &design, actuator)?.with_gas(file.trapped_gas()),
+        ))
+    }
+
+    /// The same with a fingertip on another mesh, where it is a membrane.
+    #[must_use]
+    pub fn with_resolution(mut self, resolution: Resolution) -> Self {
+        self.resolution = resolution;
+        self
     }
 
     /// The same with gas in the line.
@@ -149,7 +210,7 @@ impl Loop {
     /// # Errors
     /// [`ModelError`] of the fingertip.
     pub fn with_constant_compliance(&self, indentation: f64) -> Result<Contact, ModelError> {
-        self.touch(indentation, self.constant_compliance())
+        self.alone(self.constant_compliance())?.contact_at(indentation)
     }
 
     /// The fingertip alone that has the same state: its compliance stands for all that the fluid goes to.
@@ -157,11 +218,7 @@ impl Loop {
     /// # Errors
     /// [`ModelError`] of the fingertip.
     pub fn fingertip_of(&self, state: &LoopState) -> Result<Fingertip, ModelError> {
-        let design = Design {
-            compliance: state.compliance,
-            ..self.design
-        };
-        fingertip(self.kind, &design)
+        self.alone(state.compliance)
     }
 
     /// The meridian of the actuator in a state, as [`Disc::profile`].
@@ -176,12 +233,25 @@ impl Loop {
         self.actuator.profile(state.actuator.pressure, points)
     }
 
-    fn touch(&self, indentation: f64, compliance: f64) -> Result<Contact, ModelError> {
+    fn alone(&self, compliance: f64) -> Result<Fingertip, ModelError> {
         let design = Design {
             compliance,
             ..self.design
         };
-        fingertip(self.kind, &design)?.contact_at(indentation)
+        fingertip(self.kind, &design, self.resolution)
+    }
+
+    /// The touch of a fingertip of this compliance: from a state of nearly the same, or else along the path from rest.
+    fn touch(&mut self, indentation: f64, compliance: f64) -> Result<Contact, ModelError> {
+        if let Some(near) = &mut self.near
+            && let Ok(Some(contact)) = near.contact_with_compliance(indentation, compliance)
+        {
+            return Ok(contact);
+        }
+        let mut own = self.alone(compliance)?;
+        let contact = own.contact_at(indentation)?;
+        self.near = Some(Box::new(own));
+        Ok(contact)
     }
 
     /// The loop with a fingertip of this compliance.
@@ -191,10 +261,28 @@ impl Loop {
         Ok(LoopState {
             touch,
             actuator,
-            volume_moved: actuator.volume - self.actuator_at_rest.volume,
+            volume_moved: self.moved(&actuator)?,
             gas_compressed: self.gas.compressed(pressure) - self.gas.compressed(self.rest_pressure.max(0.0)),
             compliance,
         })
+    }
+
+    /// Fluid that the actuator has taken since rest. Where it has hardly bulged the difference of two volumes has few digits, and the compliance
+    /// summed over the pressure, by Simpson's rule, has all.
+    fn moved(&mut self, actuator: &DiscState) -> Result<f64, DiscError> {
+        let at_rest = self.actuator_at_rest;
+        let rise = actuator.pressure - at_rest.pressure;
+        let difference = actuator.volume - at_rest.volume;
+        let ends = at_rest.compliance + actuator.compliance;
+        let trapezium = 0.5 * rise * ends;
+        let is_light = rise < LIGHT * actuator.pressure;
+        if !is_light && (trapezium - difference).abs() > ABOUT * difference.abs() {
+            return Ok(difference);
+        }
+        let middle = self.actuator.at_pressure(at_rest.pressure + 0.5 * rise)?;
+        let simpson = rise / 6.0 * (ends + 4.0 * middle.compliance);
+        let is_smooth = (trapezium - simpson).abs() <= SMOOTH * simpson.abs();
+        Ok(if is_smooth { simpson } else { difference })
     }
 
     /// The state at an indentation of the fingertip in metres, 0 ..= limit.
@@ -207,6 +295,7 @@ impl Loop {
         let mut compliance = self.compliance;
         let mut before: Option<[f64; 2]> = None;
         let mut failed = None;
+        let mut nearest: Option<(f64, LoopState)> = None;
         for _ in 0..MAX_ITERATIONS {
             let touch = self.touch(indentation, compliance)?;
             if touch.pressure_rise <= 0.0 {
@@ -221,6 +310,10 @@ impl Loop {
                     if excess.abs() <= TOLERANCE * needed {
                         self.compliance = compliance;
                         return Ok(state);
+                    }
+                    let off = excess.abs() / needed;
+                    if nearest.is_none_or(|(least, _)| off < least) {
+                        nearest = Some((off, state));
                     }
                     if excess > 0.0 {
                         low = compliance;
@@ -251,16 +344,22 @@ impl Loop {
             };
             compliance = next.filter(|next| *next > low && *next < high).unwrap_or(middle);
         }
-        Err(LoopError::NoBalance {
-            asked: indentation,
-            failed,
-        })
+        match nearest {
+            Some((off, state)) if off <= ROUNDED => Ok(state),
+            _ => Err(LoopError::NoBalance {
+                asked: indentation,
+                failed,
+            }),
+        }
     }
 }
 
-fn fingertip(kind: Kind, design: &Design) -> Result<Fingertip, ModelError> {
+fn fingertip(kind: Kind, design: &Design, resolution: Resolution) -> Result<Fingertip, ModelError> {
     Ok(match kind {
-        Kind::Membrane => Fingertip::Membrane(Box::new(press::Press::new(design, TensionField::Relaxed)?)),
+        Kind::Membrane => {
+            let press = press::Press::with_resolution(design, TensionField::Relaxed, resolution)?;
+            Fingertip::Membrane(Box::new(press))
+        }
         Kind::Solid(elements) => Fingertip::Solid(Box::new(solid::press::Press::new(design, elements)?)),
     })
 }

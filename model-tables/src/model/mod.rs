@@ -38,6 +38,16 @@ impl Kind {
         self != Self::Membrane || matches!(design.rest, RestBy::PoleStretch(_))
     }
 
+    /// A solid of an element more through the wall and 8 for 5 along it, as [`choice::REFINED`] to [`choice::FINE`]; a membrane is the same, on a finer
+    /// mesh.
+    #[must_use]
+    pub fn finer(self) -> Self {
+        match self {
+            Self::Membrane => Self::Membrane,
+            Self::Solid(elements) => Self::Solid(elements.finer()),
+        }
+    }
+
     /// Whether it is a solid of fewer elements along the meridian than [`choice::FINE`].
     pub fn is_coarse(self) -> bool {
         matches!(self, Self::Solid(Elements { along, .. }) if along < choice::FINE.along)
@@ -114,7 +124,7 @@ impl Fingertip {
     }
 
     /// The same design and model on a finer mesh, and that mesh in words: a membrane's is twice as fine, a solid's has an element
-    /// more through the wall and 8 for 5 along it, as [`choice::REFINED`] to [`choice::FINE`].
+    /// more through the wall and 8 for 5 along it.
     ///
     /// # Errors
     /// [`ModelError`] where it has no rest state.
@@ -125,12 +135,8 @@ impl Fingertip {
                 let press = press::Press::with_resolution(&design, TensionField::Relaxed, press::FINER)?;
                 Ok((Self::Membrane(Box::new(press)), "a mesh twice as fine".to_owned()))
             }
-            Self::Solid(press) => {
-                let Elements { through, along } = press.elements();
-                let kind = Kind::Solid(Elements {
-                    through: through + 1,
-                    along: (8 * along).div_ceil(5),
-                });
+            Self::Solid(_) => {
+                let kind = self.kind().finer();
                 Ok((Self::of(kind, &file.design_to(Axes::Outer))?, kind.to_string()))
             }
         }
@@ -157,6 +163,21 @@ impl Fingertip {
         match self {
             Self::Membrane(press) => Ok(press.contact_at(indentation)?),
             Self::Solid(press) => Ok(press.contact_at(indentation)?),
+        }
+    }
+
+    /// The same of a design with another compliance, cubic metres per pascal, from the state of its own; `None` where that one is too far off.
+    ///
+    /// # Errors
+    /// [`ModelError`], as the model's own.
+    pub fn contact_with_compliance(
+        &mut self,
+        indentation: f64,
+        compliance: f64,
+    ) -> Result<Option<Contact>, ModelError> {
+        match self {
+            Self::Membrane(press) => Ok(press.contact_with_compliance(indentation, compliance)?),
+            Self::Solid(press) => Ok(press.contact_with_compliance(indentation, compliance)?),
         }
     }
 

@@ -65,6 +65,17 @@ pub struct Elements {
     pub along: usize,
 }
 
+impl Elements {
+    /// One more through the wall, and 8 for 5 along it.
+    #[must_use]
+    pub const fn finer(self) -> Self {
+        Self {
+            through: self.through + 1,
+            along: (8 * self.along).div_ceil(5),
+        }
+    }
+}
+
 /// A Gauss point of an element.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {

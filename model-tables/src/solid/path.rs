@@ -34,7 +34,7 @@ const LARGEST_GROWTH: f64 = 3.0;
 const EASY: f64 = 0.5;
 /// Largest displacement of a node between prediction and solution, in walls. The states of a dome that lies flat and one that has buckled are
 /// further apart than that wherever both last.
-const LARGEST_CORRECTION: f64 = 0.1;
+pub(super) const LARGEST_CORRECTION: f64 = 0.1;
 /// Energy that may be missing after a step, over the work done in it.
 const ENERGY_TOLERANCE: f64 = 5e-3;
 /// The same in the first step, where the contact is smaller than an element and its force no power of the indentation.
@@ -341,14 +341,19 @@ impl Path {
         } else {
             FIRST_ENERGY_TOLERANCE
         } * scale.unwrap_or(done).abs();
-        let guess = self.guess.nodes.as_flattened().iter();
-        let corrections = guess.zip(self.work.nodes.as_flattened());
-        let corrected = corrections.map(|(guess, found)| (guess - found).abs());
-        let corrected = corrected.fold(0.0, f64::max) / wall.mesh.thickness;
+        let corrected = corrected(&self.guess, &self.work) / wall.mesh.thickness;
         let strain = (missing / allowed).max(corrected / LARGEST_CORRECTION);
         if strain > 1.0 || !wall.is_stable(fluid) {
             return Err(Rejected::Elsewhere);
         }
         Ok((kept, strain))
     }
+}
+
+/// Largest displacement of a node between two states, over the radial semi-axis.
+pub(super) fn corrected(guess: &State, found: &State) -> f64 {
+    let nodes = guess.nodes.as_flattened().iter().zip(found.nodes.as_flattened());
+    nodes
+        .map(|(guess, found)| (guess - found).abs())
+        .fold(0.0, f64::max)
 }

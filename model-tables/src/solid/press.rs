@@ -5,7 +5,7 @@ use super::equilibrium::SolidWall;
 use super::inflation;
 use super::mesh::Elements;
 use super::object::Surface;
-use super::path::{Path, Stop};
+use super::path::{LARGEST_CORRECTION, Path, Stop, corrected};
 use super::section::{self, WallPoint};
 use super::state::{Balance, Fluid, State};
 use super::station::Kept;
@@ -243,6 +243,36 @@ impl Press {
         Ok(self.contact(indentation, self.asked.state.fluid, &self.asked.balance))
     }
 
+    /// The same of a design with another compliance, cubic metres per pascal, from the state of its own. `None` where the one is too far from
+    /// the other to be the same state with certainty, and with friction, whose states depend on their way.
+    ///
+    /// # Errors
+    /// As [`Press::at_indentation`].
+    pub fn contact_with_compliance(
+        &mut self,
+        indentation: f64,
+        compliance: f64,
+    ) -> Result<Option<Contact>, SolidError> {
+        self.contact_at(indentation)?;
+        if self.wall.has_friction() || indentation < TOUCH * self.height * self.length {
+            return Ok(None);
+        }
+        let fluid = Fluid {
+            by_pressure: compliance * self.modulus / (self.length * self.length * self.length),
+            ..self.fluid
+        };
+        let own = &self.asked;
+        let plate = self.height - own.indentation;
+        let mut state = own.state.clone();
+        self.wall.start_sliding(&own.state, plate, &own.anchors);
+        let Ok(balance) = self.wall.settle(&mut state, plate, &fluid) else {
+            return Ok(None);
+        };
+        let moved = corrected(&own.state, &state) / self.wall.mesh.thickness;
+        let is_near = moved < LARGEST_CORRECTION && self.wall.is_stable(&fluid);
+        Ok(is_near.then(|| self.contact(indentation, state.fluid, &balance)))
+    }
+
     /// A state in SI units.
     fn contact(&self, indentation: f64, pressure: f64, balance: &Balance) -> Contact {
         Contact {
@@ -351,14 +381,19 @@ impl Press {
     /// # Errors
     /// As [`Press::at_indentation`], and [`CurveFailure::Shape`] if pressure or force do not grow throughout.
     pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure<SolidError>> {
-        let mut points = Vec::with_capacity(CURVE_STATES + 1);
-        for k in 0..=CURVE_STATES {
-            let ratio = k as f64 / CURVE_STATES as f64;
-            let indentation = deepest * libm::pow(CURVE_RANGE, ratio - 1.0);
-            points.push(self.contact_at(indentation).map_err(CurveFailure::Model)?);
-        }
-        Curve::new(points).map_err(CurveFailure::Shape)
+        let points: Result<Vec<Contact>, SolidError> = curve_depths(deepest)
+            .map(|indentation| self.contact_at(indentation))
+            .collect();
+        Curve::new(points.map_err(CurveFailure::Model)?).map_err(CurveFailure::Shape)
     }
+}
+
+/// Indentations of the states of a curve down to `deepest`, metres, increasing.
+pub fn curve_depths(deepest: f64) -> impl Iterator<Item = f64> {
+    (0..=CURVE_STATES).map(move |k| {
+        let ratio = k as f64 / CURVE_STATES as f64;
+        deepest * libm::pow(CURVE_RANGE, ratio - 1.0)
+    })
 }
 
 /// The surface of an object in units of `length`, metres, that touches a wall at rest at its pole.

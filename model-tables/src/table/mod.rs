@@ -16,6 +16,7 @@
 
 pub mod blend;
 pub mod error;
+pub mod feedback;
 pub mod known;
 pub mod law;
 pub mod loaded;

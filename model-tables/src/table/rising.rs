@@ -26,11 +26,19 @@ const ROOM: i64 = 16;
 /// # Errors
 /// [`TablesError::Falls`], [`TablesError::Flat`].
 pub(super) fn rises(tables: &Segments) -> Result<(), TablesError> {
+    rises_in(tables, &[Output::Force, Output::Indentation])
+}
+
+/// The same of some outputs.
+///
+/// # Errors
+/// As [`rises`].
+pub(super) fn rises_in(tables: &Segments, outputs: &[Output]) -> Result<(), TablesError> {
     let maximum = tables.layout.maximum;
     let mut start = 0;
     loop {
         let end = last_of_segment(&tables.layout, start);
-        for output in [Output::Force, Output::Indentation] {
+        for &output in outputs {
             if start > 0 && output.at(tables, start) < output.at(tables, start - 1) {
                 return Err(TablesError::Falls(start - 1));
             }
@@ -59,9 +67,12 @@ fn last_of_segment(layout: &Layout, count: i32) -> i32 {
     within
 }
 
+/// One of the two that a word holds coefficients of.
 #[derive(Clone, Copy)]
-enum Output {
+pub(super) enum Output {
+    /// The upper halves.
     Force,
+    /// The lower halves.
     Indentation,
 }
 

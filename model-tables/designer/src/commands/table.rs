@@ -56,8 +56,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
             certificate.indentation.of_reading.max,
         ),
         format!("{name}: {}", generated.choice()),
-        format!("{name}: solved, fitted and certified in {seconds:.1} s"),
     ];
+    notes.extend(generated.certified.feedback.as_ref().map(|feedback| {
+        format!(
+            "{name}: {} bytes more for the feedback force, within {:.4} % of reading",
+            feedback.bytes(),
+            feedback.errors.of_reading.max
+        )
+    }));
+    notes.extend([format!("{name}: solved, fitted and certified in {seconds:.1} s")]);
     notes.extend(generated.band.iter().map(|band| format!("{name}: {band}")));
     notes.extend(generated.own_error().map(|error| format!("{name}: {error}")));
     Ok(CommandAnswer { rows, notes })

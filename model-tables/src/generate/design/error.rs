@@ -6,6 +6,7 @@ use crate::design_file::DesignFileError;
 use crate::generate::NoTables;
 use crate::generate::object::NoObjects;
 use crate::model::ModelError;
+use crate::model::feedback::LoopError;
 use std::fmt;
 
 /// Why a design has no tables. `Display` is one line that names the design's key, the numbers and the remedy.
@@ -20,6 +21,10 @@ pub enum GenerateError {
     },
     /// The wall relaxes, and the design is none that its convolution holds for: the key, and the remedy.
     NotConvolved(&'static str),
+    /// The design has an actuator as a disc, and is none that tables hold for with one: the key, and the remedy.
+    NotHaptic(&'static str),
+    /// Fingertip and actuator give no answer together.
+    Loop(LoopError),
     /// `air.reference` is `"part"`: no board has a second transducer.
     SecondTransducer,
     /// The model gives no answer, or ends before `max_indentation_mm`.
@@ -89,7 +94,8 @@ impl fmt::Display for GenerateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(error) => error.fmt(f),
-            Self::NotConvolved(reason) => f.write_str(reason),
+            Self::NotConvolved(reason) | Self::NotHaptic(reason) => f.write_str(reason),
+            Self::Loop(error) => error.fmt(f),
             Self::SecondTransducer => write!(
                 f,
                 "`air.reference` is \"part\", and no board reads a second transducer: give \"host\" and send the air with the \

@@ -1,33 +1,33 @@
 //! From a design to its tables: the full model, and every refusal on the way.
 
 mod error;
+mod haptic;
 mod limit;
+mod press;
 mod share;
 mod unknown;
 
 pub use error::{DesignState, GenerateError};
 pub use limit::AccuracyLimit;
 
+use super::feedback::FeedbackCurve;
 use super::object::{Band, NoObjects, SolvedObjects, Unknown, plate_of};
-use super::{Certified, NoTables, tables_with};
+use super::{Beside, Certified, NoTables, tables_with};
 use crate::constants::{AirReference, BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
-use crate::curve::{Contact, Curve, CurveFailure};
+use crate::curve::{Contact, Curve};
 use crate::design_file::{
-    DataCurve, DesignFile, ModelSection, RestSection, ShapeSection, Supply, TransducerKindSection,
-    TransducerSection, Transfer,
+    DesignFile, ModelSection, RestSection, ShapeSection, Supply, TransducerKindSection, TransducerSection,
+    Transfer,
 };
 use crate::model::own_error::{Comparison, OwnError};
 use crate::model::{Fingertip, Kind};
+use press::{ReadPress, measured, pressed};
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
 /// States that the curve is compared with on a finer mesh, about; of the solid, whose states take long, fewer.
 const CHECKED: usize = 12;
 const CHECKED_SOLID: usize = 6;
-/// How much deeper than the press the curve goes where it can, so that the last input can be a number that the chip handles in
-/// fewer instructions: the pressure, which grows faster than the indentation, then goes on by as much at least.
-const BEYOND: f64 = 1.0 + 1.0 / 64.0;
-
 /// A relaxing wall's stress of a change in no time over the settled one: less than this.
 const MAX_STIFFENED: f64 = 65_535.0;
 
@@ -45,8 +45,13 @@ pub struct Solved {
     pub curve: Curve,
     /// The end that the tables cover.
     pub end: Contact,
-    /// The model that solved it; `None` where the curve is of data.
+    /// The model that solved it, with an actuator's disc that of the fingertip alone that has the loop's deepest state; `None` where the
+    /// curve is of data.
     pub fingertip: Option<Fingertip>,
+    /// The force of the feedback actuator over the press; `None` where the design has none that presses.
+    pub feedback: Option<FeedbackCurve>,
+    /// The compliance of that fingertip, cubic metres per pascal; `None` without an actuator's disc.
+    pub compliance: Option<f64>,
 }
 
 /// Tables of a design, with everything that is written beside them.
@@ -75,6 +80,8 @@ pub struct Generated {
     /// What an object that the chip is not told leaves open; `None` where the curve is of data, the object a punch, or a ball has no
     /// press.
     pub band: Option<Band>,
+    /// Largest error of the feedback force on finer meshes, percent of reading; `None` where there is none, or the curve is of data.
+    pub feedback_mesh_percent: Option<f64>,
 }
 
 /// Reads a design file and makes its tables. Build scripts call this.
@@ -104,6 +111,7 @@ pub fn from_design_or_worse(design: DesignFile) -> Result<Generated, GenerateErr
 
 fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> {
     let missing = |section| GenerateError::MissingSection { section };
+    haptic::is_tabled(&design)?;
     is_convolved(&design)?;
     let accuracy = design.accuracy.ok_or(missing("accuracy"))?;
     // A punch is no ball: its tables are of itself alone.
@@ -117,7 +125,10 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         curve,
         end,
         fingertip,
+        feedback,
+        compliance,
     } = solve(&touching)?;
+    let alone = compliance.map_or_else(|| touching.clone(), |compliance| touching.alone(compliance));
     let objects = match &fingertip {
         _ if !blends => None,
         None => return Err(GenerateError::Objects(NoObjects::Data)),
@@ -133,16 +144,27 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         )?),
     };
     let is_unknown = design.object.is_some_and(|object| object.unknown);
+    // The presses on balls would be of the fingertip alone.
     let unknown = fingertip
         .as_ref()
+        .filter(|_| compliance.is_none())
         .and_then(|tip| Unknown::solve(&design, tip, &curve, end));
     let from = accuracy.from_percent_of_full_scale / 100.0;
-    let (mut model_error, mut membrane_error) = (None, None);
+    let (mut model_error, mut membrane_error, mut feedback_mesh_percent) = (None, None, None);
     let kind = fingertip.as_ref().map(Fingertip::kind);
     if let Some(mut fingertip) = fingertip {
-        model_error = convergence(&touching, &fingertip, &curve, end, from);
+        if compliance.is_some() {
+            let found = haptic::convergence(&touching, &fingertip, &curve, feedback.as_ref(), end, from);
+            feedback_mesh_percent = found
+                .as_ref()
+                .map(|(_, percent)| *percent)
+                .filter(|_| feedback.is_some());
+            model_error = found.map(|(touch, _)| touch);
+        } else {
+            model_error = convergence(&touching, &fingertip, &curve, end, from);
+        }
         if matches!(fingertip, Fingertip::Membrane(_)) {
-            membrane_error = Some(OwnError::of(&mut fingertip, &touching, end.indentation, from));
+            membrane_error = Some(OwnError::of(&mut fingertip, &alone, end.indentation, from));
         }
     }
     is_near_enough(
@@ -150,10 +172,11 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         membrane_error.as_ref(),
         accuracy.model_percent,
     )?;
+    let beside = Beside { objects, feedback };
     let mut allowed = accuracy;
     let mut doubled = 0;
     let mut certified = loop {
-        match tables_with(&curve, end, &allowed, transducer.resolution_pa, objects.as_ref()) {
+        match tables_with(&curve, end, &allowed, transducer.resolution_pa, &beside) {
             Err(NoTables::Inaccurate { .. }) if doubled < doublings => {
                 allowed.force_percent_of_reading *= 2.0;
                 allowed.indentation_percent_of_reading *= 2.0;
@@ -182,6 +205,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         fluid_half,
         membrane_error,
         band,
+        feedback_mesh_percent,
     })
 }
 
@@ -196,15 +220,33 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
     if design.air == AirReference::Part {
         return Err(GenerateError::SecondTransducer);
     }
-    let (rest_pressure, curve, end, fingertip) = if let Some(data) = &design.calibration.curve {
+    let found = if let Some(data) = &design.calibration.curve {
         let curve = measured(data, indentation * 1e-3)?;
-        let end = curve.end();
-        (data.rest_pressure_kpa * 1e3, curve, end, None)
+        let rest_pressure = data.rest_pressure_kpa * 1e3;
+        ReadPress {
+            rest_pressure,
+            end: curve.end(),
+            feedback: haptic::over_data(design, rest_pressure, &curve)?,
+            curve,
+            fingertip: None,
+            compliance: None,
+        }
     } else {
-        let mut fingertip = Fingertip::for_curve(design).map_err(GenerateError::Model)?;
-        let (rest_pressure, curve, end) = pressed(&mut fingertip, design, &transducer, indentation)?;
-        (rest_pressure, curve, end, Some(fingertip))
+        let fingertip = Fingertip::for_curve(design).map_err(GenerateError::Model)?;
+        if design.disc().is_some() {
+            haptic::pressed(design, &transducer, indentation, fingertip.kind())?
+        } else {
+            pressed(fingertip, design, &transducer, indentation)?
+        }
     };
+    let ReadPress {
+        rest_pressure,
+        curve,
+        end,
+        fingertip,
+        feedback,
+        compliance,
+    } = found;
     in_range(&transducer, DesignState::Rest, rest_pressure)?;
     in_range(
         &transducer,
@@ -218,6 +260,8 @@ pub fn solve(design: &DesignFile) -> Result<Solved, GenerateError> {
         curve,
         end,
         fingertip,
+        feedback,
+        compliance,
     })
 }
 
@@ -313,54 +357,6 @@ fn convergence(
         found.indentation_percent = found.indentation_percent.max(indentation);
     }
     Some(found)
-}
-
-/// What the transducer reads at rest, and the curve of the model as it reads it with the end of the press: its own zero takes
-/// the offset away.
-fn pressed(
-    press: &mut Fingertip,
-    design: &DesignFile,
-    transducer: &TransducerSection,
-    indentation: f64,
-) -> Result<(f64, Curve, Contact), GenerateError> {
-    let calibration = &design.calibration;
-    let deepest = indentation * 1e-3;
-    let rest_pressure = calibration.pressure_read(press.rest_pressure());
-    // What cannot be read is refused before the curve is solved.
-    in_range(transducer, DesignState::Rest, rest_pressure)?;
-    let end = press.contact_at(deepest).map_err(GenerateError::Model)?;
-    in_range(
-        transducer,
-        DesignState::Pressed { indentation },
-        calibration.pressure_read(press.rest_pressure() + end.pressure_rise),
-    )?;
-    let curve = match press.curve(deepest * BEYOND) {
-        Ok(curve) => curve,
-        Err(_) => press.curve(deepest).map_err(GenerateError::Curve)?,
-    };
-    let end = curve.at_indentation(deepest);
-    if calibration.pressure_gain.to_bits() == 1.0_f64.to_bits() {
-        return Ok((rest_pressure, curve, end));
-    }
-    let read = |point: &Contact| Contact {
-        pressure_rise: calibration.pressure_gain * point.pressure_rise,
-        ..*point
-    };
-    let curve = Curve::new(curve.points().iter().map(read).collect())
-        .map_err(|error| GenerateError::Curve(CurveFailure::Shape(error)))?;
-    Ok((rest_pressure, curve, read(&end)))
-}
-
-/// The curve of the data down to an indentation within them.
-fn measured(data: &DataCurve, deepest: f64) -> Result<Curve, GenerateError> {
-    let end = data.end();
-    if deepest > end.indentation * (1.0 + 1e-9) {
-        return Err(GenerateError::BeyondData {
-            asked: deepest * 1e3,
-            deepest: end.indentation * 1e3,
-        });
-    }
-    Curve::new(data.points(deepest)).map_err(|error| GenerateError::Curve(CurveFailure::Shape(error)))
 }
 
 fn in_range(transducer: &TransducerSection, state: DesignState, pascals: f64) -> Result<(), GenerateError> {

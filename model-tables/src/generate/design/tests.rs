@@ -5,6 +5,8 @@ use crate::design_file::RestSection;
 use crate::generate::{OwnedTables, tables as make_tables};
 use crate::membrane::TensionField;
 use crate::membrane::press::Press;
+use crate::model::feedback::Loop;
+use crate::solid::disc::DISC;
 use crate::table::law::Touched;
 use crate::table::{Reading, Tables};
 use crate::units::PressureRise;
@@ -557,5 +559,106 @@ fn the_choice_is_justified_by_what_the_transducer_tells() {
         assert!(text.contains(&format!(
             "\nforce_held_to = \"{held}\"\nindentation_held_to = \"{held}\""
         )));
+    }
+}
+
+/// The shipped loop, a part of its text replaced.
+fn haptic(from: &str, to: &str) -> DesignFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("designs/haptic-loop.toml");
+    let text = std::fs::read_to_string(path).expect("a shipped design");
+    assert!(text.contains(from), "{from}");
+    DesignFile::parse(&text.replace(from, to), "haptic.toml").expect("a design")
+}
+
+/// Fresh states of the loop, not its curve: the touch, and the force of the actuator, also as a block has it.
+#[test]
+fn tables_of_a_loop_give_its_touch_and_its_feedback() {
+    let generated = from_design(haptic("20.0", "20.0")).expect("tables");
+    let tables = &generated.certified.tables;
+    let feedback = generated.certified.feedback.as_ref().expect("it presses on skin");
+    assert!(feedback.errors.share_of_allowed() <= 1.0 && feedback.errors.falling_steps == 0);
+    assert!(
+        generated
+            .feedback_mesh_percent
+            .is_some_and(|percent| percent > 0.0 && percent < 2.0)
+    );
+    let bits = tables.layout.pressure_fraction_bits;
+    let kind = generated.kind.expect("solved");
+    let mut haptic = Loop::of_file(&generated.design, kind, DISC)
+        .expect("at rest")
+        .expect("an actuator");
+    for indentation in [0.05e-3, 0.4e-3, 1.3e-3, 2.45e-3] {
+        let state = haptic.at_indentation(indentation).expect("a state");
+        let rise = PressureRise::from_pascals(state.touch.pressure_rise, bits);
+        let reading = tables.lookup(rise);
+        for (got, truth, full) in [
+            (reading.force.newtons(), state.touch.force, generated.end.force),
+            (
+                reading.indentation.metres(),
+                indentation,
+                generated.end.indentation,
+            ),
+            (
+                feedback.lookup(rise).newtons(),
+                state.actuator.force,
+                feedback.errors.full_scale * 1e-6,
+            ),
+        ] {
+            // The tables' accuracy, and the roughness of the elements between states of the curve.
+            let allowed = 2e-3 * truth.max(0.01 * full);
+            assert!((got - truth).abs() <= allowed, "{indentation}: {got} for {truth}");
+        }
+    }
+    let block = generated.binary();
+    let loaded = TipBlock::read(&block)
+        .expect("sound")
+        .feedback
+        .expect("in the block");
+    for count in (-5..tables.layout.maximum + 5).step_by(997) {
+        let rise = PressureRise(count);
+        assert_eq!(loaded.lookup(rise), feedback.lookup(rise));
+    }
+    assert!(generated.certificate().contains("\n[feedback]\n"));
+    assert!(generated.rust_source().contains("pub const FEEDBACK:"));
+    // A word of both for each segment's row.
+    let words = tables.words.len() + feedback.words.len();
+    assert_eq!(generated.csv().lines().count(), 1 + words);
+}
+
+/// With nothing over it the actuator still takes fluid, and presses nothing. With the paper's formula the fluid stays where it is.
+#[test]
+fn an_actuator_that_presses_nothing_has_no_table() {
+    let free = from_design(haptic("foundation_kpa_per_mm = 20.0", "")).expect("tables");
+    assert!(free.certified.feedback.is_none() && !free.rust_source().contains("FEEDBACK"));
+    assert!(!free.certificate().contains("feedback"));
+    let formula = haptic("thickness_mm = 1.0\nfoundation_kpa_per_mm = 20.0", "");
+    let formula = from_design(formula).expect("tables");
+    assert!(formula.certified.feedback.is_none());
+    let [soft, rigid] = [&free, &formula].map(|generated| generated.end.pressure_rise);
+    assert!(soft < 0.95 * rigid, "{soft} {rigid}");
+}
+
+#[test]
+fn a_loop_whose_tables_would_not_hold_is_refused_in_one_line() {
+    for (from, to, told) in [
+        ("foundation_kpa_per_mm = 20.0", "gap_mm = 0.3", "actuator.gap_mm"),
+        (
+            "foundation_kpa_per_mm = 20.0",
+            "foundation_kpa_per_mm = 20.0\n[object]\nradius_mm = 8.0",
+            "[object]",
+        ),
+        (
+            "foundation_kpa_per_mm = 20.0",
+            "foundation_kpa_per_mm = 20.0\n[material.relaxation]\ntau_s = [1.0]\ng = [2.0]",
+            "actuator.thickness_mm",
+        ),
+        (
+            "foundation_kpa_per_mm = 20.0",
+            "[actuator.material]\npreset = \"agilus30\"\n[actuator.material.relaxation]\ntau_s = [1.0]\ng = [2.0]",
+            "actuator.material.relaxation",
+        ),
+    ] {
+        let error = from_design(haptic(from, to)).expect_err(told).to_string();
+        assert!(error.contains(told) && error.lines().count() == 1, "{error}");
     }
 }

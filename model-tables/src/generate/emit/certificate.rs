@@ -5,6 +5,7 @@ use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::generate::TABLE_VERSION;
 use crate::generate::design::{AccuracyLimit, Generated};
+use crate::generate::feedback::CertifiedFeedback;
 use crate::generate::object::{Band, ObjectTables, quoted};
 use crate::generate::tally::Errors;
 use crate::model::own_error::OwnError;
@@ -125,6 +126,15 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     let asked = generated.asked_percent();
     write_errors("force", "un", asked[0], &certificate.force, out)?;
     write_errors("indentation", "nm", asked[1], &certificate.indentation, out)?;
+    write_beside(generated, asked[0], out)?;
+    write_transducer(generated, out)
+}
+
+/// What else has tables of the same layout, and what is left open.
+fn write_beside(generated: &Generated, asked: f64, out: &mut String) -> fmt::Result {
+    if let Some(feedback) = &generated.certified.feedback {
+        write_feedback(feedback, generated.feedback_mesh_percent, asked, out)?;
+    }
     if let Some(object) = &generated.certified.object {
         let unknown = generated.design.object.is_some_and(|object| object.unknown);
         write_blend(object, unknown, out)?;
@@ -132,7 +142,39 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
     if let Some(band) = &generated.band {
         write_band(band, out)?;
     }
-    write_transducer(generated, out)
+    Ok(())
+}
+
+/// The force of the feedback actuator.
+fn write_feedback(
+    feedback: &CertifiedFeedback,
+    mesh: Option<f64>,
+    asked: f64,
+    out: &mut String,
+) -> fmt::Result {
+    write_errors("feedback", "un", asked, &feedback.errors, out)?;
+    writeln!(
+        out,
+        "# The errors are of the force gained since rest. Its tables have the layout of the others, and words of their own.\n\
+         at_rest_un = {}\n\
+         shift = {}\n\
+         words_per_segment = {}\n\
+         bytes = {}\n\
+         comparison_error = {:.1e}",
+        feedback.scale.at_rest,
+        feedback.scale.shift,
+        feedback.layout.feedback_words(),
+        feedback.bytes(),
+        feedback.comparison_error,
+    )?;
+    match mesh {
+        Some(percent) => writeln!(
+            out,
+            "# The largest error of the force against meshes of both ends that are finer, percent of reading.\n\
+             mesh_percent = {percent:.1e}"
+        ),
+        None => Ok(()),
+    }
 }
 
 /// What a blend of the plate's tables and the reference ball's is worth.

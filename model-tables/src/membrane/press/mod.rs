@@ -7,6 +7,8 @@ mod load_stepping;
 mod sampled;
 
 pub use error::MembraneError;
+#[cfg(feature = "std")]
+pub use sampled::curve_depths;
 
 use crate::curve::Contact;
 use crate::design::Membrane as Dimensions;
@@ -248,14 +250,44 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 },
             });
         }
-        let parameters = &self.latest().solution.parameters;
+        Ok(self.contact(indentation, self.latest()))
+    }
+
+    /// The same of a design with another compliance, cubic metres per pascal, from the state of its own; `None` where Newton's method does
+    /// not come to it from there.
+    ///
+    /// # Errors
+    /// As [`Press::at_indentation`].
+    pub fn contact_with_compliance(
+        &mut self,
+        indentation: f64,
+        compliance: f64,
+    ) -> Result<Option<Contact>, MembraneError> {
+        let own = self.contact_at(indentation)?;
+        if indentation == 0.0 {
+            return Ok(Some(own));
+        }
+        let control = PressControl::Height(self.latest().solution.height);
+        let design = core::mem::replace(
+            &mut self.compliance,
+            compliance * self.scale.pressure / self.scale.volume(),
+        );
+        let closure = self.closure(control);
+        self.compliance = design;
+        let mut state = self.latest().clone();
+        let found = self.solver.settle(&mut state, &closure);
+        Ok(found.is_ok().then(|| self.contact(indentation, &state)))
+    }
+
+    fn contact(&self, indentation: f64, state: &Graded<S>) -> Contact {
+        let parameters = &state.solution.parameters;
         let radius = parameters[CONTACT_RADIUS] * self.scale.length;
         let rise = parameters[PRESSURE] - self.rest.solution.parameters[PRESSURE];
-        Ok(Contact {
+        Contact {
             indentation,
             pressure_rise: rise * self.scale.pressure,
             force: parameters[PRESSURE] * self.scale.pressure * PI * radius * radius,
-        })
+        }
     }
 
     /// Deformed radius of the contact's edge.

@@ -1,7 +1,7 @@
 //! A press as a curve.
 
 use super::{MembraneError, Press};
-use crate::curve::{Curve, CurveFailure};
+use crate::curve::{Contact, Curve, CurveFailure};
 use crate::material::Hyperelastic;
 
 impl<L: Hyperelastic, const S: usize> Press<L, S> {
@@ -12,15 +12,20 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// # Errors
     /// As [`Press::at_indentation`], and [`CurveFailure::Shape`] if pressure or force do not grow throughout.
     pub fn curve(&mut self, deepest: f64) -> Result<Curve, CurveFailure<MembraneError>> {
-        let mut points = Vec::with_capacity(CURVE_INTERVALS + 1);
-        for k in (0..=CURVE_INTERVALS).rev() {
-            let back = k as f64 / CURVE_INTERVALS as f64;
-            let logarithm = back * (1.0 - CROWDING + CROWDING * back);
-            let indentation = deepest * libm::pow(CURVE_RANGE, -logarithm);
-            points.push(self.contact_at(indentation).map_err(CurveFailure::Model)?);
-        }
-        Curve::new(points).map_err(CurveFailure::Shape)
+        let points: Result<Vec<Contact>, MembraneError> = curve_depths(deepest)
+            .map(|indentation| self.contact_at(indentation))
+            .collect();
+        Curve::new(points.map_err(CurveFailure::Model)?).map_err(CurveFailure::Shape)
     }
+}
+
+/// Indentations of the states of a curve down to `deepest`, metres, increasing.
+pub fn curve_depths(deepest: f64) -> impl Iterator<Item = f64> {
+    (0..=CURVE_INTERVALS).rev().map(move |k| {
+        let back = k as f64 / CURVE_INTERVALS as f64;
+        let logarithm = back * (1.0 - CROWDING + CROWDING * back);
+        deepest * libm::pow(CURVE_RANGE, -logarithm)
+    })
 }
 
 /// Intervals between the states of a curve.
