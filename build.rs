@@ -32,10 +32,16 @@ fn main() {
         "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
     );
     println!("cargo::rustc-check-cfg=cfg(object)");
+    println!("cargo::rustc-check-cfg=cfg(feedback)");
+    println!("cargo::rustc-check-cfg=cfg(feedback_tables)");
     println!("cargo::rustc-check-cfg=cfg(hand)");
     println!("cargo::rustc-check-cfg=cfg(tips)");
     if env::var_os("CARGO_FEATURE_TIPS").is_some() {
         println!("cargo::rustc-cfg=tips");
+    }
+    if env::var_os("CARGO_FEATURE_LOAD_TIP").is_some() {
+        // A tip that is loaded may have an actuator.
+        println!("cargo::rustc-cfg=feedback");
     }
     if let Err(reason) = build() {
         println!("cargo::error={}", reason.replace('\n', " "));
@@ -146,6 +152,12 @@ fn hand(path: &Path) -> Result<(String, String), String> {
                 tip.design.display()
             ));
         }
+        if generated.certified.feedback.is_some() {
+            return Err(format!(
+                "{}: the frames of a hand have no feedback force: leave actuator.thickness_mm out",
+                tip.design.display()
+            ));
+        }
         let wall = if generated.wall().is_some() {
             "relaxing"
         } else {
@@ -223,6 +235,13 @@ fn tables(design: &Path) -> Result<String, String> {
     if generated.certified.object.is_some() {
         // Tables of other objects than a plate, and the command that says which.
         println!("cargo::rustc-cfg=object");
+    }
+    if generated.certified.feedback.is_some() {
+        // The force of the feedback actuator, and its place in a reading.
+        println!("cargo::rustc-cfg=feedback_tables");
+        if env::var_os("CARGO_FEATURE_LOAD_TIP").is_none() {
+            println!("cargo::rustc-cfg=feedback");
+        }
     }
     Ok(generated.rust_source())
 }

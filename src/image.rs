@@ -9,6 +9,8 @@ use crate::signal::zero::limits::Limits;
 use crate::signal::zero::surroundings::Surroundings;
 use model_tables::constants::DesignConstants;
 use model_tables::table::Reading;
+#[cfg(feedback_tables)]
+use model_tables::units::Micronewtons;
 use model_tables::units::PressureRise;
 
 /// The build script's words.
@@ -82,5 +84,11 @@ impl Design for ImageDesign {
     #[inline]
     fn lookup(&self, rise: PressureRise) -> Reading {
         TABLES.lookup(rise)
+    }
+
+    #[cfg(feedback_tables)]
+    #[inline]
+    fn feedback(&self, rise: PressureRise) -> Option<Micronewtons> {
+        Some(generated::FEEDBACK.lookup(&TABLES.layout, rise))
     }
 }

@@ -34,10 +34,12 @@ def describe(frame):
     match frame:
         case Reading():
             warnings = "; ".join(word for warning, word in WARNING_WORDS.items() if warning in frame.warnings)
+            felt = "" if frame.feedback_force_n is None else (
+                f", feedback {1e6 * frame.feedback_force_n:.0f} uN, 1-sigma {1e6 * frame.feedback_force_sigma_n:.0f} uN")
             return head + (f"{'warning: ' + warnings if warnings else 'ok'}, {frame.touch.name.lower()}, "
                            f"{frame.pressure_rise_pa:.3f} Pa, {1e6 * frame.force_n:.0f} uN, {1e6 * frame.indentation_mm:.0f} nm, "
                            f"1-sigma {frame.pressure_rise_sigma_pa:.3f} Pa, {1e6 * frame.force_sigma_n:.0f} uN, "
-                           f"{1e6 * frame.indentation_sigma_mm:.0f} nm")
+                           f"{1e6 * frame.indentation_sigma_mm:.0f} nm{felt}")
         case FaultReport():
             return head + f"fault: {FAULT_WORDS[frame.reason]}"
         case Hello():

@@ -7,7 +7,7 @@ use crate::link::command::{CommandKind, Outcome};
 #[cfg(feature = "load-tip")]
 use crate::link::load::{self, LoadReply};
 use crate::link::wire::{DecodeError, Deframer, Encoded, PROTOCOL_VERSION, Reader, unstuff};
-use crate::signal::report::{Measurement, Report, Sigma};
+use crate::signal::report::{Feedback, FeedbackForce, Measurement, Report, Sigma};
 use crate::status::{Fault, LastFault, ResetCause, Stored, Touch, Warnings, code_of, named_by};
 use crate::units::Microseconds;
 use model_tables::table::known::KnownContact;
@@ -15,6 +15,8 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 pub(super) const HEADER: usize = 14;
 const READING: usize = HEADER + 28;
+/// Of a design with a feedback actuator.
+const FEEDBACK: usize = READING + 8;
 const FAULT: usize = HEADER + 1;
 const HELLO: usize = HEADER + 47;
 const ANSWER: usize = HEADER + 6;
@@ -149,6 +151,10 @@ pub fn write<const OBJECT: bool>(body: &mut Encoded, sequence: u16, dropped: u16
                 body.put(measurement.sigma.pressure_rise.0.to_le_bytes());
                 body.put(measurement.sigma.force.0.to_le_bytes());
                 body.put(measurement.sigma.indentation.0.to_le_bytes());
+                if let Some(FeedbackForce { force, sigma }) = measurement.feedback.force() {
+                    body.put(force.0.to_le_bytes());
+                    body.put(sigma.0.to_le_bytes());
+                }
             }
             Err(fault) => {
                 header(2, report.time);
@@ -255,12 +261,16 @@ pub(super) fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
     };
     let tells =
         kind == 4 && body.len() == KNOWN && body.get(HEADER) == Some(&CommandKind::Indentation.code());
-    if body.len() != expected && !tells {
+    let feels = cfg!(feedback) && kind == 1 && body.len() == FEEDBACK;
+    if body.len() != expected && !tells && !feels {
         return Err(DecodeError::Length);
     }
     let message = match kind {
         1 => {
-            let (measurement, pressure_fraction_bits) = read_measurement(&mut fields)?;
+            let (mut measurement, pressure_fraction_bits) = read_measurement(&mut fields)?;
+            if feels {
+                measurement.feedback = read_feedback(&mut fields)?;
+            }
             Message::Report {
                 report: Report {
                     time,
@@ -335,6 +345,7 @@ fn read_measurement(fields: &mut Reader<'_>) -> Result<(Measurement, u8), Decode
         },
         touch,
         warnings,
+        feedback: Feedback::NONE,
     };
     let sigma = &measurement.sigma;
     for (deviation, offset) in [
@@ -347,6 +358,19 @@ fn read_measurement(fields: &mut Reader<'_>) -> Result<(Measurement, u8), Decode
         }
     }
     Ok((measurement, pressure_fraction_bits))
+}
+
+fn read_feedback(fields: &mut Reader<'_>) -> Result<Feedback, DecodeError> {
+    let [force, sigma] = [fields.take()?, fields.take()?].map(i32::from_le_bytes);
+    for (number, offset) in [(force, 42), (sigma, 46)] {
+        if number < 0 {
+            return Err(DecodeError::Field(offset));
+        }
+    }
+    Ok(Feedback::of(FeedbackForce {
+        force: Micronewtons(force),
+        sigma: Micronewtons(sigma),
+    }))
 }
 
 pub(super) fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<Hello, DecodeError> {

@@ -1,7 +1,7 @@
 //! Pressure rise -> force and indentation with their 1-sigma, through the tables of the design.
 
 use crate::signal::design::Design;
-use crate::signal::report::{Contact, Sigma};
+use crate::signal::report::{Contact, Feedback, FeedbackForce, Sigma};
 use crate::status::Warnings;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
@@ -24,15 +24,7 @@ pub fn contact(design: &impl Design, rise: PressureRise, warnings: Warnings) -> 
 // On its own: woven into the reading's own lookup it takes the registers that this one needs.
 #[inline(never)]
 pub fn through_tables(design: &impl Design, rise: PressureRise, at: &Contact, sigma: PressureRise) -> Sigma {
-    let last = design.last_rise().0;
-    let rise = rise.0.clamp(0, last);
-    let above = rise.saturating_add(sigma.0);
-    let other = if above > last {
-        rise.saturating_sub(sigma.0)
-    } else {
-        above
-    };
-    let other = design.lookup(PressureRise(other));
+    let other = design.lookup(beside(design, rise, sigma));
     // Outputs of the tables are not negative, so no difference exceeds the word.
     let apart = |one: i32, another: i32| (one - another).abs().max(1);
     Sigma {
@@ -40,6 +32,33 @@ pub fn through_tables(design: &impl Design, rise: PressureRise, at: &Contact, si
         force: Micronewtons(apart(other.force.0, at.force.0)),
         indentation: Nanometres(apart(other.indentation.0, at.indentation.0)),
     }
+}
+
+/// A rise one deviation on, or back at the end of the tables.
+#[inline]
+fn beside(design: &impl Design, rise: PressureRise, sigma: PressureRise) -> PressureRise {
+    let last = design.last_rise().0;
+    let rise = rise.0.clamp(0, last);
+    let above = rise.saturating_add(sigma.0);
+    PressureRise(if above > last {
+        rise.saturating_sub(sigma.0)
+    } else {
+        above
+    })
+}
+
+/// What the feedback actuator presses with at a rise, with its 1-sigma as [`through_tables`] has it. It knows the pressure alone: whatever touches
+/// the fingertip, and whatever its wall remembers.
+#[inline]
+pub fn feedback(design: &impl Design, rise: PressureRise, sigma: PressureRise) -> Feedback {
+    let Some(force) = design.feedback(rise) else {
+        return Feedback::NONE;
+    };
+    let other = design.feedback(beside(design, rise, sigma)).unwrap_or(force);
+    Feedback::of(FeedbackForce {
+        force,
+        sigma: Micronewtons(other.0.saturating_sub(force.0).saturating_abs().max(1)),
+    })
 }
 
 #[cfg(test)]
@@ -52,7 +71,7 @@ mod tests {
     use model_tables::table::Reading;
     use proptest::prelude::*;
 
-    fn beside(design: &impl Design, rise: i32, sigma: i32) -> Sigma {
+    fn deviation(design: &impl Design, rise: i32, sigma: i32) -> Sigma {
         let rise = PressureRise(rise);
         through_tables(
             design,
@@ -116,16 +135,63 @@ mod tests {
 
     #[test]
     fn at_the_end_of_the_tables_it_is_taken_from_below() {
-        let sigma = beside(&Linear::NEW, RISE_END - 5, 700);
+        let sigma = deviation(&Linear::NEW, RISE_END - 5, 700);
         assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700));
-        let below = beside(&Linear::NEW, -9_000, 700);
+        let below = deviation(&Linear::NEW, -9_000, 700);
         assert_eq!(below.force.0, 700);
+    }
+
+    /// An actuator that presses with 200 uN at rest and with 1 uN more for each count.
+    #[cfg(feedback)]
+    struct Actuated(Linear);
+
+    #[cfg(feedback)]
+    impl Design for Actuated {
+        type Wall = Elastic;
+        type Around = [Surroundings; 1];
+
+        fn parameters(&self) -> &Parameters {
+            self.0.parameters()
+        }
+
+        fn lookup(&self, rise: PressureRise) -> Reading {
+            self.0.lookup(rise)
+        }
+
+        fn feedback(&self, rise: PressureRise) -> Option<Micronewtons> {
+            Some(Micronewtons(self.lookup(rise).force.0 + 200))
+        }
+    }
+
+    #[cfg(feedback)]
+    #[test]
+    fn an_actuator_has_its_force_and_the_deviation_of_the_pressure() {
+        let at = |rise: i32| {
+            let found = feedback(&Actuated(Linear::NEW), PressureRise(rise), PressureRise(700));
+            let FeedbackForce { force, sigma } = found.force().expect("an actuator");
+            (force.0, sigma.0)
+        };
+        assert_eq!(at(0), (200, 700));
+        assert_eq!(at(-20_000), (200, 700));
+        assert_eq!(at(5_000), (5_200, 700));
+        assert_eq!(at(RISE_END - 5), (RISE_END + 195, 700));
+        // Beyond the end the force is that of the end, a lower bound.
+        assert_eq!(at(i32::MAX), (RISE_END + 200, 700));
+        let still = feedback(&Actuated(Linear::NEW), PressureRise(50), PressureRise(0));
+        assert_eq!(still.force().map(|force| force.sigma), Some(Micronewtons(1)));
+    }
+
+    #[test]
+    fn a_design_without_an_actuator_has_no_feedback() {
+        let found = feedback(&Linear::NEW, PressureRise(5_000), PressureRise(700));
+        assert_eq!(found, Feedback::NONE);
+        assert_eq!(found.force(), None);
     }
 
     #[test]
     fn beyond_the_end_it_is_what_it_is_at_the_end() {
         for beyond in [1, 700, 10_000, i32::MAX - RISE_END] {
-            let sigma = beside(&Linear::NEW, RISE_END + beyond, 700);
+            let sigma = deviation(&Linear::NEW, RISE_END + beyond, 700);
             assert_eq!((sigma.force.0, sigma.indentation.0), (700, 700), "{beyond}");
         }
     }
@@ -134,9 +200,9 @@ mod tests {
         #[test]
         fn no_deviation_overflows(rise in any::<i32>(), sigma in 0..=i32::MAX) {
             for sigma in [
-                beside(&Linear::NEW, rise, sigma),
-                beside(&Linear::with(TRANSDUCERS[4]), rise, sigma),
-                beside(&Shallow(Linear::NEW), rise, sigma),
+                deviation(&Linear::NEW, rise, sigma),
+                deviation(&Linear::with(TRANSDUCERS[4]), rise, sigma),
+                deviation(&Shallow(Linear::NEW), rise, sigma),
             ] {
                 prop_assert!(sigma.force.0 > 0 && sigma.indentation.0 > 0);
             }

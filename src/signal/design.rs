@@ -15,7 +15,7 @@ use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
 use model_tables::table::known::{KnownContact, ReadPair};
 use model_tables::table::law::Touched;
-use model_tables::units::{Nanometres, PressureRise};
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// A design with its tables.
 pub trait Design {
@@ -39,6 +39,12 @@ pub trait Design {
 
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     fn lookup(&self, rise: PressureRise) -> Reading;
+
+    /// Force of the feedback actuator at a pressure rise; nothing of a design without one.
+    #[inline]
+    fn feedback(&self, _rise: PressureRise) -> Option<Micronewtons> {
+        None
+    }
 
     /// The last rise that the lookup covers now.
     #[inline]

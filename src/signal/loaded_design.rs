@@ -11,11 +11,12 @@ use model_tables::material::relaxation::MAX_TERMS;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
 use model_tables::table::blend::BlendedTables;
+use model_tables::table::feedback::LoadedFeedback;
 use model_tables::table::known::{KnownContact, ReadPair};
 use model_tables::table::law::Touched;
 use model_tables::table::loaded::LoadedTables;
 use model_tables::table::objects::LoadedObjects;
-use model_tables::units::{Nanometres, PressureRise};
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// A design that is known at run time only.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +25,7 @@ pub struct LoadedDesign<'a> {
     tables: LoadedTables<'a>,
     relaxation: Option<WallSeries>,
     objects: Option<LoadedObjects<'a>>,
+    feedback: Option<LoadedFeedback<'a>>,
     /// Of what is touched, unless that is a plate.
     blended: Option<BlendedTables>,
     read: Option<ReadPair>,
@@ -50,6 +52,7 @@ impl<'a> LoadedDesign<'a> {
             tables: tip.tables,
             relaxation: tip.relaxation,
             objects: tip.objects,
+            feedback: tip.feedback,
             blended: None,
             read: None,
         };
@@ -79,6 +82,11 @@ impl Design for LoadedDesign<'_> {
             Some(tables) => tables.lookup(rise),
             None => self.tables.lookup(rise),
         }
+    }
+
+    fn feedback(&self, rise: PressureRise) -> Option<Micronewtons> {
+        let feedback = self.feedback.as_ref()?;
+        Some(feedback.lookup(rise))
     }
 
     fn last_rise(&self) -> PressureRise {

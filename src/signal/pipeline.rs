@@ -1,6 +1,7 @@
 //! The stages, called in order.
 
 use crate::signal::calibration::{Calibration, Gain};
+use crate::signal::contact::feedback;
 use crate::signal::design::{Design, NoSuchObject, Parameters, Rise, Wall};
 use crate::signal::filter::{Filter, GROUP_DELAY};
 use crate::signal::fluid::FluidHealth;
@@ -196,6 +197,7 @@ impl<D: Design> Pipeline<D> {
                 .and(self.standing)
                 .and(self.fluid.suspicions())
                 .and(Warnings::TEMPERATURE.when(doubtful)),
+            feedback: feedback(&self.design, rise, sigma.pressure_rise),
         })
     }
 

@@ -10,7 +10,7 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 /// | status | what the fields mean |
 /// |---|---|
 /// | ok | all hold, within their 1-sigma |
-/// | warning: saturated | force and indentation are lower bounds, and so is the rise beyond the transducer's range |
+/// | warning: saturated | forces and indentation are lower bounds, and so is the rise beyond the transducer's range |
 /// | warning: below zero | force and indentation are 0; a touch may be hidden |
 /// | warning: recovering | force is 0 within its 1-sigma, indentation an upper bound; touch is unknown |
 /// | warning: past unknown | all hold within their 1-sigma, which narrows |
@@ -34,6 +34,8 @@ pub struct Measurement {
     pub touch: Touch,
     /// What qualifies the others.
     pub warnings: Warnings,
+    /// What the actuator makes of it.
+    pub feedback: Feedback,
 }
 
 impl Measurement {
@@ -54,6 +56,52 @@ impl Measurement {
             indentation: self.indentation,
             indentation_sigma: self.sigma.indentation,
         })
+    }
+}
+
+/// What the feedback actuator presses the wearer with. It takes room, and can hold a force, only where the design has an actuator, or one may be
+/// loaded.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Feedback {
+    #[cfg(feedback)]
+    force: Option<FeedbackForce>,
+}
+
+/// A force of the feedback actuator.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct FeedbackForce {
+    /// The force on the wearer's skin, >= 0; a lower bound where the reading is saturated.
+    pub force: Micronewtons,
+    /// Its one standard deviation, > 0: that of the pressure. What the model leaves out is not in it.
+    pub sigma: Micronewtons,
+}
+
+impl Feedback {
+    /// No actuator.
+    pub const NONE: Self = Self {
+        #[cfg(feedback)]
+        force: None,
+    };
+
+    /// The force of a design's actuator; nothing where there is no room for it.
+    #[cfg_attr(not(feedback), expect(unused_variables, reason = "there is no room for it"))]
+    pub const fn of(force: FeedbackForce) -> Self {
+        Self {
+            #[cfg(feedback)]
+            force: Some(force),
+        }
+    }
+
+    /// The force; `None` of a design without an actuator.
+    pub const fn force(self) -> Option<FeedbackForce> {
+        #[cfg(feedback)]
+        {
+            self.force
+        }
+        #[cfg(not(feedback))]
+        {
+            None
+        }
     }
 }
 

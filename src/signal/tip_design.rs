@@ -8,7 +8,7 @@ use model_tables::material::relaxation::MAX_TERMS;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
 use model_tables::table::law::Touched;
-use model_tables::units::PressureRise;
+use model_tables::units::{Micronewtons, PressureRise};
 
 /// A loaded design, or else the one that is folded into the image.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +45,14 @@ impl<I: Design> Design for TipDesign<'_, I> {
         match self {
             Self::Image(image) => image.lookup(rise),
             Self::Loaded(loaded) => loaded.lookup(rise),
+        }
+    }
+
+    #[inline]
+    fn feedback(&self, rise: PressureRise) -> Option<Micronewtons> {
+        match self {
+            Self::Image(image) => image.feedback(rise),
+            Self::Loaded(loaded) => loaded.feedback(rise),
         }
     }
 

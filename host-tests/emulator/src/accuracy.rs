@@ -145,6 +145,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 mod tests {
     use super::*;
     use crate::plant::tests::{closed_form, press, ramp};
+    use crate::record::FeedbackPair;
     use fingertip::status::{Fault, Touch};
 
     /// A row whose force is off by `share`, with a pressure that is off by `pascals`.
@@ -161,6 +162,7 @@ mod tests {
             }),
             sigma: None,
             touch: Touch::Touched,
+            feedback: FeedbackPair::default(),
         }
     }
 

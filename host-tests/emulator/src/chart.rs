@@ -17,6 +17,8 @@ use std::fmt;
 /// Width and height in pixels.
 /// A page or a phone shows it 400 pixels wide: letters are then 11 pixels high.
 const SIZE: (u32, u32) = (720, 1560);
+/// More of it for a panel of the feedback force, pixels.
+const MORE: u32 = 340;
 /// Left of the panels, pixels.
 const MARGIN: u32 = 14;
 /// Left of the data, pixels.
@@ -81,23 +83,34 @@ fn drawing(error: impl fmt::Display) -> ChartError {
 /// One of the upper panels.
 struct Quantity {
     label: &'static str,
-    of: fn(&Contact) -> f64,
+    /// Truth and report of a row.
+    of: fn(&Row) -> [Option<f64>; 2],
+}
+
+/// A quantity of the contact, true and reported.
+fn pair(row: &Row, of: fn(&Contact) -> f64) -> [Option<f64>; 2] {
+    [Some(of(&row.truth)), row.reported.as_ref().map(of)]
 }
 
 const QUANTITIES: [Quantity; 3] = [
     Quantity {
         label: "pressure rise / kPa",
-        of: |contact| contact.pressure_rise * 1e-3,
+        of: |row| pair(row, |contact| contact.pressure_rise * 1e-3),
     },
     Quantity {
         label: "force / N",
-        of: |contact| contact.force,
+        of: |row| pair(row, |contact| contact.force),
     },
     Quantity {
         label: "indentation / mm",
-        of: |contact| contact.indentation * 1e3,
+        of: |row| pair(row, |contact| contact.indentation * 1e3),
     },
 ];
+/// Where there is an actuator.
+const FEEDBACK: Quantity = Quantity {
+    label: "feedback force / N",
+    of: |row| [row.feedback.truth, row.feedback.reported],
+};
 
 /// The chart as SVG.
 ///
@@ -106,12 +119,18 @@ const QUANTITIES: [Quantity; 3] = [
 pub fn svg(rows: &[Row], caption: &Caption) -> Result<String, ChartError> {
     let mut text = String::new();
     {
-        let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+        let more = if feels(rows) { MORE } else { 0 };
+        let root = SVGBackend::with_string(&mut text, (SIZE.0, SIZE.1 + more)).into_drawing_area();
         root.fill(&WHITE).map_err(drawing)?;
         draw(&root, rows, caption)?;
         root.present().map_err(drawing)?;
     }
     Ok(text)
+}
+
+/// Whether there is an actuator.
+fn feels(rows: &[Row]) -> bool {
+    rows.iter().any(|row| row.feedback.truth.is_some())
 }
 
 fn draw(root: &Area<'_>, rows: &[Row], caption: &Caption) -> Result<(), ChartError> {
@@ -121,26 +140,24 @@ fn draw(root: &Area<'_>, rows: &[Row], caption: &Caption) -> Result<(), ChartErr
     let time = first.time..last.time;
     let (head, body) = root.split_vertically(heading_height(caption));
     heading(&head, caption)?;
-    let panels = body.split_evenly((4, 1));
+    let feedback = if feels(rows) { &[FEEDBACK][..] } else { &[] };
+    let quantities: Vec<&Quantity> = QUANTITIES.iter().chain(feedback).collect();
+    let panels = body.split_evenly((quantities.len() + 1, 1));
     let spells = spells(rows);
-    for (quantity, area) in QUANTITIES.iter().zip(&panels) {
-        let values = rows.iter().map(|row| (quantity.of)(&row.truth));
-        let reported = rows
-            .iter()
-            .filter_map(|row| row.reported.as_ref())
-            .map(quantity.of);
-        let top = values.chain(reported).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+    for (quantity, area) in quantities.iter().zip(&panels) {
+        let values = rows.iter().flat_map(quantity.of).flatten();
+        let top = values.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         let mut panel = panel(area, quantity.label, time.clone(), -0.04 * top..1.08 * top, "")?;
         shade(&mut panel, &spells, -0.04 * top..1.08 * top)?;
         let truth: Vec<(f64, f64)> = thinned(rows)
-            .map(|row| (row.time, (quantity.of)(&row.truth)))
+            .filter_map(|row| Some((row.time, (quantity.of)(row)[0]?)))
             .collect();
         let wide = TRUTH.stroke_width(6);
         panel.draw_series(LineSeries::new(truth, wide)).map_err(drawing)?;
-        let points = thinned(rows).map(|row| (row.time, row.reported.as_ref().map(quantity.of)));
+        let points = thinned(rows).map(|row| (row.time, (quantity.of)(row)[1]));
         line(&mut panel, points, REPORT)?;
     }
-    errors(&panels[3], rows, caption, time, &spells)
+    errors(&panels[quantities.len()], rows, caption, time, &spells)
 }
 
 /// A text in lines that fit beside the margin, in letters of that height.
@@ -401,6 +418,7 @@ fn thinned(rows: &[Row]) -> impl Iterator<Item = &Row> {
 mod tests {
     use super::*;
     use crate::plant::tests::{press, ramp};
+    use crate::record::FeedbackPair;
     use fingertip::status::{Touch, Warnings};
     use model_tables::random::Random;
 
@@ -423,6 +441,7 @@ mod tests {
                 reported: (ms >= 80).then(|| plant.curve().at_pressure_rise(rise)),
                 sigma: None,
                 touch: Touch::Unknown,
+                feedback: FeedbackPair::default(),
             }
         });
         (rows.collect(), plant.full_scale())
@@ -458,6 +477,21 @@ mod tests {
         if let Some(path) = std::env::var_os("CHART_TO_LOOK_AT") {
             std::fs::write(path, svg).expect("it can be written");
         }
+    }
+
+    #[test]
+    fn a_feedback_force_has_a_panel_where_there_is_one() {
+        let (mut rows, full_scale) = rows();
+        let without = svg(&rows, &caption(full_scale)).expect("it can be drawn");
+        assert!(!without.contains("feedback force / N") && without.contains("height=\"1560\""));
+        for row in &mut rows {
+            row.feedback = FeedbackPair {
+                truth: Some(0.1 * row.truth.force),
+                reported: row.reported.map(|reported| 0.1 * reported.force),
+            };
+        }
+        let with = svg(&rows, &caption(full_scale)).expect("it can be drawn");
+        assert!(with.contains("feedback force / N") && with.contains("height=\"1900\""));
     }
 
     #[test]

@@ -6,9 +6,12 @@ use crate::transducer::{EmulatedTransducer, Part, Wiring};
 use model_tables::curve::CurveFailure;
 use model_tables::curve::{Contact, Curve};
 use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
+use model_tables::generate::feedback::FeedbackCurve;
 use model_tables::generate::{self, GenerateError};
 use model_tables::model::Fingertip;
 use model_tables::model::ModelError;
+use model_tables::model::feedback::{Loop, LoopError};
+use model_tables::solid::disc::DISC;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -35,6 +38,8 @@ pub enum FingertipDesignError {
     Rest(ModelError),
     /// The model does not reach the deepest indentation.
     Press(CurveFailure<ModelError>),
+    /// Fingertip and actuator do not, together.
+    Loop(LoopError),
     /// The data of a design from data do not.
     Data(PathBuf, Box<GenerateError>),
 }
@@ -52,6 +57,7 @@ impl fmt::Display for FingertipDesignError {
             ),
             Self::Rest(error) => error.fmt(f),
             Self::Press(error) => error.fmt(f),
+            Self::Loop(error) => error.fmt(f),
             Self::Data(path, error) => write!(f, "{}: {error}", path.display()),
         }
     }
@@ -157,7 +163,7 @@ impl FingertipDesign {
         if let Some(fault) = scenario.wire.iter().find(concerns) {
             return Err(FingertipDesignError::NoSuchFault(self.path.clone(), fault.is));
         }
-        let (rest_pressure, curve) = self.press()?;
+        let (rest_pressure, curve, feedback) = self.press()?;
         let allowed = self.file.accuracy.map_or([0.0; 2], |accuracy| {
             [
                 accuracy.force_percent_of_reading / 100.0,
@@ -171,32 +177,54 @@ impl FingertipDesign {
             self.transducer,
             scenario,
         )
-        .with_tables_allowed(allowed))
+        .with_tables_allowed(allowed)
+        .with_feedback(feedback))
     }
 
-    /// Rest pressure and press as the transducer reads them.
+    /// Rest pressure and press as the transducer reads them, and the force of the actuator that shares the fluid.
     ///
     /// # Errors
-    /// [`FingertipDesignError::Rest`] and [`FingertipDesignError::Press`]; of a design from data
+    /// [`FingertipDesignError::Rest`], [`FingertipDesignError::Press`] and [`FingertipDesignError::Loop`]; of a design from data
     /// [`FingertipDesignError::Data`].
-    fn press(&self) -> Result<(f64, Curve), FingertipDesignError> {
+    fn press(&self) -> Result<(f64, Curve, Option<FeedbackCurve>), FingertipDesignError> {
         let calibration = &self.file.calibration;
         if calibration.curve.is_some() {
             // No model knows such a device: what was measured is all there is.
             let measured = generate::solve(&self.file)
                 .map_err(|error| FingertipDesignError::Data(self.path.clone(), Box::new(error)))?;
-            return Ok((measured.rest_pressure, measured.curve));
+            return Ok((measured.rest_pressure, measured.curve, measured.feedback));
         }
         let mut press = Fingertip::new(&self.file).map_err(FingertipDesignError::Rest)?;
-        let curve = press
-            .curve(self.max_indentation)
-            .map_err(FingertipDesignError::Press)?;
+        let rest_pressure = calibration.pressure_read(press.rest_pressure());
+        let haptic = Loop::of_file(&self.file, press.kind(), DISC).map_err(FingertipDesignError::Loop)?;
+        let (curve, feedback) = if let Some(mut haptic) = haptic {
+            let found = haptic
+                .curve(self.max_indentation)
+                .map_err(|failure| match failure {
+                    CurveFailure::Model(error) => FingertipDesignError::Loop(error),
+                    CurveFailure::Shape(error) => FingertipDesignError::Press(CurveFailure::Shape(error)),
+                })?;
+            let at_rest = found.force_at_rest;
+            let gained = found.feedback.map(|gained| self.as_read(&gained)).transpose()?;
+            (
+                found.touch,
+                gained.map(|gained| FeedbackCurve { gained, at_rest }),
+            )
+        } else {
+            let curve = press.curve(self.max_indentation);
+            (curve.map_err(FingertipDesignError::Press)?, None)
+        };
+        Ok((rest_pressure, self.as_read(&curve)?, feedback))
+    }
+
+    /// A curve as the transducer reads it.
+    fn as_read(&self, curve: &Curve) -> Result<Curve, FingertipDesignError> {
+        let gain = self.file.calibration.pressure_gain;
         let read = |point: &Contact| Contact {
-            pressure_rise: calibration.pressure_gain * point.pressure_rise,
+            pressure_rise: gain * point.pressure_rise,
             ..*point
         };
-        let curve = Curve::new(curve.points().iter().map(read).collect())
-            .map_err(|error| FingertipDesignError::Press(CurveFailure::Shape(error)))?;
-        Ok((calibration.pressure_read(press.rest_pressure()), curve))
+        Curve::new(curve.points().iter().map(read).collect())
+            .map_err(|error| FingertipDesignError::Press(CurveFailure::Shape(error)))
     }
 }

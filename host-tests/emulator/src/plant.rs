@@ -3,6 +3,7 @@
 use crate::scenario::Scenario;
 use crate::transducer::{ElectricalOutput, EmulatedTransducer, Part, Wiring};
 use model_tables::curve::{Contact, Curve};
+use model_tables::generate::feedback::FeedbackCurve;
 use model_tables::random::Random;
 
 /// A report is made of samples up to one period before and after its time, and a part takes up to a period to measure one.
@@ -21,6 +22,8 @@ pub struct Plant {
     noise: Random,
     /// Shares of reading of force and indentation that the tables may be off.
     tables_allowed: [f64; 2],
+    /// The feedback actuator at the other end of the line; `None`: there is none that presses.
+    feedback: Option<FeedbackCurve>,
     /// A share of the largest indentation and its pressure rise: most of the time the plate stands still.
     last: (f64, f64),
 }
@@ -43,6 +46,7 @@ impl Plant {
             scenario,
             noise,
             tables_allowed: [0.0; 2],
+            feedback: None,
             last: (0.0, 0.0),
         }
     }
@@ -54,6 +58,12 @@ impl Plant {
             tables_allowed,
             ..self
         }
+    }
+
+    /// The same with a feedback actuator at the other end of the line, which `curve` knows of.
+    #[must_use]
+    pub fn with_feedback(self, feedback: Option<FeedbackCurve>) -> Self {
+        Self { feedback, ..self }
     }
 
     /// The same fingertip going through another scenario.
@@ -87,6 +97,13 @@ impl Plant {
     pub fn truth(&self, time: f64) -> Contact {
         self.curve
             .at_indentation(self.scenario.indentation_share(time) * self.max_indentation)
+    }
+
+    /// What the actuator presses the wearer with at a time in seconds, newtons; `None` without one.
+    pub fn feedback_truth(&self, time: f64) -> Option<f64> {
+        let feedback = self.feedback.as_ref()?;
+        let gained = feedback.gained.at_pressure_rise(self.truth(time).pressure_rise);
+        Some(feedback.at_rest + gained.force)
     }
 
     /// The contact at the deepest indentation: what "full scale" means.

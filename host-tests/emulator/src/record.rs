@@ -35,6 +35,17 @@ pub struct Row {
     pub sigma: Option<Contact>,
     /// Whether it feels a touch.
     pub touch: Touch,
+    /// What the actuator presses the wearer with.
+    pub feedback: FeedbackPair,
+}
+
+/// A force of the feedback actuator, newtons.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FeedbackPair {
+    /// The truth, newtons; `None` without an actuator.
+    pub truth: Option<f64>,
+    /// What the firmware reports, newtons; `None` without an actuator, and where it reports a fault.
+    pub reported: Option<f64>,
 }
 
 /// Everything that came over the wire in one run.
@@ -97,6 +108,10 @@ impl<F: FnMut(&Row) + Send + 'static> Recorder<F> {
                     touch: report
                         .outcome
                         .map_or(Touch::Unknown, |measurement| measurement.touch),
+                    feedback: FeedbackPair {
+                        truth: plant.feedback_truth(time),
+                        reported: feedback(report),
+                    },
                 };
                 (self.on_row)(&row);
                 self.record.latencies.push(moment.time - time);
@@ -143,6 +158,12 @@ fn sigma(report: &Report, pressure_fraction_bits: u8) -> Option<Contact> {
     })
 }
 
+/// The force of the feedback actuator, newtons.
+fn feedback(report: &Report) -> Option<f64> {
+    let feedback = report.outcome.ok()?.feedback.force()?;
+    Some(feedback.force.newtons())
+}
+
 /// The columns of the CSV file: a contract with scripts.
 pub const COLUMNS: [&str; 8] = [
     "time_ms",
@@ -155,13 +176,19 @@ pub const COLUMNS: [&str; 8] = [
     "indentation_mm",
 ];
 
-/// Writes the rows as CSV with [`COLUMNS`]; the last three are empty where there is no reading.
+/// What follows them where there is a feedback actuator.
+pub const FEEDBACK_COLUMNS: [&str; 2] = ["true_feedback_force_n", "feedback_force_n"];
+
+/// Writes the rows as CSV with [`COLUMNS`], and with [`FEEDBACK_COLUMNS`] where there is an actuator; what is reported is empty where there is no
+/// reading.
 ///
 /// # Errors
 /// What the writer answers.
 pub fn write_csv(rows: &[Row], to: impl Write) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(to);
-    writer.write_record(COLUMNS)?;
+    let feels = rows.iter().any(|row| row.feedback.truth.is_some());
+    let beside = if feels { &FEEDBACK_COLUMNS[..] } else { &[] };
+    writer.write_record(COLUMNS.iter().chain(beside))?;
     for row in rows {
         let reported = row.reported.map_or([const { String::new() }; 3], |reported| {
             [
@@ -177,7 +204,14 @@ pub fn write_csv(rows: &[Row], to: impl Write) -> csv::Result<()> {
             format!("{:.12}", row.truth.indentation * 1e3),
             row.status.to_string(),
         ];
-        writer.write_record(truth.iter().chain(&reported))?;
+        let FeedbackPair {
+            truth: force,
+            reported: felt,
+        } = row.feedback;
+        let feedback = [(force, 12), (felt, 6)]
+            .map(|(value, decimals)| value.map_or_else(String::new, |value| format!("{value:.decimals$}")));
+        let beside = if feels { &feedback[..] } else { &[] };
+        writer.write_record(truth.iter().chain(&reported).chain(beside))?;
     }
     writer.flush()?;
     Ok(())
@@ -188,7 +222,7 @@ mod tests {
     use super::*;
     use crate::plant::tests::{press, ramp};
     use fingertip::link::telemetry::encode;
-    use fingertip::signal::report::{Measurement, Sigma};
+    use fingertip::signal::report::{Feedback, Measurement, Sigma};
     use fingertip::status::{Fault, Touch, Warnings};
     use fingertip::units::Microseconds;
     use model_tables::units::{Micronewtons, Nanometres, PressureRise};
@@ -233,6 +267,7 @@ mod tests {
         },
         touch: Touch::Touched,
         warnings: Warnings::NONE,
+        feedback: Feedback::NONE,
     };
 
     #[test]

@@ -1,7 +1,7 @@
 //! The terminal: the status, values with their unit or the reason why there are none; a chart of the last seconds; what happened.
 
 use crate::keys::HELP;
-use crate::readings::{Connection, HISTORY, HistoryPoint, Monitor};
+use crate::readings::{Connection, HISTORY, HistoryPoint, LiveValues, Monitor};
 use fingertip::link::wire::PROTOCOL_VERSION;
 use fingertip::status::{Status, Touch};
 use ratatui::Frame;
@@ -21,7 +21,7 @@ const KEYS: [&str; 2] = [
 const ROOMY: [u16; 2] = [60, 17];
 /// From this width on the 1-sigma stands beside its value.
 const WIDE: u16 = 50;
-/// Lines of values: status, touch, force, peak, indentation, pressure rise.
+/// Lines of values: status, touch, force, peak, indentation, pressure rise. Of a design with a feedback actuator there is one more.
 const VALUES: u16 = 6;
 
 /// What the chart shows.
@@ -81,10 +81,12 @@ pub struct ViewContext {
 /// Draws everything; `now` is the time since the start.
 pub fn draw(frame: &mut Frame<'_>, monitor: &Monitor, context: &ViewContext, now: Duration) {
     let all = frame.area();
+    let shown = monitor.latest(now).and_then(|reading| reading.values);
+    let lines = VALUES + u16::from(shown.is_some_and(|values| values.feedback_force_n.is_some()));
     if all.width >= ROOMY[0] && all.height >= ROOMY[1] {
         let [title, values, chart, journal, keys] = Layout::vertical([
             Constraint::Length(1),
-            Constraint::Length(VALUES + 2),
+            Constraint::Length(lines + 2),
             Constraint::Min(2),
             Constraint::Length(if all.height >= 24 { 6 } else { 4 }),
             Constraint::Length(1),
@@ -102,7 +104,7 @@ pub fn draw(frame: &mut Frame<'_>, monitor: &Monitor, context: &ViewContext, now
     } else {
         // The status first, and whole: it decides what the rest is worth.
         let [values, journal, keys] = Layout::vertical([
-            Constraint::Length(VALUES),
+            Constraint::Length(lines),
             Constraint::Min(0),
             Constraint::Length(1),
         ])
@@ -240,7 +242,7 @@ fn readings(monitor: &Monitor, width: u16, now: Duration) -> Vec<Line<'static>> 
     } else {
         word.clone()
     };
-    vec![
+    let mut lines = vec![
         Line::styled(shown, Style::new().fg(color).add_modifier(Modifier::BOLD)),
         value("force", ok.map(|values| values.force_n), 4, "N"),
         value("indentation", ok.map(|values| values.indentation_mm), 4, "mm"),
@@ -255,7 +257,16 @@ fn readings(monitor: &Monitor, width: u16, now: Duration) -> Vec<Line<'static>> 
         ),
         Line::from(format!(" {:<13} {touch:>10}", "touch")),
         Line::from(format!(" {:<13} {peak}", "peak force")),
-    ]
+    ];
+    let feedback = |values: LiveValues| values.feedback_force_n;
+    if latest
+        .and_then(|reading| reading.values)
+        .and_then(feedback)
+        .is_some()
+    {
+        lines.insert(3, value("feedback", ok.and_then(feedback), 4, "N"));
+    }
+    lines
 }
 
 /// The stretches of the history in which there is a value.

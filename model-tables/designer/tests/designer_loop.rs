@@ -120,3 +120,30 @@ fn what_is_no_loop_in_time_is_refused_in_one_line() {
     let line = refusal(&["loop", &good, "--history", &file, "--indentation-mm", "1"]);
     assert!(line.contains("cannot be used with"), "{line}");
 }
+
+/// The tables of a loop: what the chip would say is what the loop gives, and a design without has the columns of the contract alone.
+#[test]
+fn the_chip_tells_the_feedback_force_of_a_loop() {
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/haptic-loop.toml");
+    let (_, states) = header_and_rows(&["loop", shipped, "--indentation-mm", "0.5,2"]);
+    let number = |text: &String| text.parse::<f64>().expect("a number");
+    let rises: Vec<String> = states
+        .iter()
+        .map(|state| format!("{}", 1e3 * number(&state[1])))
+        .collect();
+    let (header, rows) = header_and_rows(&["estimate", shipped, "--pressure-rise-pa", &rises.join(",")]);
+    assert_eq!(
+        header,
+        "pressure_rise_pa,force_n,indentation_mm,status,feedback_force_n"
+    );
+    for (row, state) in rows.iter().zip(&states) {
+        // Touch force, indentation and feedback force.
+        for (got, truth) in [(1, 2), (2, 0), (4, 3)] {
+            let share = number(&row[got]) / number(&state[truth]) - 1.0;
+            assert!(share.abs() < 3e-3, "{row:?} for {state:?}");
+        }
+    }
+    let elastic = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/paper-prestretched.toml");
+    let (header, _) = header_and_rows(&["estimate", elastic, "--pressure-rise-pa", "600"]);
+    assert_eq!(header, "pressure_rise_pa,force_n,indentation_mm,status");
+}

@@ -106,6 +106,20 @@ def test_the_pages_frames_are_what_the_page_states_of_them():
     assert (found.offset, found.content) == (0, b"FTIP")
 
 
+def test_a_feedback_force_stands_behind_a_reading():
+    coded = example("feedback, sequence 0x0102")
+    found = decoded(coded)
+    assert (found.feedback_force_n, found.feedback_force_sigma_n) == pytest.approx((0.445, 0.0018))
+    alone = decoded(example("reading, sequence 0x0102"))
+    assert alone.feedback_force_n is None and alone.force_n == found.force_n
+    batch = telemetry.Batch.of([found, alone])
+    assert batch.feedback_force_n[0] == pytest.approx(0.445) and np.isnan(batch.feedback_force_n[1])
+    body = frames.body_of(coded[:-1])
+    for cut in (body[:46], body[:42] + struct.pack("<2i", -1, 1), body[:42] + struct.pack("<2i", 1, -1)):
+        with pytest.raises(frames.FrameError):
+            frames.decode(cut)
+
+
 def test_commands_are_the_pages_bytes():
     for what, kind, sequence, payload in [
         ("tare, sequence 0x0102", CommandKind.TARE, 0x0102, b""),

@@ -7,7 +7,7 @@ use super::{
 use crate::link::command::{self, CommandKind, Outcome, Request};
 use crate::link::telemetry::{self, Answer, HEADER};
 use crate::link::wire::{DecodeError, HAND_VERSION, PROTOCOL_VERSION, Reader};
-use crate::signal::report::{Measurement, Report, Sigma};
+use crate::signal::report::{Feedback, Measurement, Report, Sigma};
 use crate::status::{Fault, Stored, Touch, Warnings, named_by};
 use crate::units::Microseconds;
 use heapless::{String, Vec};
@@ -156,6 +156,7 @@ fn read_reading(fields: &mut Reader<'_>, tip: u8) -> Result<Result<Measurement, 
         },
         touch,
         warnings,
+        feedback: Feedback::NONE,
     }))
 }
 

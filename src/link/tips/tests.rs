@@ -1,6 +1,6 @@
 use super::*;
 use crate::link::command::{Command, CommandKind};
-use crate::signal::report::{Measurement, Sigma};
+use crate::signal::report::{Feedback, Measurement, Sigma};
 use crate::status::{LastFault, ResetCause, Warnings};
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 use proptest::prelude::*;
@@ -43,6 +43,7 @@ fn measurement() -> Measurement {
         },
         touch: Touch::Touched,
         warnings: Warnings::SATURATED,
+        feedback: Feedback::NONE,
     }
 }
 

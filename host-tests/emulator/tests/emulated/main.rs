@@ -5,6 +5,7 @@ mod bus;
 mod cost;
 mod crash;
 mod faults;
+mod feedback;
 mod hand;
 mod hold;
 mod integers;

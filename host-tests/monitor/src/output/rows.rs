@@ -7,8 +7,9 @@ use std::io;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// The columns. `time_ms` is the board's clock since its reset, `host_time_s` the host's since 1970-01-01 UTC of the same instant;
-/// `missing_before` counts the frames that are missing right before the row; `design` is the hash in the board's hello, empty before it.
-pub const COLUMNS: [&str; 12] = [
+/// `missing_before` counts the frames that are missing right before the row; `design` is the hash in the board's hello, empty before it. The last two
+/// are empty of a design without a feedback actuator.
+pub const COLUMNS: [&str; 14] = [
     "time_ms",
     "status",
     "touch",
@@ -21,6 +22,8 @@ pub const COLUMNS: [&str; 12] = [
     "host_time_s",
     "missing_before",
     "design",
+    "feedback_force_n",
+    "sigma_feedback_force_n",
 ];
 
 /// How rows are written.
@@ -49,6 +52,17 @@ fn values(reading: &LiveReading) -> [Option<f64>; 6] {
     })
 }
 
+/// The force of the feedback actuator and its deviation; empty for a fault, and of a design without one.
+fn feedback(reading: &LiveReading) -> [Option<f64>; 2] {
+    let force = reading.values.and_then(|values| values.feedback_force_n);
+    force.map_or([None; 2], |pair| pair.map(Some))
+}
+
+/// A number of a row, or nothing.
+fn cell(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| format!("{value:.6}"))
+}
+
 /// When a report was measured, since 1970, of a watch that began then.
 pub(crate) fn host_time(reading: &LiveReading, began: SystemTime) -> Duration {
     (began + reading.measured)
@@ -67,6 +81,7 @@ pub(crate) fn object(reading: &LiveReading, began: SystemTime) -> Value {
     cells.push(host_time(reading, began).as_secs_f64().into());
     cells.push(reading.missing_before.into());
     cells.push(reading.design.map(|hash| format!("{hash:016x}")).into());
+    cells.extend(feedback(reading).map(Value::from));
     let named = COLUMNS.iter().map(|column| (*column).to_owned());
     Value::Object(named.zip(cells).collect::<Map<_, _>>())
 }
@@ -96,10 +111,7 @@ impl<W: WholeRows> Writer<W> {
                     reading.status.to_string(),
                     reading.touch.word().to_owned(),
                 ];
-                cells.extend(
-                    values(reading)
-                        .map(|value| value.map_or_else(String::new, |value| format!("{value:.6}"))),
-                );
+                cells.extend(values(reading).map(cell));
                 cells.push(format!("{:.6}", host_time(reading, self.began).as_secs_f64()));
                 cells.push(reading.missing_before.to_string());
                 cells.push(
@@ -107,6 +119,7 @@ impl<W: WholeRows> Writer<W> {
                         .design
                         .map_or_else(String::new, |hash| format!("{hash:016x}")),
                 );
+                cells.extend(feedback(reading).map(cell));
                 line(&cells)?
             }
             Form::Json => format!("{}\n", object(reading, self.began)).into_bytes(),
@@ -142,6 +155,7 @@ mod tests {
                 pressure_rise_pa: [1000.5, 2.0],
                 force_n: [1.25, f64::INFINITY],
                 indentation_mm: [0.75, 0.002],
+                feedback_force_n: None,
             }),
             touch: Touch::Touched,
         }
@@ -162,13 +176,24 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[0], COLUMNS.join(","));
         let values =
-            "touched,1000.500000,1.250000,0.750000,2.000000,inf,0.002000,1.500000,3,00000000000000ab";
+            "touched,1000.500000,1.250000,0.750000,2.000000,inf,0.002000,1.500000,3,00000000000000ab,,";
         assert_eq!(lines[1], format!("1.250,ok,{values}"));
         assert_eq!(lines[2], format!("1.250,warning: saturated; clock,{values}"));
         assert_eq!(
             lines[3],
-            "1.250,fault: sensor open,touched,,,,,,,1.500000,3,00000000000000ab"
+            "1.250,fault: sensor open,touched,,,,,,,1.500000,3,00000000000000ab,,"
         );
+        let mut felt = reading(Status::Ok);
+        felt.values = felt.values.map(|values| LiveValues {
+            feedback_force_n: Some([0.445, 0.0018]),
+            ..values
+        });
+        let mut text = Vec::new();
+        let mut writer = Writer::new(Form::Csv, &mut text, UNIX_EPOCH).expect("a vector takes everything");
+        writer.write(&felt).expect("a vector takes everything");
+        let text = String::from_utf8(text).expect("text");
+        assert!(text.ends_with(",00000000000000ab,0.445000,0.001800\n"), "{text}");
+        assert_eq!(object(&felt, UNIX_EPOCH)["feedback_force_n"], 0.445);
     }
 
     #[test]

@@ -105,6 +105,12 @@ fn read<'a>(cell: &impl Fn(usize) -> &'a str) -> Result<LiveReading, String> {
             pressure_rise_pa: pair(3)?,
             force_n: pair(4)?,
             indentation_mm: pair(5)?,
+            // Empty of a design without an actuator; a log of before there were any has no such columns.
+            feedback_force_n: if cell(12).is_empty() {
+                None
+            } else {
+                Some([number(12)?, number(13)?])
+            },
         })
     };
     let measured = if cell(9).is_empty() {

@@ -14,6 +14,14 @@ use output::{CommandAnswer, Refusal};
 use std::path::{Path, PathBuf};
 
 const COLUMNS: &[&str] = &["pressure_rise_pa", "force_n", "indentation_mm", "status"];
+/// Of a design whose actuator presses.
+const WITH_FEEDBACK: &[&str] = &[
+    "pressure_rise_pa",
+    "force_n",
+    "indentation_mm",
+    "status",
+    "feedback_force_n",
+];
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -78,17 +86,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     };
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;
-    let mut rows = Rows::new(COLUMNS);
+    let feels = design.feedback(PressureRise(0)).is_some();
+    let mut rows = Rows::new(if feels { WITH_FEEDBACK } else { COLUMNS });
     for &pascals in &numbers::all("--pressure-rise-pa", &arguments.pressure_rise_pa) {
         let rise = PressureRise::from_pascals(pascals, bits);
         let reading = contact(&design, rise, Warnings::NONE);
         let status = Status::qualified(reading.warnings);
-        rows.push(vec![
+        let mut row = vec![
             Cell::Number(pascals),
             Cell::Number(reading.force.newtons()),
             Cell::Number(reading.indentation.metres() * 1e3),
             Cell::Text(status.to_string()),
-        ]);
+        ];
+        row.extend(design.feedback(rise).map(|force| Cell::Number(force.newtons())));
+        rows.push(row);
     }
     Ok(CommandAnswer { rows, notes })
 }

@@ -23,6 +23,16 @@ const COLUMNS: &[&str] = &[
     "indentation_mm",
     "status",
 ];
+/// Of a design whose actuator presses.
+const WITH_FEEDBACK: &[&str] = &[
+    "time_s",
+    "pressure_rise_pa",
+    "elastic_pressure_pa",
+    "force_n",
+    "indentation_mm",
+    "status",
+    "feedback_force_n",
+];
 const KILOPASCALS: &str = "pressure_rise_kpa";
 const PASCALS: &str = "pressure_rise_pa";
 
@@ -39,7 +49,8 @@ pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<Comm
     let mut wall = relaxation
         .zip(design.series())
         .map(|(series, whole)| History::new(series, *whole, period));
-    let mut rows = Rows::new(COLUMNS);
+    let feels = design.feedback(PressureRise(0)).is_some();
+    let mut rows = Rows::new(if feels { WITH_FEEDBACK } else { COLUMNS });
     let mut before: Option<TimeRow> = None;
     for row in &read.rows {
         let pascals = unit * row.value;
@@ -52,14 +63,16 @@ pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<Comm
             None => (rise, contact(&design, rise, Warnings::NONE)),
         };
         before = Some(*row);
-        rows.push(vec![
+        let mut cells = vec![
             Cell::Number(row.time),
             Cell::Number(pascals),
             Cell::Number(elastic.pascals(bits)),
             Cell::Number(contact.force.newtons()),
             Cell::Number(contact.indentation.metres() * 1e3),
             Cell::Text(Status::qualified(contact.warnings).to_string()),
-        ]);
+        ];
+        cells.extend(design.feedback(rise).map(|force| Cell::Number(force.newtons())));
+        rows.push(cells);
     }
     Ok(CommandAnswer {
         rows,

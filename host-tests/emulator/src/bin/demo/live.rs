@@ -15,18 +15,23 @@ const HEAD: [&str; 2] = [
     "   ms                 true   reported     true  reported      true   reported  status",
 ];
 
+/// What stands before the status where there is a feedback actuator.
+const FEEDBACK: [&str; 2] = ["   feedback / N", "   true  reported  status"];
+
 /// Which rows are shown.
 pub(crate) struct Table {
     scenario: Scenario,
+    feels: bool,
     next: f64,
     status: Option<Status>,
 }
 
 impl Table {
-    /// The table of a run through `scenario`.
-    pub(crate) fn new(scenario: Scenario) -> Self {
+    /// The table of a run through `scenario`, of a fingertip that has a feedback actuator or none.
+    pub(crate) fn new(scenario: Scenario, feels: bool) -> Self {
         Self {
             scenario,
+            feels,
             next: 0.0,
             status: None,
         }
@@ -34,8 +39,16 @@ impl Table {
 
     /// What prints the lines of the rows it is given: one every 50 ms, and one at each change of status.
     pub(crate) fn into_printer(mut self) -> impl FnMut(&Row) + Send + 'static {
-        for line in HEAD {
-            say!("{line}");
+        for (line, feedback) in HEAD.iter().zip(FEEDBACK) {
+            let columns = line.trim_end_matches("status");
+            say!(
+                "{}",
+                if self.feels {
+                    format!("{columns}{feedback}")
+                } else {
+                    (*line).to_owned()
+                }
+            );
         }
         move |row| {
             let changed = self.status.replace(row.status) != Some(row.status);
@@ -61,8 +74,11 @@ fn line(row: &Row, phase: &str) -> String {
     } else {
         row.status.to_string()
     };
+    let feedback = row.feedback.truth.map_or_else(String::new, |truth| {
+        format!("  {truth:>7.4}   {}", value(row.feedback.reported, 7, 4))
+    });
     format!(
-        "{:>5.0}  {phase:<9} {:>8.1}   {}  {:>7.4}   {}  {:>8.4}   {}  {}",
+        "{:>5.0}  {phase:<9} {:>8.1}   {}  {:>7.4}   {}  {:>8.4}   {}{feedback}  {}",
         row.time * 1e3,
         truth.pressure_rise,
         value(reported.map(|contact| contact.pressure_rise), 8, 1),

@@ -75,7 +75,7 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
     say!("    {}\n", scenario.about);
 
     let started = Instant::now();
-    let table = live::Table::new(scenario.clone());
+    let table = live::Table::new(scenario.clone(), plant.feedback_truth(0.0).is_some());
     let outcome = bench::run(
         &image,
         plant.clone(),

@@ -43,26 +43,34 @@ class Batch:
     force_sigma_n: Floats
     #: Standard deviation of the indentation, mm.
     indentation_sigma_mm: Floats
+    #: Force of the feedback actuator, N; nan of a design without one.
+    feedback_force_n: Floats
+    #: Its standard deviation, N.
+    feedback_force_sigma_n: Floats
 
     @classmethod
     def of(cls, frames: Iterable[Frame]) -> Batch:
         """The readings and faults among frames, in their order."""
         kept = [frame for frame in frames if isinstance(frame, Reading | FaultReport)]
-        values = np.full((6, len(kept)), np.nan)
+        values = np.full((8, len(kept)), np.nan)
         state = np.zeros((3, len(kept)), dtype=np.uint32)
         for place, frame in enumerate(kept):
             if isinstance(frame, FaultReport):
                 state[0, place] = frame.reason
                 continue
             state[1:, place] = frame.warnings.value, frame.touch
-            values[:, place] = (
+            numbers = (
                 frame.pressure_rise_pa,
                 frame.force_n,
                 frame.indentation_mm,
                 frame.pressure_rise_sigma_pa,
                 frame.force_sigma_n,
                 frame.indentation_sigma_mm,
+                frame.feedback_force_n,
+                frame.feedback_force_sigma_n,
             )
+            # None is nan.
+            values[:, place] = np.array(numbers, dtype=np.float64)
         return cls(
             1e-6 * np.array([frame.time_us for frame in kept], dtype=np.float64),
             np.array([frame.sequence for frame in kept], dtype=np.uint16),

@@ -55,6 +55,10 @@ class Reading(Frame):
     force_sigma_n: float
     #: Standard deviation of the indentation, mm.
     indentation_sigma_mm: float
+    #: Force of the feedback actuator, N; None of a design without one.
+    feedback_force_n: float | None = None
+    #: Its standard deviation, N.
+    feedback_force_sigma_n: float | None = None
 
     @property
     def is_ok(self) -> bool:
@@ -170,7 +174,7 @@ _HEADER = struct.Struct("<BBHQH")
 _READING = struct.Struct("<HBB6i")
 _HELLO = struct.Struct("<3BBQIIBBB6I")
 _ANSWER = struct.Struct("<BHBH")
-_LENGTHS = {1: (42,), 2: (15,), 3: (61,), 4: (20, 36), 7: range(21, 77)}
+_LENGTHS = {1: (42, 50), 2: (15,), 3: (61,), 4: (20, 36), 7: range(21, 77)}
 
 
 def decode(body: bytes) -> Frame:
@@ -200,7 +204,12 @@ def _reading(body: bytes, header: _Header) -> Reading:
     if k > 31 or min(sigmas) < 0:
         raise ValueError
     count = 2.0**-k
-    values = (rise * count, 1e-6 * force, 1e-6 * indentation, sigmas[0] * count, 1e-6 * sigmas[1], 1e-6 * sigmas[2])
+    values: tuple[float, ...] = (rise * count, 1e-6 * force, 1e-6 * indentation, sigmas[0] * count, 1e-6 * sigmas[1], 1e-6 * sigmas[2])
+    if len(body) == 50:
+        feedback = struct.unpack_from("<2i", body, 42)
+        if min(feedback) < 0:
+            raise ValueError
+        values += (1e-6 * feedback[0], 1e-6 * feedback[1])
     return Reading(*header, Warnings(bits), Touch(touch), *values)
 
 
