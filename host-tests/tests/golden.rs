@@ -13,7 +13,8 @@ use host_tests::{assert_measured_says, design, workspace};
 use model_tables::generate::{self, Generated};
 use std::fs;
 
-const SHIPPED: [&str; 5] = [
+const SHIPPED: [&str; 6] = [
+    "haptic-loop",
     "index-fingertip",
     "index-fingertip-elastic",
     "paper-prestretched",
@@ -45,7 +46,10 @@ fn tables_and_certificates_are_those_that_were_reviewed() {
             the_chip_says_what_is_budgeted(&budget);
         }
         budgets.push(budget);
-        everything.push(RealUse::of(&generated));
+        // What objects and temperature do to a loop is not in the tables of the page.
+        if generated.design.disc().is_none() {
+            everything.push(RealUse::of(&generated));
+        }
     }
     let page = workspace().join("host-tests/BUDGET.md");
     expect_file![page].assert_eq(&budget::markdown(&budgets));

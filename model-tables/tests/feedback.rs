@@ -45,6 +45,7 @@ fn actuator(far_side: FarSide, law: Law, thickness: f64) -> Disc {
 fn the_volume_is_where_brute_force_finds_it() {
     let tubing = 0.2e-12;
     let (air, ambient) = (20e-9, 101_325.0);
+    let mut off = 0.0_f64;
     for far_side in [FarSide::Free, FarSide::Plate { gap: 0.3e-3 }] {
         for indentation in [0.5e-3, 2e-3] {
             let mut disc = actuator(far_side, AGILUS30, 1e-3);
@@ -74,15 +75,17 @@ fn the_volume_is_where_brute_force_finds_it() {
             .expect("at rest")
             .with_gas(TrappedGas { volume: air, ambient });
             let found = haptic.at_indentation(indentation).expect("a state");
-            assert!(
-                (found.volume_moved / taken - 1.0).abs() < 1e-6,
-                "{} {taken}",
-                found.volume_moved
-            );
-            assert!((found.touch.pressure_rise / brute.pressure_rise - 1.0).abs() < 1e-6);
-            assert!((found.touch.force / brute.force - 1.0).abs() < 1e-6);
+            for (found, brute) in [
+                (found.volume_moved, taken),
+                (found.touch.pressure_rise, brute.pressure_rise),
+                (found.touch.force, brute.force),
+            ] {
+                off = off.max((found / brute - 1.0).abs());
+            }
         }
     }
+    println!("loop against brute force: {off:.1e}");
+    assert!(off < 1e-6, "{off:.1e}");
 }
 
 /// Held on every side an actuator takes no fluid: the tip is the one alone, and the force is the pressure on the free area.

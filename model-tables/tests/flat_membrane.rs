@@ -18,6 +18,7 @@ const RADIUS: f64 = 4.5e-3;
 fn at_small_strains_it_is_henckys_membrane() {
     let hencky = Hencky::new(0.5);
     assert!((hencky.first() - 1.845).abs() < 0.01, "{}", hencky.first());
+    let mut off = 0.0_f64;
     for (law, young) in [
         (Law::NeoHookean { c1: 1e5 }, 6e5),
         (AGILUS30, 6.0 * (160_355.0 + 46_559.0)),
@@ -30,12 +31,14 @@ fn at_small_strains_it_is_henckys_membrane() {
                     .at_pressure(load * young * thickness / RADIUS)
                     .expect("a state");
                 let deflection = hencky.deflection(load) * RADIUS;
-                assert!((state.height / deflection - 1.0).abs() < 0.02);
+                off = off.max((state.height / deflection - 1.0).abs());
                 assert!(((state.pole_stretch - 1.0) / strain - 1.0).abs() < 0.05);
                 assert!((state.edge_radius / RADIUS - 1.0).abs() < 1e-9);
             }
         }
     }
+    println!("membrane against Hencky: deflection {:.2} %", 100.0 * off);
+    assert!(off < 0.02);
 }
 
 /// `dE = P dV`, by Simpson's rule over the volume from one pressure to another.

@@ -38,6 +38,7 @@ fn at(design: &DiscDesign, elements: Elements, pressure: f64) -> DiscState {
 #[test]
 fn a_thin_disc_that_hardly_bends_is_kirchhoffs_plate() {
     let radius = 4.5e-3_f64;
+    let mut off = [0.0_f64; 3];
     for ratio in [40.0, 100.0] {
         let thickness = radius / ratio;
         let stiffness = YOUNG * thickness.powi(3) / 9.0;
@@ -46,12 +47,15 @@ fn a_thin_disc_that_hardly_bends_is_kirchhoffs_plate() {
             let pressure = 64.0 * stiffness * deflection / radius.powi(4);
             let state = at(&disc(thickness, LAW, FarSide::Free), DISC, pressure);
             let volume = PI * radius * radius * deflection / 3.0;
-            assert!((state.travel / deflection - 1.0).abs() < 0.01);
-            assert!((state.volume / volume - 1.0).abs() < 0.01);
-            assert!((state.energy / state.work - 1.0).abs() < 0.005);
+            off[0] = off[0].max((state.travel / deflection - 1.0).abs());
+            off[1] = off[1].max((state.volume / volume - 1.0).abs());
+            off[2] = off[2].max((state.energy / state.work - 1.0).abs());
             assert!(state.force == 0.0 && state.contact_radius == 0.0);
         }
     }
+    let [travel, volume, energy] = off.map(|off| 100.0 * off);
+    println!("plate: deflection {travel:.2} %, volume {volume:.2} %, energy {energy:.3} %");
+    assert!(travel < 1.0 && volume < 1.0 && energy < 0.5);
 }
 
 /// Hencky's first coefficient at Poisson's ratios 0.2, 0.3, 0.4: as printed by Fichter (NASA TP 3658, 1997, table 1).
@@ -71,14 +75,18 @@ fn a_very_thin_disc_is_henckys_membrane() {
     let radius = 4.5e-3;
     let thickness = radius / 400.0;
     let hencky = Hencky::new(0.5);
+    let mut off = [0.0_f64; 2];
     for strain in [0.003, 0.01] {
         let load = hencky.load(strain);
         let pressure = load * YOUNG * thickness / radius;
         let state = at(&disc(thickness, LAW, FarSide::Free), DISC, pressure);
         let deflection = hencky.deflection(load) * radius;
-        assert!((state.travel / deflection - 1.0).abs() < 0.02);
-        assert!((state.energy / state.work - 1.0).abs() < 0.005);
+        off[0] = off[0].max((state.travel / deflection - 1.0).abs());
+        off[1] = off[1].max((state.energy / state.work - 1.0).abs());
     }
+    let [travel, energy] = off.map(|off| 100.0 * off);
+    println!("solid at a 1/400 of its radius against Hencky: deflection {travel:.2} %, energy {energy:.3} %");
+    assert!(travel < 2.0 && energy < 0.5);
 }
 
 /// Held on every side, an incompressible disc passes the pressure on, moves nowhere and takes no fluid: `F = P pi a^2`.
