@@ -1,47 +1,53 @@
 //! Membranes for a wanted force over the indentation.
 
 use crate::{DesignError, ModelError, about, bytes};
+use designer::size::Sized;
+use designer::size::confirm::ConfirmedSizing;
 use designer::size::target::Target;
-use designer::size::{NOTHING_FOUND, Sized, size as find};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-/// A design: its file, its material, whether nothing is better in all, how it wrinkles, numbers, forces.
+/// A design: its file, its material, the model of its wall, whether nothing is better in all, how it wrinkles, numbers, forces.
 type SizedDesign<'py> = (
     String,
     &'static str,
+    String,
     bool,
     &'static str,
     [f64; 15],
     Bound<'py, PyBytes>,
 );
 
-/// Designs for a target, the best first; the presses that were solved, and the name and indentations of the target, mm.
+/// Designs that get tables, those of the command: the best first; why others are left out, the presses that were solved, and the
+/// indentations of the target, mm.
+type Sizing<'py> = (Vec<SizedDesign<'py>>, Vec<String>, usize, Vec<f64>);
+
+/// At most `best` designs for a target.
 #[pyfunction]
-pub(crate) fn size<'py>(
-    python: Python<'py>,
-    text: &str,
-    name: &str,
-) -> PyResult<(Vec<SizedDesign<'py>>, usize, Vec<f64>)> {
+pub(crate) fn size<'py>(python: Python<'py>, text: &str, name: &str, best: usize) -> PyResult<Sizing<'py>> {
     let target = Target::parse(text, name).map_err(|error| DesignError::new_err(error.to_string()))?;
-    let found = python.detach(|| find(&target, &|_| ()));
-    if found.designs.is_empty() {
-        return Err(ModelError::new_err(about(name, NOTHING_FOUND)));
-    }
-    let rows = found.designs.iter().enumerate().map(|(rank, sized)| {
-        let name = format!("{}-{}", target.name, rank + 1);
-        let front = !found.designs.iter().any(|other| other.dominates(sized));
+    let sizing = python
+        .detach(|| ConfirmedSizing::of(&target, best, &|_| ()))
+        .map_err(|reason| ModelError::new_err(about(name, reason)))?;
+    let rows = sizing.designs.iter().enumerate().map(|(rank, design)| {
+        let sized = &design.sized;
         (
-            sized.design_file(&name, &target),
+            design.design_file(&format!("{}-{}", target.name, rank + 1)),
             sized.material.name,
-            front,
+            design.kind.map_or_else(String::new, |kind| kind.to_string()),
+            sizing.is_non_dominated(design),
             sized.wrinkling.word(),
             numbers(sized, &target),
             bytes(python, &sized.forces),
         )
     });
     let indentations = target.indentations.iter().map(|metres| 1e3 * metres).collect();
-    Ok((rows.collect(), found.solved, indentations))
+    Ok((
+        rows.collect(),
+        sizing.left_out.clone(),
+        sizing.found.solved,
+        indentations,
+    ))
 }
 
 /// The numbers of a row of the command, in its order and units.

@@ -13,31 +13,20 @@ impl Sized {
         }
     }
 
-    /// A design file of a sized membrane, ready for tables.
-    pub fn design_file(&self, name: &str, target: &Target) -> String {
-        self.text(name, target, "misfit", "", 0.1)
-    }
-
-    /// The same with words for its misfit, a `[model]` section or none, and the accuracy of its tables in percent.
-    pub(super) fn text(
-        &self,
-        name: &str,
-        target: &Target,
-        misfit: &str,
-        model: &str,
-        percent: f64,
-    ) -> String {
+    /// A design file of a sized membrane, solved by the model that its wall needs, with the accuracy of its tables in percent.
+    pub(super) fn design_file(&self, name: &str, target: &Target, percent: f64) -> String {
         let membrane = &self.design.membrane;
         let micrometres = |metres: f64| libm::round(1e6 * metres) / 1e3;
         let [low, high] = target.range_kpa;
         // A 12-bit converter over four fifths of its range, averaged over sixteen samples.
         let resolution = 1e3 * (high - low) / 4096.0 / 0.8;
         format!(
-            "# Sized for `{}`: {misfit} {:.2} %, force changed by {:.1} % by a tolerance of {} mm.\n\
+            "# Sized for `{}`: misfit of the membrane {:.2} %, force changed by {:.1} % by a tolerance of {} mm.\n\
              name = \"{name}\"\n\n\
              [membrane]\nradial_semi_axis_mm = {:?}\naxial_semi_axis_mm = {:?}\nthickness_mm = {:?}\n\n\
              [material]\npreset = \"{}\"\n\n\
-             [rest]\npole_stretch = {:?}\n\n{model}\
+             [rest]\npole_stretch = {:?}\n\n\
+             [model]\nkind = \"auto\"\naxes = \"mid\"\n\n\
              [fluid]\ncompliance_mm3_per_kpa = {:?}\n\n\
              [press]\nmax_indentation_mm = {:?}\n\n\
              # A ratiometric gauge read through a 12-bit converter: put in the one you have.\n\

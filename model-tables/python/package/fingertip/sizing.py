@@ -1,4 +1,4 @@
-"""Sizing: membranes for a wanted force over the indentation."""
+"""Sizing: designs for a wanted force over the indentation."""
 
 from __future__ import annotations
 
@@ -20,13 +20,16 @@ TargetLike = str | os.PathLike[str] | Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class SizedDesign:
-    """A membrane that comes near the target."""
+    """A design that comes near the target and gets tables. Force, misfit and pressures are those of the model that its wall needs;
+    stretches, tension and tolerances are the membrane's."""
 
-    #: The design, ready for tables.
+    #: The design, with the accuracy that its tables reach.
     design: Design
     #: Its material's preset.
     material: str
-    #: Whether no other design is better in misfit, effect of making and peak pressure at once.
+    #: The model that its wall needs: ``"membrane"``, or ``"solid 2 x 60"`` with its elements.
+    model: str
+    #: Whether no membrane found is better in misfit, effect of making and peak pressure at once.
     non_dominated: bool
     #: ``"no"``: designs that wrinkle are left out.
     wrinkled: str
@@ -68,25 +71,30 @@ class SizedDesign:
 class Sizing:
     """What a sizing found."""
 
-    #: Ranked, the best first.
+    #: Ranked, the best first; each gets tables.
     designs: tuple[SizedDesign, ...]
+    #: Why designs are left out, a line each.
+    left_out: tuple[str, ...]
     #: Indentations of the target, mm.
     indentation_mm: Floats
     #: Presses that the search solved.
     presses: int
 
 
-def size(target: TargetLike) -> Sizing:
-    """Membranes for a wanted force over the indentation, as ``designer size``.
+def size(target: TargetLike, *, best: int = 8) -> Sizing:
+    """Designs for a wanted force over the indentation, those that ``designer size`` gives and writes: each gets tables.
 
     Args:
         target: sections ``name``, ``[target]``, ``[bounds]``, ``[materials]``, ``[transducer]``, as
             ``model-tables/targets/human-fingertip.toml``.
+        best: designs to give at most, 1 to 100.
 
     Raises:
         DesignError: the target cannot be, on one line.
-        ModelError: no membrane within its bounds.
+        ModelError: no membrane within its bounds, or none that gets tables.
     """
+    if not 1 <= best <= 100:
+        raise DesignError(f"best is {best}: must be 1 to 100")
     if isinstance(target, Mapping):
         name, text = str(target.get("name", "target")), to_toml(target)
     else:
@@ -96,16 +104,34 @@ def size(target: TargetLike) -> Sizing:
                 text = file.read()
         except OSError as error:
             raise DesignError(f"{name}: the target file cannot be read: {error.strerror}") from error
-    rows, presses, indentations = _fingertip.size(text, name)
-    designs = (
-        SizedDesign(
-            Design.from_text(toml, f"{name} ({rank})"),
-            material,
-            front,
-            wrinkled,
-            *numbers,
-            np.frombuffer(forces, dtype=np.float64).copy(),
+    rows, left_out, presses, indentations = _fingertip.size(text, name, best)
+    designs = []
+    for rank, (toml, material, model, front, wrinkled, numbers, forces) in enumerate(rows, 1):
+        radial, axial, wall, stretch, misfit, at_rest, peak, largest, share, tension, limit, margin = numbers[:12]
+        by_radial, by_axial, by_wall = numbers[12:]
+        designs.append(
+            SizedDesign(
+                design=Design.from_text(toml, f"{name} ({rank})"),
+                material=material,
+                model=model,
+                non_dominated=front,
+                wrinkled=wrinkled,
+                radial_semi_axis_mm=radial,
+                axial_semi_axis_mm=axial,
+                thickness_mm=wall,
+                pole_stretch=stretch,
+                misfit_percent=misfit,
+                rest_pressure_kpa=at_rest,
+                peak_pressure_kpa=peak,
+                largest_stretch=largest,
+                share_of_tested_strain=share,
+                min_tension_n_per_m=tension,
+                limit_mm=limit,
+                limit_over_deepest=margin,
+                force_percent_for_radial_tolerance=by_radial,
+                force_percent_for_axial_tolerance=by_axial,
+                force_percent_for_thickness_tolerance=by_wall,
+                force_n=np.frombuffer(forces, dtype=np.float64).copy(),
+            )
         )
-        for rank, (toml, material, front, wrinkled, numbers, forces) in enumerate(rows, 1)
-    )
-    return Sizing(tuple(designs), np.array(indentations), presses)
+    return Sizing(tuple(designs), tuple(left_out), np.array(indentations), presses)

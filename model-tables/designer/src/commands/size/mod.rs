@@ -5,16 +5,14 @@ mod question;
 mod transmission;
 
 use super::bench;
-use crate::size::confirm::{Confirmed, NAME};
+use crate::size::confirm::{Confirmed, ConfirmedSizing};
 use crate::size::question::SizingQuestion;
 use crate::size::target::Target;
 use crate::size::transmission::target::WantedLoop;
-use crate::size::{self, Sized};
 use output::files;
 use output::progress::Progress;
 use output::rows::{Cell, Rows, significant};
 use output::{CommandAnswer, Refusal};
-use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -125,35 +123,22 @@ fn of_target(arguments: &Arguments, file: &Path) -> Result<CommandAnswer, Refusa
     }
     let start = Instant::now();
     let progress = Progress::new("sizing");
-    let mut sizing = size::size(&target, &|part| progress.set(part));
-    if sizing.designs.is_empty() {
-        return Err(Refusal::about(file, &size::NOTHING_FOUND));
-    }
-    let found = sizing.designs.len();
-    let all = sizing.designs.clone();
-    let (confirmed, refused) = confirm(&target, &sizing.designs, arguments.best.unwrap_or(BEST).into());
+    let best = arguments.best.unwrap_or(BEST).into();
+    let sizing = ConfirmedSizing::of(&target, best, &|part| progress.set(part));
     progress.finish();
-    sizing.designs = confirmed.iter().map(|found| found.sized.clone()).collect();
-    if sizing.designs.is_empty() {
-        return Err(Refusal::about(
-            file,
-            &format_args!(
-                "no membrane found gets tables when it is solved by the model that its wall needs: {}; widen `[bounds]`, or take another range",
-                refused.first().map_or("", String::as_str)
-            ),
-        ));
-    }
+    let sizing = sizing.map_err(|reason| Refusal::about(file, &reason))?;
     let mut rows = Rows::new(COLUMNS);
-    for (rank, sized) in sizing.designs.iter().enumerate() {
-        rows.push(row(rank + 1, sized, &target, &all));
+    for (rank, design) in sizing.designs.iter().enumerate() {
+        rows.push(row(rank + 1, design, &target, &sizing));
     }
     let seconds = start.elapsed().as_secs_f64();
-    let best = &sizing.designs[0];
+    let best = &sizing.designs[0].sized;
     let mut notes = vec![
         format!(
-            "{found} designs found in {} presses of the search and refined, in {seconds:.1} s; the best misses the target by \
+            "{} designs found in {} presses of the search and refined, in {seconds:.1} s; the best misses the target by \
              {:.2} % RMS",
-            sizing.solved,
+            sizing.found.designs.len(),
+            sizing.found.solved,
             100.0 * best.misfit
         ),
         format!(
@@ -163,31 +148,29 @@ fn of_target(arguments: &Arguments, file: &Path) -> Result<CommandAnswer, Refusa
         ),
         format!(
             "force, misfit and pressures are those of the model that each wall needs: {}; stretches, tension and tolerances are the membrane's",
-            kinds(&confirmed)
+            kinds(&sizing.designs)
         ),
     ];
-    if !refused.is_empty() {
+    if let Some(first) = sizing.left_out.first() {
         notes.push(format!(
-            "{} designs are left out: they get no tables ({})",
-            refused.len(),
-            refused[0]
+            "{} designs are left out: they get no tables ({first})",
+            sizing.left_out.len()
         ));
     }
     let mut told: Vec<&str> = Vec::new();
-    for sized in &sizing.designs {
-        if !told.contains(&sized.material.name) {
-            told.push(sized.material.name);
-            notes.push(bench::about(sized.material));
+    for design in &sizing.designs {
+        let material = design.sized.material;
+        if !told.contains(&material.name) {
+            told.push(material.name);
+            notes.push(bench::about(material));
         }
     }
     if let Some(out) = &arguments.out {
-        let mut contents = vec![("size.svg".to_owned(), chart::draw(&target, &all).into_bytes())];
-        for (rank, found) in confirmed.iter().enumerate() {
+        let chart = chart::draw(&target, &sizing.found.designs);
+        let mut contents = vec![("size.svg".to_owned(), chart.into_bytes())];
+        for (rank, design) in sizing.designs.iter().enumerate() {
             let name = format!("{}-{}", target.name, rank + 1);
-            contents.push((
-                format!("{name}.toml"),
-                found.text.replacen(NAME, &name, 1).into_bytes(),
-            ));
+            contents.push((format!("{name}.toml"), design.design_file(&name).into_bytes()));
         }
         files::write_all(out, &contents)?;
         notes.push(format!(
@@ -197,32 +180,6 @@ fn of_target(arguments: &Arguments, file: &Path) -> Result<CommandAnswer, Refusa
         ));
     }
     Ok(CommandAnswer { rows, notes })
-}
-
-/// The best designs that get tables by the model that their wall needs, ranked by it, and why others do not.
-fn confirm(target: &Target, designs: &[Sized], best: usize) -> (Vec<Confirmed>, Vec<String>) {
-    let (mut confirmed, mut refused) = (Vec::new(), Vec::new());
-    for group in designs.chunks(rayon::current_num_threads().min(best).max(1)) {
-        if confirmed.len() >= best {
-            break;
-        }
-        let found: Vec<_> = group
-            .par_iter()
-            .map(|sized| Confirmed::of(target, sized))
-            .collect();
-        for found in found {
-            match found {
-                Ok(found) => confirmed.push(found),
-                Err(reason) => refused.push(reason),
-            }
-        }
-    }
-    confirmed.truncate(best);
-    confirmed.sort_by(|a: &Confirmed, b| {
-        let (a, b) = (a.sized.rank(), b.sized.rank());
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-    });
-    (confirmed, refused)
 }
 
 /// The models of some designs, each once.
@@ -240,11 +197,11 @@ fn kinds(confirmed: &[Confirmed]) -> String {
     names.join(", ")
 }
 
-fn row(rank: usize, sized: &Sized, target: &Target, all: &[Sized]) -> Vec<Cell> {
+fn row(rank: usize, design: &Confirmed, target: &Target, sizing: &ConfirmedSizing) -> Vec<Cell> {
+    let sized = &design.sized;
     let membrane = &sized.design.membrane;
     let forces: Vec<String> = sized.forces.iter().map(|force| significant(*force, 4)).collect();
     let [radial, axial, wall] = sized.by_tolerance.map(|part| Cell::Number(100.0 * part));
-    let front = !all.iter().any(|other| other.dominates(sized));
     vec![
         Cell::Count(rank),
         Cell::word(sized.material.name),
@@ -267,6 +224,10 @@ fn row(rank: usize, sized: &Sized, target: &Target, all: &[Sized]) -> Vec<Cell> 
         radial,
         axial,
         wall,
-        Cell::word(if front { "yes" } else { "no" }),
+        Cell::word(if sizing.is_non_dominated(design) {
+            "yes"
+        } else {
+            "no"
+        }),
     ]
 }
