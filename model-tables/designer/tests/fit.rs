@@ -6,8 +6,9 @@
 mod noise;
 
 use designer::fit::data::{Data, DataChoice};
+use designer::fit::findings::findings;
 use designer::fit::parameter::Parameter;
-use designer::fit::{self, Fit, FitError, Held};
+use designer::fit::{self, Fit, FitError, Held, Measured};
 use model_tables::design_file::DesignFile;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::press::Press;
@@ -285,4 +286,146 @@ fn what_the_model_does_not_explain_is_reported_to_have_an_order() {
     let validation = fit.validation.expect("enough data");
     let force = validation.force.expect("measured");
     assert!(force.rms_percent() < 2.0, "{force:?}");
+}
+
+/// Three trials of the device, each from before first touch on, with zeros of their own: text and zeros (mm, N, kPa).
+fn trials_with_zeros() -> (String, [[f64; 3]; 3]) {
+    const ZEROS: [[f64; 3]; 3] = [[3.21, 0.35, 0.0], [3.48, -0.2, 0.6], [2.97, 0.0, -0.4]];
+    let rows = press(&design(TRUTH), &depths(25));
+    let mut random = Random(11);
+    let mut text = String::from("trial,indentation_mm,force_n,pressure_rise_kpa\n");
+    for (name, [stage, cell, transducer]) in ["a", "b", "c"].into_iter().zip(ZEROS) {
+        let before = (1..=8).rev().map(|k| [-0.05 * f64::from(k), 0.0, 0.0]);
+        for [depth, force, rise] in before.chain(rows.iter().copied()) {
+            let [force, rise] =
+                [force, rise].map(|value| value + (0.003 + 0.002 * value) * deviate(&mut random));
+            let _ = writeln!(
+                text,
+                "{name},{},{},{}",
+                depth + stage,
+                force + cell,
+                rise + transducer
+            );
+        }
+    }
+    (text, ZEROS)
+}
+
+#[test]
+fn zeros_of_single_trials_are_found_with_the_device() {
+    let (text, zeros) = trials_with_zeros();
+    let data = data(&text);
+    let refused =
+        fit::fit(&design(""), &data, &Parameter::USUAL).map(|fit| findings(&design(""), &data, &fit));
+    // Without zeros of the trials first touch at 3 mm is no press of the tip, or told.
+    match refused {
+        Err(error) => assert!(
+            error.to_string().contains("--per-trial indentation-offset"),
+            "{error}"
+        ),
+        Ok(lines) => assert!(
+            lines
+                .iter()
+                .any(|line| line.contains("--per-trial indentation-offset")),
+            "{lines:?}"
+        ),
+    }
+    let fit = fit::fit_per_trial(&design(""), &data, &Parameter::USUAL, &Measured::ALL).expect("a fit");
+    assert_eq!(fit.trial_zeros.len(), 9);
+    for zero in &fit.trial_zeros {
+        let truth = zeros[zero.trial][zero.quantity as usize];
+        let error = zero.standard_error.expect("more data than parameters");
+        assert!(
+            ((zero.value - truth) / error).abs() < 4.0 && error < 0.05,
+            "{zero:?}: {truth}"
+        );
+    }
+    for (parameter, truth) in FITTED {
+        let (found, error) = value(&fit, parameter);
+        assert!(
+            ((found - truth) / error).abs() < 3.5,
+            "{parameter}: {found} +- {error} for {truth}"
+        );
+    }
+    let lines = findings(&design(""), &data, &fit);
+    assert!(
+        !lines
+            .iter()
+            .any(|line| line.contains("looks") || line.contains("first touch")),
+        "{lines:?}"
+    );
+    let twice = fit::fit_per_trial(
+        &design(""),
+        &data,
+        &[Parameter::Material, Parameter::ForceOffset],
+        &[Measured::Force],
+    );
+    assert_eq!(
+        twice.expect_err("refused"),
+        FitError::ZeroTwice(Parameter::ForceOffset)
+    );
+}
+
+#[test]
+fn a_zero_or_a_slow_drift_of_one_trial_is_told() {
+    let rows = press(&design(TRUTH), &depths(25));
+    for (drift, told) in [
+        (false, "the force of trial b looks offset by "),
+        (true, "the force of trial b looks to drift by "),
+    ] {
+        let mut random = Random(17);
+        let mut text = String::from("trial,indentation_mm,force_n,pressure_rise_kpa\n");
+        for name in ["a", "b", "c"] {
+            for (k, [depth, force, rise]) in rows.iter().enumerate() {
+                let part = if drift { k as f64 / 24.0 } else { 1.0 };
+                let off = if name == "b" { 0.4 * part } else { 0.0 };
+                let noise = |value: f64, random: &mut Random| value + 0.003 * deviate(random);
+                let _ = writeln!(
+                    text,
+                    "{name},{depth},{},{}",
+                    noise(*force, &mut random) + off,
+                    noise(*rise, &mut random)
+                );
+            }
+        }
+        let data = data(&text);
+        let fit = fit::fit(&design(""), &data, &Parameter::USUAL).expect("a fit");
+        let lines = findings(&design(""), &data, &fit);
+        let line = lines.iter().find(|line| line.starts_with("the force of trial"));
+        let found: Option<f64> = line
+            .and_then(|line| line.strip_prefix(told)?.split(' ').next())
+            .and_then(|number| number.parse().ok());
+        assert!(
+            found.is_some_and(|found| (found - 0.4).abs() < 0.03),
+            "{told}: {lines:?}"
+        );
+    }
+}
+
+#[test]
+fn force_and_pressure_that_do_not_vanish_at_the_same_depth_are_told() {
+    // The load cell is read late: at each row the force is that of 0.09 mm before.
+    let depths = depths(25);
+    let shifted: Vec<f64> = depths.iter().map(|depth| depth - 0.09).collect();
+    let (now, before) = (press(&design(TRUTH), &depths), press(&design(TRUTH), &shifted));
+    let rows: Vec<[f64; 3]> = now
+        .iter()
+        .zip(before)
+        .map(|([depth, _, rise], [_, force, _])| [*depth, force, *rise])
+        .collect();
+    let late = data(&bench(&rows, 0.003, &mut Random(5)));
+    let fit = fit::fit(&design(""), &late, &Parameter::USUAL).expect("a fit");
+    let lines = findings(&design(""), &late, &fit);
+    let told = "force and pressure do not vanish at the same depth: the force begins 0.";
+    assert!(
+        lines
+            .iter()
+            .any(|line| line.starts_with(told) && line.contains("mm after the pressure")),
+        "{lines:?}"
+    );
+    // Without the model of the device too.
+    let lag = fit::lag(&design(""), &late).expect("it is told");
+    assert!(lag.to_string().starts_with(told), "{lag}");
+    let together = data(&bench(&now, 0.003, &mut Random(5)));
+    assert!(fit::lag(&design(TRUTH), &together).is_none());
 }

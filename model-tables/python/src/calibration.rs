@@ -5,7 +5,8 @@ use designer::fit::check::Misfit;
 use designer::fit::data::{Data, DataChoice, Direction};
 use designer::fit::findings::{findings, state};
 use designer::fit::parameter::Parameter;
-use designer::fit::{DataQuantity, Fit, fit as calibrate, write};
+use designer::fit::trial_zeros::{zero_name, zero_named};
+use designer::fit::{DataQuantity, Fit, Measured, fit_per_trial, write};
 use model_tables::design_file::DesignFile;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -14,10 +15,13 @@ use pyo3::types::PyBytes;
 const COLUMNS: usize = 6;
 
 type FittedParameter = (&'static str, &'static str, f64, f64, f64, &'static str);
+/// Trial, name, value, standard error.
+type Zero = (String, &'static str, f64, f64);
 type Left<'py> = (Bound<'py, PyBytes>, Vec<bool>, Vec<bool>, Vec<String>);
 type Calibrated<'py> = (
     String,
     Vec<FittedParameter>,
+    Vec<Zero>,
     Bound<'py, PyBytes>,
     Left<'py>,
     [f64; 4],
@@ -25,7 +29,7 @@ type Calibrated<'py> = (
     Vec<String>,
 );
 
-/// Fits parameters of a design to the bytes of a CSV file: the calibrated design, the parameters, correlations of the fitted ones,
+/// Fits parameters of a design to the bytes of a CSV file: the calibrated design, the parameters, the zeros of trials, correlations of the fitted ones,
 /// what is left of each measured number, misfits of design and fit, noise, and notes.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)] // the options of the command
@@ -36,6 +40,7 @@ pub(crate) fn fit<'py>(
     data: Vec<u8>,
     data_name: &str,
     parameters: Vec<String>,
+    per_trial: Vec<String>,
     columns: Vec<(String, String)>,
     only: Vec<(String, String)>,
     direction: Option<&str>,
@@ -63,8 +68,12 @@ pub(crate) fn fit<'py>(
             .map(|name| parameter(name))
             .collect::<PyResult<_>>()?
     };
+    let zeros = per_trial
+        .iter()
+        .map(|name| zero(name))
+        .collect::<PyResult<Vec<_>>>()?;
     let (data, fit, calibrated) = python
-        .detach(|| fitted(&file, text, &data, data_name, &choice, &chosen))
+        .detach(|| fitted(&file, text, &data, data_name, &choice, &chosen, &zeros))
         .map_err(|reason| FitError::new_err(about(data_name, reason)))?;
     let estimates = fit.estimates.iter().map(|estimate| {
         (
@@ -74,6 +83,14 @@ pub(crate) fn fit<'py>(
             estimate.value,
             estimate.standard_error.unwrap_or(f64::NAN),
             state(estimate.held),
+        )
+    });
+    let zeros = fit.trial_zeros.iter().map(|zero| {
+        (
+            data.trials[zero.trial].clone(),
+            zero_name(zero.quantity),
+            zero.value,
+            zero.standard_error.unwrap_or(f64::NAN),
         )
     });
     let count = fit.fitted.len();
@@ -99,6 +116,7 @@ pub(crate) fn fit<'py>(
     Ok((
         calibrated,
         estimates.collect(),
+        zeros.collect(),
         bytes(python, &correlations),
         left(python, &data, &fit),
         misfits,
@@ -117,6 +135,16 @@ fn parameter(name: &str) -> PyResult<Parameter> {
     })
 }
 
+fn zero(name: &str) -> PyResult<Measured> {
+    zero_named(name).ok_or_else(|| {
+        let names: Vec<&str> = Measured::ALL
+            .iter()
+            .map(|&quantity| zero_name(quantity))
+            .collect();
+        FitError::new_err(format!("per_trial has {name:?}: must be of {}", names.join(", ")))
+    })
+}
+
 fn fitted(
     file: &DesignFile,
     text: &str,
@@ -124,9 +152,10 @@ fn fitted(
     name: &str,
     choice: &DataChoice,
     chosen: &[Parameter],
+    zeros: &[Measured],
 ) -> Result<(Data, Fit, String), String> {
     let data = Data::read(bytes, name, choice).map_err(|error| error.to_string())?;
-    let fit = calibrate(file, &data, chosen).map_err(|error| error.to_string())?;
+    let fit = fit_per_trial(file, &data, chosen, zeros).map_err(|error| error.to_string())?;
     let calibrated = write::calibrated(text, file, &data, &fit)?;
     Ok((data, fit, calibrated))
 }

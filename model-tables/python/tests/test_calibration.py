@@ -60,6 +60,29 @@ def test_a_file_of_a_bench_is_the_same_data(bench, tmp_path):
     assert np.isnan(fit.pressure_rise_rms_kpa) and set(fit.residuals.quantity) == {"force_n"}
 
 
+def test_a_trial_has_zeros_of_its_own(bench):
+    zeros = {"a": (0.30, 0.2), "b": (-0.15, 0.0)}
+    columns = {name: [] for name in ("trial", "indentation_mm", "force_n", "pressure_rise_kpa")}
+    for trial, (cell, transducer) in zeros.items():
+        for row, depth in enumerate(bench["indentation_mm"]):
+            # A ripple stands for noise.
+            ripple = 1e-3 * np.sin(2.399 * row)
+            columns["trial"].append(trial)
+            columns["indentation_mm"].append(depth)
+            columns["force_n"].append(bench["force_n"][row] + cell + ripple)
+            columns["pressure_rise_kpa"].append(bench["pressure_rise_kpa"][row] + transducer + ripple)
+    fit = fingertip.fit(PAPER, columns, parameters="material", per_trial=["force-offset", "pressure-offset"])
+    assert fit["material"].value == pytest.approx(1.25, rel=1e-3)
+    found = {(zero.trial, zero.name): zero for zero in fit.trial_zeros}
+    assert len(found) == 4
+    for trial, (cell, transducer) in zeros.items():
+        assert found[trial, "force-offset"].value == pytest.approx(cell, abs=0.01)
+        assert found[trial, "pressure-offset"].value == pytest.approx(transducer, abs=0.01)
+        assert 0.0 < found[trial, "force-offset"].standard_error < 0.01
+    with pytest.raises(fingertip.FitError, match="per_trial has .offset.: must be of indentation-offset"):
+        fingertip.fit(PAPER, columns, per_trial="offset")
+
+
 def test_what_cannot_be_fitted_is_one_line(bench):
     for data, match in [
         ({**bench, "forse": bench["force_n"]}, "data has 'forse': must be of indentation_mm, force_n"),
@@ -90,9 +113,13 @@ def test_a_sized_design_gives_the_wanted_force():
         "materials": {"presets": ["dragon-skin-10"]},
         "transducer": {"range_kpa": [0.0, 100.0]},
     }
-    sizing = fingertip.size(target)
+    sizing = fingertip.size(target, best=2)
+    assert len(sizing.designs) <= 2
     best = sizing.designs[0]
-    assert best.material == "dragon-skin-10" and sizing.presses > 0
+    assert best.material == "dragon-skin-10" and best.model and sizing.presses > 0
+    # As the command, it gives designs that get tables.
+    for sized in sizing.designs:
+        assert fingertip.table(sized.design).size_bytes > 0
     assert sizing.indentation_mm == pytest.approx([0.5, 2.0])
     deviation = best.force_n / [0.32, 1.94] - 1
     assert best.misfit_percent == pytest.approx(100 * np.sqrt(np.mean(deviation**2)), rel=1e-6)

@@ -5,6 +5,7 @@
 use super::data::Data;
 use super::heading::Measured;
 use super::model::{DataQuantity, Target};
+use super::trial_zeros::zero_name;
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
@@ -24,6 +25,8 @@ enum Course {
     Offset,
     /// Growing evenly from the first row of a trial to the last.
     Drift,
+    /// Of the force's depth against the pressure's: they do not vanish together.
+    Lag,
 }
 
 /// An error of the bench.
@@ -33,10 +36,17 @@ pub struct Bias {
     course: Course,
     /// The trial's name, if it is that of one trial.
     trial: Option<String>,
-    /// Offset, or drift over the trial; SI.
+    /// Offset, or drift over the trial, or how much deeper the force vanishes than the pressure; SI.
     value: f64,
     /// In standard errors.
     evidence: f64,
+}
+
+impl Bias {
+    /// Whether force and pressure do not vanish at the same depth.
+    pub fn is_lag(&self) -> bool {
+        self.course == Course::Lag
+    }
 }
 
 impl fmt::Display for Bias {
@@ -46,7 +56,11 @@ impl fmt::Display for Bias {
             Measured::Force => "N",
             Measured::PressureRise => "kPa",
         };
-        let value = output::rows::significant(self.value * self.quantity.per_si(), 3);
+        let value = self.value * self.quantity.per_si();
+        let value = match self.course {
+            Course::Lag => output::rows::significant(value.abs(), 3),
+            Course::Offset | Course::Drift => output::rows::significant(value, 3),
+        };
         let of = self
             .trial
             .as_ref()
@@ -55,14 +69,20 @@ impl fmt::Display for Bias {
         match self.course {
             Course::Offset => write!(
                 f,
-                "the {}{of} looks offset by {value} {unit} ({evidence:.0} standard errors): tare it, or fit it with --fit \
-                 material,pole-stretch,{}",
+                "the {}{of} looks offset by {value} {unit} ({evidence:.0} standard errors): tare it, or fit it with {}{}",
                 self.quantity,
-                match self.quantity {
-                    Measured::Indentation => "indentation-offset",
-                    Measured::Force => "force-offset",
-                    Measured::PressureRise => "pressure-offset",
-                }
+                if self.trial.is_some() {
+                    "--per-trial "
+                } else {
+                    "--fit material,pole-stretch,"
+                },
+                zero_name(self.quantity)
+            ),
+            Course::Lag => write!(
+                f,
+                "force and pressure do not vanish at the same depth: the force begins {value} mm {} the pressure ({evidence:.0} standard \
+                 errors); look for a zero that was not tared or a delay of one channel",
+                if self.value > 0.0 { "after" } else { "before" }
             ),
             Course::Drift => write!(
                 f,
@@ -84,7 +104,7 @@ pub(super) struct Left<'a> {
     pub(super) jacobian: &'a DMatrix<f64>,
     /// Measured less fitted, SI.
     pub(super) residuals: &'a [f64],
-    /// Change of the predictions by an offset of the indentation, SI per metre; `None` where that is fitted.
+    /// Change of the predictions by an offset of the indentation, SI per metre; `None` where no row has one.
     pub(super) by_indentation: Option<Vec<f64>>,
 }
 
@@ -106,6 +126,14 @@ pub(super) fn find(left: &Left<'_>) -> Vec<Bias> {
     found.sort_by(|a, b| b.evidence.abs().total_cmp(&a.evidence.abs()));
     let best = found.first().map_or(0.0, |bias| bias.evidence.abs());
     found.retain(|bias| bias.evidence.abs() > ALONE * best || bias.trial.is_some());
+    // An offset of a trial looks like a drift of it, and the other way round.
+    let mut told: Vec<(Measured, Option<String>)> = Vec::new();
+    found.retain(|bias| {
+        let of = (bias.quantity, bias.trial.clone());
+        let first = bias.trial.is_none() || !told.contains(&of);
+        told.push(of);
+        first
+    });
     // An offset of all is one of each trial too.
     if found.first().is_some_and(|bias| bias.trial.is_none()) {
         found.truncate(1);
@@ -180,6 +208,18 @@ fn candidates(left: &Left<'_>) -> Vec<(Bias, Vec<f64>, f64)> {
             column.clone(),
             deepest,
         ));
+        // A depth of the force alone, where the pressure tells its own.
+        if targets.iter().any(|target| target.quantity == DataQuantity::Rise) {
+            let force = targets
+                .iter()
+                .zip(column)
+                .map(|(target, change)| match target.quantity {
+                    DataQuantity::Force => *change,
+                    DataQuantity::Rise => 0.0,
+                })
+                .collect();
+            candidates.push((bias(Measured::Indentation, Course::Lag, None), force, deepest));
+        }
     }
     candidates
 }

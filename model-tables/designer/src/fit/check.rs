@@ -205,6 +205,7 @@ pub(super) fn validate(
     } = *task;
     let kind = task.model.kind;
     let work = task.model.work();
+    let zeros = task.model.zeros();
     let (part_of, parts, by_trial) = cross_validation_parts(data);
     let pick = |fold: usize, held_out: bool| -> Vec<usize> {
         (0..targets.len())
@@ -214,7 +215,7 @@ pub(super) fn validate(
     let predicted: Option<Vec<Vec<Pair>>> = (0..parts)
         .into_par_iter()
         .map(|fold| {
-            let model = Model::sharing(kind, file, data, free, Arc::clone(&work));
+            let model = Model::sharing(kind, file, data, free, zeros.clone(), Arc::clone(&work));
             let kept = pick(fold, false);
             if kept.len() <= free.len() || model.is_spent() {
                 return None;

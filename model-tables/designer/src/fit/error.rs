@@ -25,6 +25,8 @@ pub enum FitError {
         /// Height of the tip at rest, metres.
         height: f64,
     },
+    /// The stage reads so much at first touch, metres, and the design has no press as deep as it reads.
+    NotFromFirstTouch(f64),
     /// Force and pressure rise fit each other's place.
     Swapped,
     /// There are fewer data than parameters.
@@ -38,6 +40,8 @@ pub enum FitError {
     NothingTold,
     /// No parameter was chosen.
     NothingChosen,
+    /// A zero is asked of every trial and of all of them together.
+    ZeroTwice(Parameter),
     /// The best value of a parameter is nonsense.
     Nonsense {
         /// Which.
@@ -76,8 +80,15 @@ impl fmt::Display for FitError {
                 if (0.02..0.9).contains(&(1e-3 * deepest / height)) {
                     "are these micrometres? The column is indentation_mm"
                 } else {
-                    "give the indentation from first touch on, not the stage's position, in mm"
+                    "give the indentation from first touch on, not the stage's position, in mm, or measure from before first touch on and \
+                     find it with --per-trial indentation-offset"
                 }
+            ),
+            Self::NotFromFirstTouch(read) => write!(
+                f,
+                "first touch is where the stage reads {} mm, and the tip has no press as deep as it reads: count the indentation from \
+                 there, or find it with --per-trial indentation-offset",
+                significant(1e3 * read, 4)
             ),
             Self::Swapped => write!(
                 f,
@@ -93,6 +104,11 @@ impl fmt::Display for FitError {
                 "the data determine none of the parameters: measure deeper or with less noise, or fit others"
             ),
             Self::NothingChosen => write!(f, "no parameter is to be fitted: choose at least one"),
+            Self::ZeroTwice(parameter) => write!(
+                f,
+                "{parameter} is to be fitted for every trial and for all of them together, which act as one: leave it out of --fit or of \
+                 --per-trial"
+            ),
             Self::Nonsense { parameter, value } => write!(
                 f,
                 "the data ask for {parameter} = {value:.4}, which no such device has: check units and design, fit other \

@@ -3,7 +3,7 @@
 use super::check::Misfit;
 use super::data::{Data, Direction};
 use super::parameter::Parameter;
-use super::{Fit, Held, Unidentified};
+use super::{Fit, Held, Measured, Unidentified, touch};
 use model_tables::design_file::DesignFile;
 use output::rows::significant;
 
@@ -13,6 +13,8 @@ const ORDERED: f64 = -2.58;
 const LARGE: f64 = 5.0;
 /// Correlation that is worth a word.
 const CORRELATED: f64 = 0.95;
+/// The part of the deepest indentation by which first touch may be off zero.
+const WORTH: f64 = 0.02;
 
 /// Names, units and factors of force and pressure rise.
 pub const QUANTITIES: [(&str, &str, f64); 2] = [("force", "N", 1.0), ("pressure rise", "kPa", 1e-3)];
@@ -101,6 +103,7 @@ pub fn findings(file: &DesignFile, data: &Data, fit: &Fit) -> Vec<String> {
         }
     }
     lines.extend(fit.biases.iter().map(ToString::to_string));
+    lines.extend(first_touch(data, fit));
     let outliers = fit.residuals.iter().filter(|residual| residual.outlier).count();
     if outliers > 0 {
         lines.push(format!(
@@ -129,6 +132,41 @@ pub fn findings(file: &DesignFile, data: &Data, fit: &Fit) -> Vec<String> {
         lines.push("calibration.pole_stretch now takes the place of [rest]".to_owned());
     }
     lines
+}
+
+/// First touch where the stage does not read zero there, and no zero of the indentation was fitted.
+fn first_touch(data: &Data, fit: &Fit) -> Option<String> {
+    let fitted = fit.fitted.contains(&Parameter::IndentationOffset)
+        || fit
+            .trial_zeros
+            .iter()
+            .any(|zero| zero.quantity == Measured::Indentation);
+    if fitted {
+        return None;
+    }
+    let touches: Vec<String> = (0..data.trials.len())
+        .filter_map(|trial| Some((trial, touch::find(data, trial)?)))
+        .filter(|(_, touch)| touch.indentation.abs() > WORTH * fit.deepest)
+        .map(|(trial, touch)| {
+            let name = &data.trials[trial];
+            let of = if name.is_empty() {
+                String::new()
+            } else {
+                format!(" in trial {name}")
+            };
+            format!(
+                "{} mm{of} ({} rows before it)",
+                significant(1e3 * touch.indentation, 3),
+                touch.before
+            )
+        })
+        .collect();
+    (!touches.is_empty()).then(|| {
+        format!(
+            "first touch is where the stage reads {}: count the indentation from there, or fit it with --per-trial indentation-offset",
+            touches.join(", ")
+        )
+    })
 }
 
 fn hysteresis(data: &Data, fit: &Fit) -> Vec<String> {

@@ -97,7 +97,8 @@ const PRESSURE_NAMES: &[&str] = &[
 
 impl Measured {
     /// All of them.
-    pub(super) const ALL: [Self; 3] = [Self::Indentation, Self::Force, Self::PressureRise];
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Indentation, Self::Force, Self::PressureRise];
 
     /// Its column's name in the contract.
     pub fn column(self) -> &'static str {

@@ -63,9 +63,13 @@ pub(super) fn unidentifiable(
     })
 }
 
-/// Covariance of the coordinates, of a Jacobian and residuals in standard deviations.
-pub(super) fn covariance(jacobian: &DMatrix<f64>, standardised: &[f64]) -> Option<DMatrix<f64>> {
-    let freedom = standardised.len() as f64 - jacobian.ncols() as f64;
+/// Covariance of the coordinates, of a Jacobian and residuals in standard deviations; so many more numbers than its columns were `spent`.
+pub(super) fn covariance(
+    jacobian: &DMatrix<f64>,
+    standardised: &[f64],
+    spent: usize,
+) -> Option<DMatrix<f64>> {
+    let freedom = standardised.len() as f64 - (jacobian.ncols() + spent) as f64;
     if freedom < 1.0 {
         return None;
     }
@@ -109,7 +113,7 @@ mod tests {
     fn covariance_is_that_of_a_straight_line() {
         let jacobian = DMatrix::from_fn(11, 2, |i, j| if j == 0 { 1.0 } else { i as f64 - 5.0 });
         let residuals: Vec<f64> = (0..11).map(|i| if i % 2 == 0 { 0.3 } else { -0.3 }).collect();
-        let found = covariance(&jacobian, &residuals).expect("enough points");
+        let found = covariance(&jacobian, &residuals, 0).expect("enough points");
         let variance = 11.0 * 0.09 / 9.0;
         assert!((found[(0, 0)] - variance / 11.0).abs() < 1e-12);
         assert!((found[(1, 1)] - variance / 110.0).abs() < 1e-12);

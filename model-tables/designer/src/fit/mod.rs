@@ -24,6 +24,7 @@ mod model;
 mod noise;
 mod non_negative;
 pub mod parameter;
+mod plausible;
 mod ready;
 mod record;
 pub mod relaxation;
@@ -31,12 +32,14 @@ mod robust;
 mod search;
 mod solve;
 pub mod spline;
+mod touch;
+pub mod trial_zeros;
 pub mod write;
 
 use check::{Hysteresis, Misfit, Validation};
 use data::Data;
 use kind::Kind;
-use model::{Model, Target};
+use model::Model;
 use model_tables::design::RestBy;
 use model_tables::design_file::DesignFile;
 use model_tables::membrane::TensionField;
@@ -46,6 +49,7 @@ use nalgebra::DMatrix;
 use parameter::{Parameter, ParameterValues, Units};
 use search::Found;
 use solve::Task;
+use trial_zeros::{TrialZero, TrialZeros};
 
 pub use bias::Bias;
 pub use error::FitError;
@@ -53,9 +57,7 @@ pub use heading::Measured;
 pub use identify::Unidentified;
 pub use model::{DataQuantity, states_solved};
 pub use noise::NoiseModel;
-
-/// Data so far from the design, as a factor, are in other units or of another device.
-const OTHER_UNITS: f64 = 40.0;
+pub use plausible::check_shape;
 
 /// A parameter of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,6 +130,8 @@ pub struct Fit {
     pub systematic: [Option<f64>; 2],
     /// The sign that all, or nearly all, of what is left has: force and rise.
     pub one_sided: [Option<f64>; 2],
+    /// Zeros that were found for each trial; empty where none were asked.
+    pub trial_zeros: Vec<TrialZero>,
     /// Errors of the bench in what is left, the best founded first.
     pub biases: Vec<Bias>,
     /// Loading against unloading, force and rise.
@@ -137,6 +141,8 @@ pub struct Fit {
     /// The deepest indentation that the press of the fitted device reaches, metres; `None` where the data end before
     /// it.
     pub press_ends: Option<f64>,
+    /// The deepest indentation of the data, from the zeros of their trials on, metres.
+    pub deepest: f64,
     /// Data less parameters.
     pub freedom: usize,
 }
@@ -146,6 +152,19 @@ pub struct Fit {
 /// # Errors
 /// [`FitError`].
 pub fn fit(file: &DesignFile, data: &Data, chosen: &[Parameter]) -> Result<Fit, FitError> {
+    fit_per_trial(file, data, chosen, &[])
+}
+
+/// As [`fit`], with zeros of its own for each trial of the quantities in `per_trial`.
+///
+/// # Errors
+/// [`FitError`].
+pub fn fit_per_trial(
+    file: &DesignFile,
+    data: &Data,
+    chosen: &[Parameter],
+    per_trial: &[Measured],
+) -> Result<Fit, FitError> {
     let mut free = chosen.to_vec();
     free.sort_unstable();
     free.dedup();
@@ -153,6 +172,8 @@ pub fn fit(file: &DesignFile, data: &Data, chosen: &[Parameter]) -> Result<Fit, 
     if chosen.is_empty() {
         return Err(FitError::NothingChosen);
     }
+    let zeros = TrialZeros::begin(data, per_trial);
+    zeros.check(&chosen)?;
     let targets = model::targets(data);
     let kind = Kind::of(file)?;
     let start = ParameterValues::of(file, pole_stretch(file, kind)?);
@@ -160,11 +181,13 @@ pub fn fit(file: &DesignFile, data: &Data, chosen: &[Parameter]) -> Result<Fit, 
         free.retain(|parameter| *parameter != Parameter::PoleStretch);
     }
     let units = units(file, data);
-    let model = Model::new(kind, file, data, &free);
-    check_depth(data, model.height()?)?;
-    let before = model.predict(&start, data, &targets)?;
-    check_swapped(&targets, &before)?;
-    check_units(&targets, &before)?;
+    let model = Model::new(kind, file, data, &free, zeros);
+    plausible::check_depth(data, &model.zeros(), model.height()?)?;
+    let before = model
+        .predict(&start, data, &targets)
+        .map_err(|error| plausible::beyond(data, per_trial, error))?;
+    plausible::check_swapped(&targets, &before)?;
+    plausible::check_units(&targets, &before)?;
     let found = search::search(&model, data, &targets, units, &start, free)?;
     let task = Task {
         model: &model,
@@ -214,7 +237,14 @@ fn finish(
         .map(|residual| residual.standardised)
         .collect();
     let slopes = task.slopes(values);
-    let covariance = identify::covariance(&jacobian, &counted).map(|covariance| {
+    let columns = task.zero_columns(values, &predicted, &weighting.factors())?;
+    let zeros = task.model.zeros();
+    let trial_zeros = zeros.found(data, &jacobian, &columns, &counted);
+    // What the zeros of the trials take up tells nothing of the parameters.
+    let reached = trial_zeros::beside(&jacobian, &columns);
+    let jacobian = trial_zeros::off(&columns, jacobian);
+    let spent = columns.ncols();
+    let covariance = identify::covariance(&jacobian, &counted, spent).map(|covariance| {
         let groups = [DataQuantity::Force, DataQuantity::Rise].map(|quantity| error_inflation::Group {
             members: (0..residuals.len())
                 .filter(|&i| residuals[i].quantity == quantity && !residuals[i].outlier)
@@ -239,11 +269,7 @@ fn finish(
         })
         .collect();
     let shape = task.model.shape(values)?;
-    let deepest = data
-        .rows
-        .iter()
-        .filter_map(|row| row.indentation)
-        .fold(0.0, f64::max);
+    let deepest = zeros.deepest(data);
     let reach = shape.deepest() + 1e-3 * values.get(Parameter::IndentationOffset);
     let of = |quantity: DataQuantity| -> Vec<&Residual> {
         residuals
@@ -266,14 +292,16 @@ fn finish(
         before: misfit(|residual| residual.before),
         after: misfit(|residual| residual.fitted),
         one_sided: both.each_ref().map(|residuals| check::one_sided(residuals)),
-        biases: biases(task, values, &weighting.factors(), &jacobian, &residuals),
+        biases: biases(task, values, &weighting.factors(), &reached, &residuals),
+        trial_zeros,
         systematic: both.each_ref().map(|residuals| check::order(data, residuals)),
         hysteresis: both.each_ref().map(|residuals| Hysteresis::of(data, residuals)),
         noise: [0, 1].map(|k| (!both[k].is_empty()).then_some(weighting.noise[k])),
         validation: check::validate(file, task, values, weighting),
         correlations: covariance.as_ref().map(identify::correlations),
+        deepest,
         press_ends: (shape.ends && deepest > reach).then_some(reach),
-        freedom: counted.len().saturating_sub(free.len()),
+        freedom: counted.len().saturating_sub(free.len() + spent),
         estimates,
         unidentified: found.unidentified.clone(),
         residuals,
@@ -303,6 +331,52 @@ fn biases(
         residuals: &left,
         by_indentation: task.by_indentation(values, &fitted),
     })
+}
+
+/// Whether force and pressure of data vanish at the same depth, against the curve of the design with a gain of the transducer and, of a
+/// membrane, whatever else is usually fitted; `None` where they do, or where the data do not tell.
+pub fn lag(file: &DesignFile, data: &Data) -> Option<Bias> {
+    let kind = Kind::of(file).ok()?;
+    let start = ParameterValues::of(file, pole_stretch(file, kind).ok()?);
+    let targets = model::targets(data);
+    let units = units(file, data);
+    // A solid's curve is solved once.
+    let mut free = vec![Parameter::Material, Parameter::PressureGain];
+    if kind.is_cheap() {
+        free = vec![
+            Parameter::Material,
+            Parameter::PoleStretch,
+            Parameter::Compliance,
+            Parameter::PressureGain,
+        ];
+    }
+    let model = Model::new(kind, file, data, &free, TrialZeros::default());
+    let found = search::search(&model, data, &targets, units, &start, free).ok()?;
+    let task = Task {
+        model: &model,
+        data,
+        targets: &targets,
+        free: &found.free,
+        units,
+    };
+    let fitted = task.predict(&found.values).ok()?;
+    let factors = found.weighting.factors();
+    let jacobian = task.jacobian(&found.values, &fitted, &factors).ok()?;
+    let left: Vec<f64> = targets
+        .iter()
+        .zip(&fitted)
+        .map(|(target, fitted)| target.measured - fitted)
+        .collect();
+    bias::find(&bias::Left {
+        data,
+        targets: &targets,
+        factors: &factors,
+        jacobian: &jacobian,
+        residuals: &left,
+        by_indentation: task.by_indentation(&found.values, &fitted),
+    })
+    .into_iter()
+    .find(Bias::is_lag)
 }
 
 /// Whether the rest state can be given by a stretch: a membrane's always, that of a wall if its design does so.
@@ -342,83 +416,4 @@ fn units(file: &DesignFile, data: &Data) -> Units {
         rise: 0.1 * rise,
         force: 0.1 * largest(|row| row.force),
     }
-}
-
-/// Refuses data that go deeper than the tip is high, metres.
-fn check_depth(data: &Data, height: f64) -> Result<(), FitError> {
-    let deepest = data
-        .rows
-        .iter()
-        .filter_map(|row| row.indentation)
-        .fold(0.0, f64::max);
-    if deepest > height {
-        return Err(FitError::TooDeep { deepest, height });
-    }
-    Ok(())
-}
-
-/// Height that a tip may have over a guess of it from its dimensions.
-const ROOM: f64 = 1.3;
-
-/// Refuses data that no press of the design's shape has, for curves that are made without its model.
-///
-/// # Errors
-/// [`FitError`].
-pub fn check_shape(file: &DesignFile, data: &Data) -> Result<(), FitError> {
-    let design = file.design();
-    let made = design.membrane.axial_semi_axis;
-    let height = match design.rest {
-        RestBy::Unstretched | RestBy::Pressure(_) => made,
-        RestBy::PoleStretch(stretch) => stretch * made,
-        RestBy::Height(height) => height,
-        RestBy::EquatorRadius(radius) => made * radius / design.membrane.radial_semi_axis,
-    };
-    check_depth(data, ROOM * height)
-}
-
-/// Part of what a straight line leaves of force and pressure as they are named, over which the other way round is no better.
-const SWAPPED: f64 = 0.5;
-
-/// Force and pressure rise in each other's columns: each then runs as the other does in the design, whatever its size and zero.
-fn check_swapped(targets: &[Target], predicted: &[f64]) -> Result<(), FitError> {
-    // Of each row that has both: measured and predicted force, then rise.
-    let mut rows: Vec<[[f64; 2]; 2]> = Vec::new();
-    for (i, force) in targets.iter().enumerate() {
-        if let Some(rise) = targets.get(i + 1)
-            && (force.quantity, rise.quantity) == (DataQuantity::Force, DataQuantity::Rise)
-            && force.row == rise.row
-        {
-            rows.push([[force.measured, predicted[i]], [rise.measured, predicted[i + 1]]]);
-        }
-    }
-    if rows.len() < robust::MIN_RESIDUALS {
-        return Ok(());
-    }
-    let left = |measured: usize, by: usize| {
-        let pairs: Vec<[f64; 2]> = rows.iter().map(|row| [row[by][1], row[measured][0]]).collect();
-        robust::left_of_line(&pairs)
-    };
-    if left(0, 1) + left(1, 0) < SWAPPED * (left(0, 0) + left(1, 1)) {
-        return Err(FitError::Swapped);
-    }
-    Ok(())
-}
-
-/// Data of another unit or device are no work for a fit.
-fn check_units(targets: &[Target], predicted: &[f64]) -> Result<(), FitError> {
-    for quantity in [DataQuantity::Force, DataQuantity::Rise] {
-        let ratios: Vec<f64> = targets
-            .iter()
-            .zip(predicted)
-            .filter(|(target, predicted)| {
-                target.quantity == quantity && target.measured > 0.0 && **predicted > 0.0
-            })
-            .map(|(target, predicted)| target.measured / predicted)
-            .collect();
-        let ratio = robust::median(&ratios);
-        if !ratios.is_empty() && !(1.0 / OTHER_UNITS..=OTHER_UNITS).contains(&ratio) {
-            return Err(FitError::Units { quantity, ratio });
-        }
-    }
-    Ok(())
 }

@@ -4,9 +4,11 @@
 //! solved once for a rest state and a compliance (of a solid: and a wall), and scaled for the rest.
 
 use super::data::{Data, DataRow};
+use super::heading::Measured;
 use super::kind::Kind;
 use super::parameter::{Parameter, ParameterValues};
 use super::ready::Ready;
+use super::trial_zeros::TrialZeros;
 use model_tables::curve::{Contact, Curve};
 use model_tables::design::{Design, RestBy};
 use model_tables::design_file::DesignFile;
@@ -137,6 +139,8 @@ pub(super) struct Model {
     shallowest: f64,
     largest_rise: f64,
     cache: RefCell<Vec<(Key, Solved)>>,
+    /// Of each trial; they move while it is fitted.
+    zeros: RefCell<TrialZeros>,
     /// States solved, by this fit alone.
     work: Arc<AtomicUsize>,
 }
@@ -151,8 +155,24 @@ pub fn states_solved() -> usize {
 
 impl Model {
     /// Ready to predict the data; `free` parameters will be changed.
-    pub(super) fn new(kind: Kind, file: &DesignFile, data: &Data, free: &[Parameter]) -> Self {
-        Self::sharing(kind, file, data, free, Arc::default())
+    pub(super) fn new(
+        kind: Kind,
+        file: &DesignFile,
+        data: &Data,
+        free: &[Parameter],
+        zeros: TrialZeros,
+    ) -> Self {
+        Self::sharing(kind, file, data, free, zeros, Arc::default())
+    }
+
+    /// The zeros of the trials as they are now.
+    pub(super) fn zeros(&self) -> TrialZeros {
+        self.zeros.borrow().clone()
+    }
+
+    /// Other zeros of the trials.
+    pub(super) fn set_zeros(&self, zeros: TrialZeros) {
+        *self.zeros.borrow_mut() = zeros;
     }
 
     /// The count of its work, for models that share it.
@@ -166,13 +186,14 @@ impl Model {
         file: &DesignFile,
         data: &Data,
         free: &[Parameter],
+        zeros: TrialZeros,
         work: Arc<AtomicUsize>,
     ) -> Self {
         let mut nominal = file.clone();
         nominal.calibration = model_tables::design_file::Calibration::default();
         let design = nominal.design();
         let largest = |of: fn(&DataRow) -> Option<f64>| data.rows.iter().filter_map(of).fold(0.0, f64::max);
-        let deepest = largest(|row| row.indentation);
+        let deepest = zeros.deepest(data);
         Self {
             kind,
             rest: file.design().rest,
@@ -181,12 +202,13 @@ impl Model {
             shallowest: data
                 .rows
                 .iter()
-                .filter_map(|row| row.indentation)
+                .filter_map(|row| zeros.indentation(row))
                 .filter(|&indentation| indentation > 0.0)
                 .fold(deepest, f64::min),
             largest_rise: largest(|row| row.indentation.map_or(row.rise, |_| None)),
             design,
             cache: RefCell::new(Vec::new()),
+            zeros: RefCell::new(zeros),
             work,
         }
     }
@@ -358,11 +380,14 @@ impl Model {
         let rise_offset = 1e3 * values.get(Parameter::PressureOffset);
         let offset = 1e-3 * values.get(Parameter::IndentationOffset);
         let force_offset = values.get(Parameter::ForceOffset);
+        let zeros = self.zeros.borrow();
         Ok(targets
             .iter()
             .map(|target| {
                 let row = &data.rows[target.row];
-                if let Some(read) = row.indentation {
+                let rise_offset = rise_offset + zeros.of(row, Measured::PressureRise);
+                let force_offset = force_offset + zeros.of(row, Measured::Force);
+                if let Some(read) = zeros.indentation(row) {
                     let contact = shape.at_indentation(read - offset);
                     match target.quantity {
                         DataQuantity::Force => scale * contact.force + force_offset,

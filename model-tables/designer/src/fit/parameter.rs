@@ -131,6 +131,13 @@ pub(super) struct Units {
     pub(super) force: f64,
 }
 
+impl Units {
+    /// Of the zeros of a trial: indentation, force, pressure rise, SI.
+    pub(super) fn of_zeros(&self) -> [f64; 3] {
+        [1e-3 * self.indentation, self.force, 1e3 * self.rise]
+    }
+}
+
 /// A value for every parameter, in the units of the design file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterValues([f64; COUNT]);

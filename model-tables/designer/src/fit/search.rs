@@ -53,10 +53,11 @@ pub(super) fn search(
         if free.is_empty() {
             return Err(FitError::NothingTold);
         }
-        if free.len() > targets.len() {
+        let parameters = free.len() + model.zeros().count();
+        if parameters > targets.len() {
             return Err(FitError::TooFew {
                 data: targets.len(),
-                parameters: free.len(),
+                parameters,
             });
         }
         let task = Task {
@@ -75,7 +76,7 @@ pub(super) fn search(
         }
         let (values, weighting) = best(&task, &origin)?;
         let predicted = task.predict(&values)?;
-        let jacobian = task.jacobian(&values, &predicted, &weighting.factors())?;
+        let jacobian = task.told(&values, &predicted, &weighting.factors())?;
         if let Some(found) = identify::unidentifiable(&jacobian, &free, true) {
             free.retain(|parameter| *parameter != found.held);
             unidentified.push(found);
@@ -109,7 +110,7 @@ pub(super) fn search(
 fn dependent(task: &Task<'_>, start: &ParameterValues) -> Result<Option<Unidentified>, FitError> {
     let sigma = Weighting::unknown(task.targets).sigma;
     let factors: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
-    let jacobian = task.jacobian(start, &task.predict(start)?, &factors)?;
+    let jacobian = task.told(start, &task.predict(start)?, &factors)?;
     Ok(identify::unidentifiable(&jacobian, task.free, false))
 }
 

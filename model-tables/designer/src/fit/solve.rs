@@ -2,10 +2,12 @@
 //! left, until nothing moves.
 
 use super::data::Data;
+use super::heading::Measured;
 use super::model::{DataQuantity, Model, Target};
 use super::noise::{NoiseModel, ROUNDING};
 use super::parameter::{Parameter, ParameterValues, Units};
 use super::robust;
+use super::trial_zeros;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use model_tables::model::ModelError;
 use nalgebra::storage::Owned;
@@ -187,11 +189,72 @@ impl Task<'_> {
         Ok(jacobian)
     }
 
-    /// Change of the predictions by a bench whose stage reads more, SI per metre; `None` where that is fitted, or no row has an
-    /// indentation.
+    /// The derivatives without what the zeros of the trials take up: what the data tell of the parameters.
+    pub(super) fn told(
+        &self,
+        values: &ParameterValues,
+        predicted: &[f64],
+        factors: &[f64],
+    ) -> Result<DMatrix<f64>, ModelError> {
+        let columns = self.zero_columns(values, predicted, factors)?;
+        Ok(trial_zeros::off(
+            &columns,
+            self.jacobian(values, predicted, factors)?,
+        ))
+    }
+
+    /// Derivatives of the predictions by the zeros of the trials, SI, over the standard deviations.
+    pub(super) fn zero_columns(
+        &self,
+        values: &ParameterValues,
+        predicted: &[f64],
+        factors: &[f64],
+    ) -> Result<DMatrix<f64>, ModelError> {
+        let zeros = self.model.zeros();
+        let units = self.units.of_zeros();
+        let moved = |quantity: Measured| {
+            let step = STEP * units[quantity as usize];
+            self.model.set_zeros(zeros.all_moved(quantity, step));
+            let moved = self.predict(values);
+            self.model.set_zeros(zeros.clone());
+            Ok(moved?
+                .iter()
+                .zip(predicted)
+                .zip(factors)
+                .map(|((moved, before), factor)| factor * (moved - before) / step)
+                .collect())
+        };
+        zeros.columns(self.data, self.targets, moved)
+    }
+
+    /// Moves the zeros of the trials by a step of least squares over them and the parameters together; the largest one, over what would be a
+    /// large change.
+    fn move_zeros(&self, values: &ParameterValues, weighting: &Weighting) -> Result<f64, ModelError> {
+        let mut zeros = self.model.zeros();
+        if zeros.count() == 0 {
+            return Ok(0.0);
+        }
+        let predicted = self.predict(values)?;
+        let factors = weighting.factors();
+        let columns = self.zero_columns(values, &predicted, &factors)?;
+        let jacobian = self.jacobian(values, &predicted, &factors)?;
+        let left = DVector::from_iterator(
+            factors.len(),
+            self.targets
+                .iter()
+                .zip(&predicted)
+                .zip(&factors)
+                .map(|((target, predicted), factor)| factor * (target.measured - predicted)),
+        );
+        let moved = zeros.advance(&jacobian, &columns, &left, &self.units.of_zeros());
+        self.model.set_zeros(zeros);
+        Ok(moved)
+    }
+
+    /// Change of the predictions by a bench whose stage reads more, SI per metre; `None` where no row has an indentation.
     pub(super) fn by_indentation(&self, values: &ParameterValues, predicted: &[f64]) -> Option<Vec<f64>> {
         let offset = Parameter::IndentationOffset;
-        if self.free.contains(&offset) || self.data.rows.iter().all(|row| row.indentation.is_none()) {
+        if self.data.rows.iter().all(|row| row.indentation.is_none()) {
             return None;
         }
         let step = STEP * self.units.indentation;
@@ -237,12 +300,13 @@ impl Task<'_> {
             if self.model.is_spent() {
                 break;
             }
-            weighting =
-                Weighting::from_residuals(self.data, self.targets, &self.predict(&values)?, self.free.len());
+            let shifted = self.move_zeros(&values, &weighting)?;
+            let spent = self.free.len() + self.model.zeros().count();
+            weighting = Weighting::from_residuals(self.data, self.targets, &self.predict(&values)?, spent);
             let next = self.minimise(&values, &weighting)?;
             let moved = (self.coordinates(&next) - self.coordinates(&values)).amax();
             values = next;
-            if moved < SETTLED {
+            if moved.max(shifted) < SETTLED {
                 break;
             }
         }

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from .errors import DesignError, FingertipError, FitError, ModelError, SweepError, TableError, TelemetryError
 
 if TYPE_CHECKING:
-    from .calibration import Fit, FittedParameter, Residuals, fit
+    from .calibration import Fit, FittedParameter, Residuals, TrialZero, fit
     from .model import Design, DesignLike, Estimates, History, Rest, States, Tables, estimate, history, rest, solve, table
     from .sizing import SizedDesign, Sizing, size
 
@@ -45,6 +45,7 @@ __all__ = [
     "TableError",
     "Tables",
     "TelemetryError",
+    "TrialZero",
     "estimate",
     "fit",
     "history",
@@ -56,7 +57,7 @@ __all__ = [
 
 # Where a name is. Loaded when it is first asked for: `fingertip.telemetry` needs the standard library alone, not numpy and the model.
 _HOMES = {
-    "calibration": ("Fit", "FittedParameter", "Residuals", "fit"),
+    "calibration": ("Fit", "FittedParameter", "Residuals", "TrialZero", "fit"),
     "model": ("Design", "DesignLike", "Estimates", "History", "Rest", "States", "Tables", "estimate", "history", "rest", "solve", "table"),
     "sizing": ("SizedDesign", "Sizing", "size"),
 }

@@ -41,6 +41,20 @@ class FittedParameter:
 
 
 @dataclass(frozen=True, slots=True)
+class TrialZero:
+    """What a channel reads of the untouched tip in one trial."""
+
+    #: Name of the trial.
+    trial: str
+    #: ``"indentation-offset"`` (mm), ``"force-offset"`` (N) or ``"pressure-offset"`` (kPa).
+    name: str
+    #: In the unit of its name.
+    value: float
+    #: Standard error, of the noise alone; nan with as many parameters as data.
+    standard_error: float
+
+
+@dataclass(frozen=True, slots=True)
 class Residuals:
     """Every measured number beside what design and fit give, one an element."""
 
@@ -72,6 +86,8 @@ class Fit:
     design: Design
     #: Every parameter chosen, fitted or held.
     parameters: tuple[FittedParameter, ...]
+    #: Zeros of the trials, where ``per_trial`` asked for some.
+    trial_zeros: tuple[TrialZero, ...]
     #: Correlations of the fitted ones, in their order; nan with as many parameters as data.
     correlations: Floats
     residuals: Residuals
@@ -120,6 +136,7 @@ def fit(
     data: DataLike,
     *,
     parameters: Iterable[str] = (),
+    per_trial: Iterable[str] = (),
     columns_of: Mapping[str, str | int] | None = None,
     only: Mapping[str, object] | None = None,
     direction: str | None = None,
@@ -131,6 +148,8 @@ def fit(
             ``trial`` and ``direction`` (loading, unloading): a CSV file as a bench writes it, or a dict of arrays.
         parameters: of material, pole-stretch, compliance, pressure-gain, thickness, indentation-offset, pressure-offset,
             force-offset; the first three where it is left out.
+        per_trial: zeros that each trial has of its own, of indentation-offset (first touch is then found in the rows before it),
+            force-offset, pressure-offset.
         columns_of: which column of the file holds a quantity, by its name or its number from 1 on.
         only: only rows whose column has this value.
         direction: ``"loading"`` or ``"unloading"``: only rows of this direction.
@@ -153,8 +172,10 @@ def fit(
     rows = [(key, str(value)) for key, value in (only or {}).items()]
     if isinstance(parameters, str):
         parameters = [parameters]
-    text, estimates, correlations, left, misfits, noise, notes = _fingertip.fit(
-        design.text, design.name, raw, name, list(parameters), pairs, rows, direction
+    if isinstance(per_trial, str):
+        per_trial = [per_trial]
+    text, estimates, zeros, correlations, left, misfits, noise, notes = _fingertip.fit(
+        design.text, design.name, raw, name, list(parameters), list(per_trial), pairs, rows, direction
     )
     table, forces, outliers, trials = left
     line, depth, measured, before, fitted, standardised = columns(table, 6)
@@ -169,14 +190,19 @@ def fit(
         standardised,
         np.array(outliers, dtype=np.bool_),
     )
+    force_before, force_after, rise_before, rise_after = misfits
     matrix = np.frombuffer(correlations, dtype=np.float64)
     size = int(np.sqrt(len(matrix)))
     return Fit(
         Design.from_text(text, f"{design.name} (calibrated)"),
         tuple(FittedParameter(*estimate) for estimate in estimates),
+        tuple(TrialZero(*zero) for zero in zeros),
         matrix.reshape(size, size).copy(),
         residuals,
-        *misfits,
+        force_before,
+        force_after,
+        rise_before,
+        rise_after,
         (noise[0], noise[1]),
         (noise[2], noise[3]),
         tuple(notes),

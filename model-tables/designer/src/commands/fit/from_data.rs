@@ -72,6 +72,7 @@ pub(super) fn run(arguments: &Arguments, file: &DesignFile, data: &Data) -> Resu
     }
     let mut notes = data.notes.clone();
     notes.extend(findings(&found, data));
+    notes.extend(fit::lag(file, data).map(|lag| lag.to_string()));
     notes.extend(bench::caution(file));
     if let Some(out) = &arguments.out {
         if found.start > EMPTY * found.end && !arguments.to_zero {

@@ -10,6 +10,7 @@ use super::{bench, read};
 use crate::fit::data::{Data, DataChoice, Direction};
 use crate::fit::findings::{findings, state};
 use crate::fit::parameter::Parameter;
+use crate::fit::trial_zeros::{zero_name, zero_named};
 use crate::fit::write;
 use crate::fit::{self, Fit, Measured};
 use model_tables::design_file::DesignFile;
@@ -34,7 +35,8 @@ decimal commas, a row of units, UTF-16 and Latin-1 are recognised, and reported;
 begin with # are comments. Indentation is taken as exact.
 
 Parameters: material and thickness (factors), pole-stretch, compliance, pressure-gain, pressure-offset,
-indentation-offset. What the data cannot tell apart is held at the design's value, and reported.
+indentation-offset, force-offset. What the data cannot tell apart is held at the design's value, and reported.
+With --per-trial each trial has zeros of its own, found with the parameters; first touch is found in the rows before it.
 
 With --relaxation DATA.csv is a record in time of one or more trials, each from the untouched tip to the end of a hold: time_s,
 indentation_mm, pressure_rise_kpa or force_n or both, and trial and temperature_c where there are several. Press in a second or
@@ -44,6 +46,7 @@ the record does not tell.
 Examples:
   cargo designer fit index-fingertip.toml bench.csv --out calibrated/
   cargo designer fit index-fingertip.toml bench.csv --fit material,compliance,pressure-gain
+  cargo designer fit index-fingertip.toml bench.csv --per-trial indentation-offset,force-offset
   cargo designer fit tip.toml bench.csv --from-data --rest-pressure-kpa 0 --out calibrated/
   cargo designer fit tip.toml bench.csv --columns force_n=Fz,pressure_rise_kpa=3 --only position_mm=50
   cargo designer fit index-fingertip.toml hold.csv --relaxation --out relaxing/";
@@ -59,6 +62,10 @@ pub(super) struct Arguments {
     #[arg(long = "fit", value_name = "LIST", value_delimiter = ',', value_parser = parameter,
           default_values_t = Parameter::USUAL)]
     parameters: Vec<Parameter>,
+    /// Zeros that each trial has of its own, separated by commas: indentation-offset, force-offset, pressure-offset
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = zero,
+          conflicts_with_all = ["from_data", "relaxation"])]
+    per_trial: Vec<Measured>,
     /// Folder to write the calibrated design, the report, a chart and the residuals to; made if it is not there
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -101,6 +108,16 @@ enum Way {
 fn parameter(name: &str) -> Result<Parameter, String> {
     Parameter::named(name).ok_or_else(|| {
         let names: Vec<&str> = Parameter::ALL.iter().map(|parameter| parameter.name()).collect();
+        format!("must be of {}", names.join(", "))
+    })
+}
+
+fn zero(name: &str) -> Result<Measured, String> {
+    zero_named(name).ok_or_else(|| {
+        let names: Vec<&str> = Measured::ALL
+            .iter()
+            .map(|&quantity| zero_name(quantity))
+            .collect();
         format!("must be of {}", names.join(", "))
     })
 }
@@ -154,7 +171,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
             fit::states_solved()
         )
     });
-    let fit = fit::fit(&file, &data, &arguments.parameters)
+    let fit = fit::fit_per_trial(&file, &data, &arguments.parameters, &arguments.per_trial)
         .map_err(|error| Refusal::about(&arguments.data, &error))?;
     let seconds = start.elapsed().as_secs_f64();
     let mut notes = data.notes.clone();
@@ -166,12 +183,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
         ..file.clone()
     };
     let mut tip = Fingertip::new(&calibrated).map_err(|error| Refusal::about(&arguments.design, &error))?;
-    let deepest = data
-        .rows
-        .iter()
-        .filter_map(|row| row.indentation)
-        .fold(0.0, f64::max);
-    let deepest = calibrated.calibration.indentation_of(deepest);
+    let deepest = calibrated.calibration.indentation_of(fit.deepest);
     notes.extend(bench::beyond_strain(&calibrated, &mut tip, deepest));
     notes.push(super::model::note_of_error(&calibrated, &mut tip, 0.0));
     drop(ticks);
@@ -196,12 +208,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     }
     notes.push(format!("fitted and checked in {seconds:.2} s"));
     Ok(CommandAnswer {
-        rows: rows(&fit),
+        rows: rows(&data, &fit),
         notes,
     })
 }
 
-fn rows(fit: &Fit) -> Rows {
+fn rows(data: &Data, fit: &Fit) -> Rows {
     let mut rows = Rows::new(COLUMNS);
     for estimate in &fit.estimates {
         rows.push(vec![
@@ -211,6 +223,20 @@ fn rows(fit: &Fit) -> Rows {
             Cell::Number(estimate.value),
             estimate.standard_error.map_or(Cell::word(""), Cell::Number),
             Cell::word(state(estimate.held)),
+        ]);
+    }
+    for zero in &fit.trial_zeros {
+        rows.push(vec![
+            Cell::Text(format!(
+                "{} of trial {}",
+                zero_name(zero.quantity),
+                data.trials[zero.trial]
+            )),
+            Cell::word(""),
+            Cell::Number(0.0),
+            Cell::Number(zero.value),
+            zero.standard_error.map_or(Cell::word(""), Cell::Number),
+            Cell::word(state(None)),
         ]);
     }
     rows

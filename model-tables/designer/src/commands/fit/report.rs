@@ -4,6 +4,7 @@ use super::super::bench;
 use crate::fit::Fit;
 use crate::fit::data::Data;
 use crate::fit::findings::{QUANTITIES, findings, state};
+use crate::fit::trial_zeros::zero_name;
 use model_tables::design_file::DesignFile;
 use output::rows::significant;
 use std::fmt::Write as _;
@@ -34,6 +35,17 @@ pub(super) fn markdown(file: &DesignFile, data: &Data, fit: &Fit) -> String {
                 .standard_error
                 .map_or_else(|| "-".to_owned(), |error| significant(error, 2)),
             state(estimate.held),
+        );
+    }
+    for zero in &fit.trial_zeros {
+        let _ = writeln!(
+            text,
+            "| {} of trial {} | | 0 | {} | {} | fitted |",
+            zero_name(zero.quantity),
+            data.trials[zero.trial],
+            significant(zero.value, 6),
+            zero.standard_error
+                .map_or_else(|| "-".to_owned(), |error| significant(error, 2)),
         );
     }
     let _ = writeln!(
