@@ -190,6 +190,24 @@ fn history_refuses_in_a_line() {
             "time_s,indentation_mm\n0,0\n1,8\n",
             "press less deep",
         ),
+        (
+            "misspelt",
+            &printed,
+            "time_s,indentation_mm,Temperatur_C\n0,0,20\n1,1,20\n",
+            "did you mean `temperature_c`?",
+        ),
+        (
+            "twice",
+            &printed,
+            "time_s,indentation_mm,indentation_mm\n0,0,0\n1,1,2\n",
+            "columns 2 and 3 are both `indentation_mm`",
+        ),
+        (
+            "unknown",
+            &printed,
+            "time_s,indentation_mm,speed\n0,0,0\n1,1,2\n",
+            "`speed` is no column of rows in time: leave it out",
+        ),
         ("membrane", &membrane, plain, "model.kind is \"membrane\""),
         ("rubbed", &rubbed, plain, "without friction"),
     ] {
@@ -203,6 +221,21 @@ fn history_refuses_in_a_line() {
     let csv = write("plain.csv", "time_s,pressure_rise_pa\n0,0\n1,1\n");
     let text = refusal(&["estimate", &membrane, "--history", &csv]);
     assert!(text.contains("model.kind is \"membrane\""), "{text}");
+}
+
+/// A megaton on a fingertip, and a record of thirty years: one line, within a minute of processor time.
+#[test]
+fn what_has_no_end_is_refused() {
+    let printed = design("endless", AGILUS30, "");
+    let csv = write("megaton.csv", "time_s,force_n\n0,0\n1,1e6\n");
+    let text = refusal(&["history", &printed, "--history", &csv]);
+    assert!(text.contains("press less deep"), "{text}");
+    let csv = write("decades.csv", "time_s,pressure_rise_kpa\n0,0\n1e9,1\n");
+    let text = refusal(&["estimate", &printed, "--history", &csv, "--allow-worse"]);
+    assert!(
+        text.contains("its rows span 1e9 s") && text.contains("cut the record"),
+        "{text}"
+    );
 }
 
 /// While pressed and held force within 4 % and indentation within 2 % of the largest; from then on no force that pulls, and none where contact

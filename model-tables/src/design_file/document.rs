@@ -7,7 +7,8 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 /// What the name of a design, a target or a hand may be: [`Section::name`] with 64 letters.
-pub const NAME: &str = "1 to 64 letters, digits, `-` or `_` in quotes";
+pub const NAME: &str =
+    "1 to 64 letters, digits, `-` or `_` in quotes, as it names files and is held by the chip";
 
 /// The text of a file.
 ///

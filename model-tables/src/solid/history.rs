@@ -46,6 +46,8 @@ const TURN: f64 = 0.3;
 const SMALLEST_TRAVEL: f64 = 1e-6;
 /// Halvings of a step that fails.
 const MAX_HALVINGS: u32 = 24;
+/// Steps of one interval at most, refused ones too: a press of the whole height takes a fifth of them.
+const MAX_STEPS: u32 = 2_000;
 /// Energy that may be missing after a step, over the work done in it and over the most done so far.
 const ENERGY_TOLERANCE: [f64; 2] = [0.05, 5e-3];
 /// The same of the first step, in which the contact is smaller than an element.
@@ -333,7 +335,7 @@ impl History {
             }
         }
         self.speed = speed;
-        let mut done = 0.0;
+        let (mut done, mut tried) = (0.0, 0);
         while done < 1.0 {
             let mut halvings = 0;
             let mut seconds = self.proposal(drive, (1.0 - done) * whole);
@@ -345,6 +347,16 @@ impl History {
                     done + seconds / whole
                 };
                 let target = if end < 1.0 { from + end * (to - from) } else { to };
+                tried += 1;
+                if tried > MAX_STEPS {
+                    let now = self.now();
+                    return Err(HistoryError::TooManySteps {
+                        time: self.time,
+                        indentation: now.indentation,
+                        force: now.force,
+                        steps: MAX_STEPS,
+                    });
+                }
                 match self.step((end - done) * whole, drive, target) {
                     Ok(solved) => {
                         self.take(&solved, (end - done) * whole)

@@ -46,6 +46,9 @@ pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<Comm
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;
     let period = f64::from(design.parameters().period) * 1e-6;
+    if relaxation.is_some() {
+        check_span(history, &read.rows, period)?;
+    }
     let mut wall = relaxation
         .zip(design.series())
         .map(|(series, whole)| History::new(series, *whole, period));
@@ -78,6 +81,26 @@ pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<Comm
         rows,
         notes: Vec::new(),
     })
+}
+
+/// Report periods that a record may take: a quarter of a minute of one core.
+const MOST_PERIODS: f64 = 1e8;
+
+/// Refuses a record whose time is more report periods than can be stepped.
+fn check_span(file: &Path, rows: &[TimeRow], period: f64) -> Result<(), Refusal> {
+    let span = rows.last().map_or(0.0, |last| last.time - rows[0].time);
+    if span / period <= MOST_PERIODS {
+        return Ok(());
+    }
+    Err(Refusal::about(
+        file,
+        &format_args!(
+            "its rows span {span:e} s, {:.1e} report periods of {} ms: at most {MOST_PERIODS:e} can be stepped, {:e} s; cut the record",
+            span / period,
+            1e3 * period,
+            MOST_PERIODS * period
+        ),
+    ))
 }
 
 /// The wall's state on the chip, and the steps of its time.

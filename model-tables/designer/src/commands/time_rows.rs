@@ -29,12 +29,66 @@ pub(super) struct TimeRows {
     pub(super) rows: Vec<TimeRow>,
 }
 
-/// Reads `time_s` and exactly one of the columns that may be given, and `temperature_c` where it is there; other columns are left out.
+/// Columns that the tool's own rows in time have, and a trial: left out where they are not asked for.
+const OWN: [&str; 9] = [
+    "indentation_mm",
+    "force_n",
+    "pressure_rise_kpa",
+    "pressure_rise_pa",
+    "elastic_pressure_pa",
+    "contact",
+    "apex_depression_mm",
+    "status",
+    "trial",
+];
+
+/// Columns that are there twice, or that nobody knows: a slip in a name would else leave a column out without a word.
+fn check_columns(header: &[String], given: &[&'static str]) -> Result<(), String> {
+    let known: Vec<&str> = [TIME, TEMPERATURE]
+        .into_iter()
+        .chain(given.iter().copied())
+        .chain(OWN)
+        .collect();
+    for (place, column) in header.iter().enumerate() {
+        if let Some(before) = header[..place].iter().position(|other| other == column) {
+            return Err(format!(
+                "columns {} and {} are both `{column}`: leave one of them out",
+                before + 1,
+                place + 1
+            ));
+        }
+        if !known.contains(&column.as_str()) {
+            let lower = column.to_lowercase();
+            let nearest = known
+                .iter()
+                .map(|name| (strsim::jaro_winkler(&lower, name), name))
+                .filter(|(likeness, _)| *likeness > ALIKE)
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            return Err(match nearest {
+                Some((_, name)) => format!("`{column}` is no column of rows in time: did you mean `{name}`?"),
+                None => format!(
+                    "`{column}` is no column of rows in time: leave it out; there are {TIME}, {}, {TEMPERATURE}",
+                    given.join(", ")
+                ),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Likeness of names from which on one may be a slip for the other.
+const ALIKE: f64 = 0.8;
+
+/// Reads `time_s` and exactly one of the columns that may be given, and `temperature_c` where it is there; other columns that the tool
+/// writes are left out.
 pub(super) fn read(file: &Path, given: &[&'static str]) -> Result<TimeRows, Refusal> {
     let about = |reason: &str| Refusal::about(file, &one_line(reason));
     let bytes = std::fs::read(file).map_err(|error| about(&format!("cannot be read: {error}")))?;
     let sheet = Sheet::read(&bytes).map_err(|reason| about(&reason))?;
     let header = &sheet.header;
+    if header.iter().any(|column| column == TIME) {
+        check_columns(header, given).map_err(|reason| about(&reason))?;
+    }
     let place = |name: &str| header.iter().position(|column| column == name);
     let time = place(TIME).ok_or_else(|| {
         about(&format!(

@@ -43,6 +43,17 @@ pub enum HistoryError {
         /// Why there is none after it.
         by: DiscEnd,
     },
+    /// An interval did not come to its end.
+    TooManySteps {
+        /// When, seconds.
+        time: f64,
+        /// Indentation there, metres.
+        indentation: f64,
+        /// Force there, newtons.
+        force: f64,
+        /// Steps that were tried.
+        steps: u32,
+    },
     /// A state was not found.
     Unsolved {
         /// When, seconds.
@@ -93,6 +104,17 @@ impl fmt::Display for HistoryError {
                  stiffer disc",
                 pressure / 1e3,
                 by.word()
+            ),
+            Self::TooManySteps {
+                time,
+                indentation,
+                force,
+                steps,
+            } => write!(
+                f,
+                "{steps} steps of one row led to {:.6} mm and {force:.6} N at time_s = {time:.6} and no further: press less deep or with \
+                 less force, or give more rows",
+                1e3 * indentation
             ),
             Self::Unsolved {
                 time,
