@@ -43,7 +43,7 @@ const PRS_RDY: u8 = 0x10;
 const COMMAND_PRESSURE: u8 = 0x01;
 const COMMAND_TEMPERATURE: u8 = 0x02;
 
-/// Four pressures averaged: 8.4 ms, and 1 Pa of noise (section 8.3, table 16); the word needs no shift.
+/// Four pressures averaged: 8.4 ms, and 0.5 Pa of noise (section 8.3, table 16); the word needs no shift.
 const PRESSURE_PRECISION: u8 = 0x02;
 const PRESSURE_CONVERSION: u32 = 8_400;
 const PRESSURE_SCALE: i64 = 3_670_016;
