@@ -2,6 +2,21 @@
 
 from typing import final
 
+__all__ = [
+    "SweepFolder",
+    "canonical",
+    "estimate",
+    "fit",
+    "history",
+    "rest",
+    "size",
+    "solve",
+    "sweep",
+    "sweep_part",
+    "sweep_text",
+    "table",
+]
+
 def canonical(text: str, name: str) -> str: ...
 def rest(text: str, name: str) -> tuple[str, list[float], str]: ...
 def solve(text: str, name: str, indentation_mm: list[float]) -> tuple[str, bytes, list[str]]: ...
@@ -20,12 +35,14 @@ def fit(
     data: bytes,
     data_name: str,
     parameters: list[str],
+    per_trial: list[str],
     columns: list[tuple[str, str]],
     only: list[tuple[str, str]],
     direction: str | None,
 ) -> tuple[
     str,
     list[tuple[str, str, float, float, float, str]],
+    list[tuple[str, str, float, float]],
     bytes,
     tuple[bytes, list[bool], list[bool], list[str]],
     list[float],
@@ -33,8 +50,8 @@ def fit(
     list[str],
 ]: ...
 def size(
-    text: str, name: str
-) -> tuple[list[tuple[str, str, bool, str, list[float], bytes]], int, list[float]]: ...
+    text: str, name: str, best: int
+) -> tuple[list[tuple[str, str, str, bool, str, list[float], bytes]], list[str], int, list[float]]: ...
 def sweep_text(path: str) -> str: ...
 def sweep(path: str, out: str) -> tuple[int, int, int, int, str | None, int]: ...
 def sweep_part(text: str, part: int, manifest: str) -> tuple[bytes, int, int, str | None]: ...

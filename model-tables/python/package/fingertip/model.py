@@ -196,7 +196,8 @@ def _floats(values: ArrayLike, name: str) -> list[float]:
         raise FingertipError(f"{name} has {array.ndim} dimensions: give one number or a row of them")
     if not np.isfinite(array).all():
         raise FingertipError(f"{name} holds {array[~np.isfinite(array)].flat[0]}: give finite numbers")
-    return np.atleast_1d(array).tolist()
+    numbers: list[float] = np.atleast_1d(array).tolist()
+    return numbers
 
 
 def columns(raw: bytes, count: int) -> list[Floats]:
@@ -214,7 +215,8 @@ def rest(design: DesignLike) -> Rest:
     """
     design = design_of(design)
     model, numbers, ends_by = _fingertip.rest(design.text, design.name)
-    return Rest(model, *numbers, ends_by)
+    pressure, stretch, radius, height, volume, deepest = numbers
+    return Rest(model, pressure, stretch, radius, height, volume, deepest, ends_by)
 
 
 def solve(design: DesignLike, indentation_mm: ArrayLike) -> States:
@@ -226,7 +228,8 @@ def solve(design: DesignLike, indentation_mm: ArrayLike) -> States:
     """
     design = design_of(design)
     model, raw, wrinkled = _fingertip.solve(design.text, design.name, _floats(indentation_mm, "indentation_mm"))
-    return States(model, *columns(raw, 7), tuple(wrinkled))
+    depth, pressure, rise, force, radius, stretch, tension = columns(raw, 7)
+    return States(model, depth, pressure, rise, force, radius, stretch, tension, tuple(wrinkled))
 
 
 def history(
@@ -246,16 +249,17 @@ def history(
         ModelError: an instant that was not found.
     """
     design = design_of(design)
-    if (indentation_mm is None) == (force_n is None):
-        raise FingertipError("a press in time is driven by indentation_mm or by force_n: give one of them")
     by_force = force_n is not None
-    name = "force_n" if by_force else "indentation_mm"
+    name, values = ("force_n", force_n) if by_force else ("indentation_mm", indentation_mm)
+    if values is None or (by_force and indentation_mm is not None):
+        raise FingertipError("a press in time is driven by indentation_mm or by force_n: give one of them")
     times = _floats(time_s, "time_s")
-    driven = _floats(force_n if by_force else indentation_mm, name)  # type: ignore[arg-type]
+    driven = _floats(values, name)
     if len(times) != len(driven):
         raise FingertipError(f"time_s has {len(times)} numbers and {name} {len(driven)}: give as many")
     raw, contact = _fingertip.history(design.text, design.name, times, driven, by_force)
-    return History(np.array(times), *columns(raw, 4), np.array(contact, dtype=np.bool_))
+    depth, rise, force, apex = columns(raw, 4)
+    return History(np.array(times), depth, rise, force, apex, np.array(contact, dtype=np.bool_))
 
 
 def table(design: DesignLike, *, allow_worse: bool = False) -> Tables:
@@ -284,4 +288,5 @@ def estimate(design: DesignLike, pressure_rise_pa: ArrayLike, *, allow_worse: bo
     design = design_of(design)
     rises = _floats(pressure_rise_pa, "pressure_rise_pa")
     raw, saturated = _fingertip.estimate(design.text, design.name, rises, allow_worse)
-    return Estimates(np.array(rises), *columns(raw, 2), np.array(saturated, dtype=np.bool_))
+    force, depth = columns(raw, 2)
+    return Estimates(np.array(rises), force, depth, np.array(saturated, dtype=np.bool_))

@@ -81,7 +81,8 @@ def run(
     # First, so that a wrong file is refused before a cluster is sought.
     folder = _fingertip.SweepFolder(space, out)
     try:
-        import distributed
+        # Dask has annotations in parts only: to type checkers it is anything.
+        distributed: Any = importlib.import_module("distributed")
     except ImportError:
         raise SweepError("a cluster needs Dask, which is not installed: pip install 'fingertip[cluster]'") from None
     if isinstance(scheduler, distributed.Client):
@@ -107,7 +108,7 @@ def part_of(text: str, part: int, manifest: str) -> tuple[bytes, int, int, str |
     return _fingertip.sweep_part(text, part, manifest)
 
 
-def _on_cluster(folder: _fingertip.SweepFolder, client: Client, distributed: Any) -> Swept:
+def _on_cluster(folder: _fingertip.SweepFolder, client: Any, distributed: Any) -> Swept:
     designs, parts, per_part = folder.size
     left = folder.left()
     in_part = {part: min(per_part, designs - part * per_part) for part in left}

@@ -87,7 +87,8 @@ class Batch:
     @property
     def is_ok(self) -> NDArray[np.bool_]:
         """Where there is a reading that no warning qualifies."""
-        return (self.fault == 0) & (self.warnings == 0)
+        is_ok: NDArray[np.bool_] = (self.fault == 0) & (self.warnings == 0)
+        return is_ok
 
     def of_tip(self, tip: int) -> Batch:
         """Those of one tip."""
