@@ -84,21 +84,21 @@ pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<Comm
 }
 
 /// Report periods that a record may take: a quarter of a minute of one core.
-const MOST_PERIODS: f64 = 1e8;
+const MAX_PERIODS: f64 = 1e8;
 
 /// Refuses a record whose time is more report periods than can be stepped.
 fn check_span(file: &Path, rows: &[TimeRow], period: f64) -> Result<(), Refusal> {
     let span = rows.last().map_or(0.0, |last| last.time - rows[0].time);
-    if span / period <= MOST_PERIODS {
+    if span / period <= MAX_PERIODS {
         return Ok(());
     }
     Err(Refusal::about(
         file,
         &format_args!(
-            "its rows span {span:e} s, {:.1e} report periods of {} ms: at most {MOST_PERIODS:e} can be stepped, {:e} s; cut the record",
+            "its rows span {span:e} s, {:.1e} report periods of {} ms: at most {MAX_PERIODS:e} can be stepped, {:e} s; cut the record",
             span / period,
             1e3 * period,
-            MOST_PERIODS * period
+            MAX_PERIODS * period
         ),
     ))
 }

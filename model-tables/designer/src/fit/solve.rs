@@ -224,7 +224,12 @@ impl Task<'_> {
                 .map(|((moved, before), factor)| factor * (moved - before) / step)
                 .collect())
         };
-        zeros.columns(self.data, self.targets, moved)
+        let trials: Vec<usize> = self
+            .targets
+            .iter()
+            .map(|target| self.data.rows[target.row].trial)
+            .collect();
+        zeros.columns(&trials, moved)
     }
 
     /// Moves the zeros of the trials by a step of least squares over them and the parameters together; the largest one, over what would be a

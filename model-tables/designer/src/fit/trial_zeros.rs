@@ -7,7 +7,6 @@
 use super::FitError;
 use super::data::{Data, DataRow};
 use super::heading::Measured;
-use super::model::Target;
 use super::parameter::Parameter;
 use super::touch;
 use model_tables::model::ModelError;
@@ -27,6 +26,16 @@ pub struct TrialZero {
     pub value: f64,
     /// Its standard error, in the same unit; `None` with as many parameters as data.
     pub standard_error: Option<f64>,
+}
+
+impl TrialZero {
+    /// Its name for people: the channel's, and the trial's where that has a name.
+    pub fn title(&self, data: &Data) -> String {
+        match data.trials[self.trial].as_str() {
+            "" => zero_name(self.quantity).to_owned(),
+            name => format!("{} of trial {name}", zero_name(self.quantity)),
+        }
+    }
 }
 
 /// The name of a channel's zero on the command line.
@@ -146,24 +155,23 @@ impl TrialZeros {
             .flat_map(move |&trial| free.iter().map(move |&quantity| (trial, quantity)))
     }
 
-    /// A column for each zero; `derivatives` gives those by a channel's zeros in all trials at once.
+    /// A column for each zero, of numbers whose trials are given; `derivatives` gives those by a channel's zeros in all trials at once.
     ///
     /// # Errors
     /// Those of `derivatives`.
     pub(super) fn columns(
         &self,
-        data: &Data,
-        targets: &[Target],
+        trials: &[usize],
         derivatives: impl Fn(Measured) -> Result<Vec<f64>, ModelError>,
     ) -> Result<DMatrix<f64>, ModelError> {
         let mut by: [Vec<f64>; 3] = Default::default();
         for &quantity in &self.free {
             by[quantity as usize] = derivatives(quantity)?;
         }
-        let mut columns = DMatrix::zeros(targets.len(), self.count());
+        let mut columns = DMatrix::zeros(trials.len(), self.count());
         for (column, (trial, quantity)) in self.each().enumerate() {
-            for (row, target) in targets.iter().enumerate() {
-                if data.rows[target.row].trial == trial {
+            for (row, &of) in trials.iter().enumerate() {
+                if of == trial {
                     columns[(row, column)] = by[quantity as usize][row];
                 }
             }

@@ -227,11 +227,7 @@ fn rows(data: &Data, fit: &Fit) -> Rows {
     }
     for zero in &fit.trial_zeros {
         rows.push(vec![
-            Cell::Text(format!(
-                "{} of trial {}",
-                zero_name(zero.quantity),
-                data.trials[zero.trial]
-            )),
+            Cell::Text(zero.title(data)),
             Cell::word(""),
             Cell::Number(0.0),
             Cell::Number(zero.value),

@@ -4,7 +4,6 @@ use super::super::bench;
 use crate::fit::Fit;
 use crate::fit::data::Data;
 use crate::fit::findings::{QUANTITIES, findings, state};
-use crate::fit::trial_zeros::zero_name;
 use model_tables::design_file::DesignFile;
 use output::rows::significant;
 use std::fmt::Write as _;
@@ -40,9 +39,8 @@ pub(super) fn markdown(file: &DesignFile, data: &Data, fit: &Fit) -> String {
     for zero in &fit.trial_zeros {
         let _ = writeln!(
             text,
-            "| {} of trial {} | | 0 | {} | {} | fitted |",
-            zero_name(zero.quantity),
-            data.trials[zero.trial],
+            "| {} | | 0 | {} | {} | fitted |",
+            zero.title(data),
             significant(zero.value, 6),
             zero.standard_error
                 .map_or_else(|| "-".to_owned(), |error| significant(error, 2)),
