@@ -187,6 +187,29 @@ fn the_pages_examples_of_a_hand_are_what_the_reader_in_python_reads() {
     );
 }
 
+/// The tests of the client of a hand need the standard library alone.
+#[test]
+fn the_client_of_a_hand_in_python_is_the_pages() {
+    let folder = workspace().join("model-tables/python");
+    let Some(mut python) = python3() else {
+        return;
+    };
+    let output = python
+        .arg(folder.join("tests/test_hand.py"))
+        .env("PYTHONPATH", folder.join("package"))
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output()
+        .expect("Python runs");
+    let (told, error) = (
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr),
+    );
+    assert!(
+        output.status.success() && told.matches("... ok").count() == 6,
+        "{told}{error}"
+    );
+}
+
 #[test]
 fn the_page_names_every_code() {
     let page = fs::read_to_string(workspace().join("src/link/PROTOCOL.md")).expect("the page is there");

@@ -10,6 +10,8 @@
             if isinstance(frame, Reading) and frame.is_ok:
                 print(frame.tip, frame.force_n)
 
+A hand of several tips has a client of its own, :class:`HandClient`; :mod:`fingertip.telemetry.ros` makes ROS 2 messages of readings.
+
 Frames, commands and the client need the standard library alone, a serial port pyserial, and a :class:`Batch` numpy.
 """
 
@@ -23,12 +25,14 @@ from .aio import AsyncClient
 from .client import Client, Counts
 from .codes import CommandKind, Fault, LastRun, Outcome, ResetCause, Stored, Touch, Warnings
 from .frames import Answer, FaultReport, Frame, Hello, Reading, TipData
+from .hand import ALL_TIPS, HandClient, TipHello
 from .load import Loaded, TipFile, load, read_back, roll_back
 
 if TYPE_CHECKING:
     from .batch import Batch
 
 __all__ = [
+    "ALL_TIPS",
     "Answer",
     "AsyncClient",
     "Batch",
@@ -38,6 +42,7 @@ __all__ = [
     "Fault",
     "FaultReport",
     "Frame",
+    "HandClient",
     "Hello",
     "LastRun",
     "Loaded",
@@ -48,6 +53,7 @@ __all__ = [
     "TelemetryError",
     "TipData",
     "TipFile",
+    "TipHello",
     "Touch",
     "Warnings",
     "load",

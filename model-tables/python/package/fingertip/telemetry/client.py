@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ..errors import TelemetryError
 from . import commands
 from .codes import CommandKind, Outcome
-from .frames import Answer, FaultReport, Frame, FrameError, Hello, Reading, Splitter, body_of, decode
+from .frames import LONGEST, Answer, FaultReport, Frame, FrameError, Hello, Reading, Splitter, body_of, decode
 from .ports import BAUD, Address, Line
 
 if TYPE_CHECKING:
@@ -63,6 +63,9 @@ class Client:
     Raises:
         TelemetryError: the first connection is not to be had.
     """
+
+    #: Bytes of the longest frame without its zero.
+    _longest = LONGEST
 
     def __init__(
         self, address: str, *, baud: int = BAUD, capacity: int = CAPACITY, reconnect: bool = True
@@ -161,7 +164,7 @@ class Client:
 
     def _carry(self, line: Line) -> None:
         """Reads the line until it ends or breaks."""
-        splitter = Splitter()
+        splitter = Splitter(self._longest)
         self._last = None
         while not self._closing:
             read = line.read()
@@ -171,15 +174,20 @@ class Client:
                 self._take(splitter.feed(read))
 
     def _take(self, coded: Iterator[bytes]) -> None:
-        frames, damaged = [], 0
+        frames: list[Frame] = []
+        firsts: list[Frame] = []
+        damaged = 0
         for one in coded:
             try:
-                frames.append(decode(body_of(one)))
+                told = self._decode(body_of(one))
             except FrameError:
                 # Joined in its middle, the first stretch is none.
                 damaged += 1
+                continue
+            firsts.append(told[0])
+            frames.extend(told)
         with self._changed:
-            missing, board, resets = self._follow(frames)
+            missing, board, resets = self._follow(firsts)
             self._buffer.extend(frames)
             over = max(len(self._buffer) - self._capacity, 0)
             for _ in range(over):
@@ -187,7 +195,7 @@ class Client:
             counts = self._counts
             self._counts = replace(
                 counts,
-                frames=counts.frames + len(frames),
+                frames=counts.frames + len(firsts),
                 damaged=counts.damaged + damaged,
                 missing=counts.missing + missing,
                 board_dropped=counts.board_dropped + board,
@@ -199,6 +207,19 @@ class Client:
         for listener in listeners:
             for frame in frames:
                 listener(frame)
+
+    # What a board of several tips has otherwise.
+
+    def _decode(self, body: bytes) -> list[Frame]:
+        """What one frame of the line tells, at least one."""
+        return [decode(body)]
+
+    def _encode(self, kind: CommandKind, sequence: int, payload: bytes) -> bytes:
+        return commands.encode(kind, sequence, payload)
+
+    def _is_asked(self, frame: Frame) -> bool:
+        """Whether an answer is of the tip that was asked."""
+        return frame.tip == 0
 
     def _follow(self, frames: list[Frame]) -> tuple[int, int, int]:
         """Missing frames, those that the board dropped, and resets."""
@@ -316,7 +337,7 @@ class Client:
                     found.append(frame)
                 came.set()
 
-        content = commands.encode(kind, sequence, payload)
+        content = self._encode(kind, sequence, payload)
         end = self.listen(listener)
         try:
             self.write(content)
@@ -336,7 +357,8 @@ class Client:
         """
 
         def wanted(frame: Frame, sequence: int) -> bool:
-            return isinstance(frame, Answer) and (frame.command, frame.command_sequence) == (kind, sequence)
+            own = isinstance(frame, Answer) and (frame.command, frame.command_sequence) == (kind, sequence)
+            return own and self._is_asked(frame)
 
         with self._commanding:
             answer = self.ask(kind, payload, wanted, _PATIENCE.get(kind, _USUAL_PATIENCE))

@@ -102,6 +102,8 @@ class Hello(Frame):
     frames_dropped: int
     #: What came over the line since reset and was no command.
     refused: int
+    #: Tips of a hand; 0 of a board that carries one.
+    tips: int = 0
 
 
 @dataclass(frozen=True, slots=True)
