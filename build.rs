@@ -24,6 +24,9 @@ const BOARDS: [(&str, Option<&str>, u32); 2] = [
 const CONVERSION: u32 = 10;
 const BLOCK: u32 = 1_000;
 
+/// Bytes of a slot of a loaded tip: a block and its log of activations.
+const SLOT: u32 = 4096 + 512;
+
 fn main() {
     println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
     println!("cargo::rerun-if-changed=build.rs");
@@ -87,12 +90,15 @@ fn fold_in_the_design(for_the_chip: bool) -> Result<(), String> {
 /// The Rust source of the tables of a hand, and of its tips; or the reason why there are none.
 fn hand(path: &Path) -> Result<(String, String), String> {
     let named = |reason: &str| format!("{}: {reason}", path.display());
-    if env::var_os("CARGO_FEATURE_LOAD_TIP").is_some() {
-        return Err(named(
-            "firmware of a hand loads no tips: build it without the feature load-tip",
-        ));
-    }
     let file = HandFile::read(path).map_err(|error| error.to_string())?;
+    if env::var_os("CARGO_FEATURE_LOAD_TIP").is_some() {
+        return Err(named(&format!(
+            "its {} tips would need {} slots of flash that are erased apart, of {SLOT} bytes each, and the boards keep 2: build it \
+             without the feature load-tip",
+            file.tips.len(),
+            2 * file.tips.len()
+        )));
+    }
     for tip in &file.tips {
         println!("cargo::rerun-if-changed={}", tip.design.display());
     }
@@ -119,7 +125,9 @@ fn hand(path: &Path) -> Result<(String, String), String> {
     println!("cargo::rustc-cfg=transducer=\"ratiometric\"");
     let reference = chosen_board().map_or(BOARDS[0].2, |(_, _, reference)| reference);
     let scan = CONVERSION * channels.len() as u32 + reference;
-    let scans = (BLOCK + scan / 2) / scan;
+    // Two scans are a row of words where their codes are an odd number.
+    let step = if channels.len() % 2 == 0 { 2 } else { 1 };
+    let scans = (BLOCK + step * scan / 2) / (step * scan) * step;
     let names: Vec<&str> = file.tips.iter().map(|tip| tip.name.as_str()).collect();
     let tips = channels.len();
     let mut source = format!(
@@ -127,11 +135,13 @@ fn hand(path: &Path) -> Result<(String, String), String> {
          /// Hash of its tips, where they are, and their designs.\npub const HASH: u64 = {};\n\
          /// Its tips.\npub const TIPS: usize = {tips};\n\
          /// Their names.\npub const TIP_NAMES: [&str; TIPS] = {names:?};\n\
+         /// What their stored calibrations are for: hashes of each tip's name, place and design.\npub const TIP_HASHES: [u64; TIPS] = {:?};\n\
          /// Their channels.\npub const CHANNELS: [u8; TIPS] = {channels:?};\n\
          /// Scans of a block.\npub const SCANS: usize = {scans};\n\
          /// From one block to the next, microseconds.\npub const PERIOD: u32 = {};\n",
         file.name,
         file.hash(&designs),
+        file.tip_hashes(&designs),
         scans * scan
     );
     // Tips of one design share its tables and its code.

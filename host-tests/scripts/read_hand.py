@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Reads the frames of a hand (src/link/PROTOCOL.md, version 3) from a file, a pipe, a serial port set to 921600 baud or
+"""Reads the frames of a hand (src/link/PROTOCOL.md, version 3) from a file, a pipe, a serial port set to 1000000 baud or
 tcp:HOST:PORT, and prints one line each; `--encode TIP KIND SEQUENCE [HEX]` writes a command to a tip, 255: to all. It shares
 its words with read_frames.py beside it.
 
-    stty -F /dev/ttyACM0 921600 raw && python3 read_hand.py /dev/ttyACM0
+    stty -F /dev/ttyACM0 1000000 raw && python3 read_hand.py /dev/ttyACM0
     python3 read_hand.py --encode 255 rate 1 0a00 > /dev/ttyACM0
 """
 import struct

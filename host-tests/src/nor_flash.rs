@@ -9,6 +9,7 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use fingertip::signal::calibration::Calibration;
+use fingertip::storage::hand_store::{HandStore, TipIdentity};
 use fingertip::storage::store::{Identity, Store};
 use model_tables::random::Random;
 
@@ -351,6 +352,23 @@ impl<const SLOT: usize, const UNIT: usize> NorFlash for SimulatedFlash<SLOT, UNI
         }
         Ok(())
     }
+}
+
+/// The bytes of two slots that a hand of these tips saved calibrations in, one after the other: each with the number of its tip.
+///
+/// # Panics
+/// For a tip that is not there.
+pub fn saved_hand<const SLOT: usize, const TIPS: usize, const LENGTH: usize>(
+    identities: [TipIdentity; TIPS],
+    calibrations: &[(usize, Calibration)],
+) -> Vec<u8> {
+    let flash = <SimulatedFlash<SLOT>>::erased(1);
+    let mut store = HandStore::<_, TIPS, LENGTH>::new(flash, SLOT as u32, identities, [0, 1, 0]);
+    block_on(store.load());
+    for (tip, calibration) in calibrations {
+        block_on(store.save(*tip, Some(*calibration))).expect("the memory is sound");
+    }
+    store.into_flash().bytes
 }
 
 /// The bytes of two slots that one calibration was saved in.

@@ -3,8 +3,9 @@
 use embassy_futures::block_on;
 use fingertip::signal::calibration::Calibration;
 use fingertip::status::Stored;
+use fingertip::storage::log::StoreError;
 use fingertip::storage::record::LENGTH;
-use fingertip::storage::store::{Identity, Store, StoreError};
+use fingertip::storage::store::{Identity, Store};
 use fingertip::units::Millipascals;
 use host_tests::nor_flash::{Defect, SimulatedFlash};
 use host_tests::{assert_faults_says, workspace};

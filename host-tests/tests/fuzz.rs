@@ -6,6 +6,7 @@ use fingertip::link::telemetry::{self, Frame, Message};
 use fingertip::link::wire::Deframer;
 use fingertip::signal::report::Report;
 use fingertip::status::Fault;
+use fingertip::storage::log;
 use fingertip::storage::record::{self, Record};
 use fingertip::units::Microseconds;
 use host_tests::assert_faults_says;
@@ -114,7 +115,7 @@ fn readers_of_the_memory_take_anything() {
             bytes[at as usize / 8] ^= 1 << (at % 8);
             words[bit as usize / 32] ^= 1 << (bit % 32);
         }
-        let record = matches!(record::decode(&bytes), record::Found::Record(_));
+        let record = matches!(record::decode(&bytes), log::Found::Record(_));
         let crash_record = CrashRecord::from_words(&words).is_some();
         records += u64::from(record);
         crash_records += u64::from(crash_record);

@@ -11,8 +11,8 @@ use embedded_storage_async::nor_flash::{
 /// Longest erasure of a slot: 16 KB take 0.5 s, 8 bits at a time 0.8 s (DS9405 table 48).
 const ERASE: Duration = Duration::from_secs(2);
 
-/// Longest write of a record: 12 words of 0.1 ms, or of a chunk of a tip, 16 words.
-const WRITE: Duration = Duration::from_millis(10);
+/// Longest write of a record: 12 words of 0.1 ms, of a chunk of a tip 16, of the record of twelve tips of a hand 104.
+const WRITE: Duration = Duration::from_millis(if cfg!(hand) { 20 } else { 10 });
 
 /// Forgets what the caches hold. The flash changes beneath them (RM0351 3.3.5, RM0090 3.5.1: a cache is reset while it
 /// is off), and of what was programmed the caches may hold the blank from before.

@@ -118,8 +118,12 @@ pub(super) const SUPPLY: Input = Input {
 /// The crystal oscillator of the ST-LINK.
 const HSE: Hertz = Hertz(8_000_000);
 
-/// Half used by reports of 46 bytes each millisecond. From 32 MHz the divider gives 920 863, 0.1 % slow.
-pub(super) const BAUD: u32 = 921_600;
+/// Half used by reports of 46 bytes each millisecond, or by those of five tips. By 35 from 32 MHz: 914 286, 0.8 % slow; of a hand by 32,
+/// exactly.
+pub(super) const BAUD: u32 = if cfg!(hand) { 1_000_000 } else { 921_600 };
+
+/// The serial port's clock: APB1.
+pub(super) const SERIAL_CLOCK: u32 = 32_000_000;
 
 /// The slowest report comes after a transducer's start, 60 ms; the oscillator of the watchdog runs at 17 to 47 kHz for a
 /// nominal 32 (DS9405 table 43), so this is 136 to 376 ms.

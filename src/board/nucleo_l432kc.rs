@@ -117,8 +117,12 @@ pub(super) const SUPPLY: Input = Input {
     pin: 1,
 };
 
-/// Half used by reports of 46 bytes each millisecond. From 24 MHz the divider gives 923 077, 0.2 % fast.
-pub(super) const BAUD: u32 = 921_600;
+/// Half used by reports of 46 bytes each millisecond, or by those of five tips. By 26 from 24 MHz: 923 077, 0.2 % fast; of a hand by 24,
+/// exactly.
+pub(super) const BAUD: u32 = if cfg!(hand) { 1_000_000 } else { 921_600 };
+
+/// The serial port's clock: APB1.
+pub(super) const SERIAL_CLOCK: u32 = 24_000_000;
 
 /// The slowest report comes after a transducer's start, 60 ms; the oscillator of the watchdog runs at 29.5 to 34 kHz
 /// (DS11451 table 52), so this is 188 to 217 ms.

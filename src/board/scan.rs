@@ -2,9 +2,9 @@
 //! a ring of two blocks of scans.
 
 use super::chip;
-use crate::image::{CHANNELS, PERIOD, RANKS, SCANS, TIPS};
+use crate::image::{CHANNELS, PERIOD, ROW, ROWS, SCANS, TIPS};
 use crate::transducer::scan::{ScanBlock, ScanConverter};
-use core::sync::atomic::{AtomicU16, Ordering, fence};
+use core::sync::atomic::{AtomicU32, Ordering, fence};
 use embassy_stm32::adc::Adc;
 use embassy_stm32::peripherals::ADC1;
 use embassy_time::{Duration, Ticker};
@@ -16,11 +16,10 @@ const CONVERSION: u32 = 10;
 const _: () = assert!(PERIOD == SCANS as u32 * (CONVERSION * TIPS as u32 + chip::IDENTITY_CONVERSION));
 
 /// Codes in the ring.
-const LENGTH: usize = 2 * SCANS * RANKS;
+const LENGTH: usize = 2 * 2 * ROW * ROWS;
 
 /// The ring that the converter's DMA fills.
-static RING: [ScanBlock<RANKS, SCANS>; 2] =
-    [const { [const { [const { AtomicU16::new(0) }; RANKS] }; SCANS] }; 2];
+static RING: [ScanBlock<ROW, ROWS>; 2] = [const { [const { [const { AtomicU32::new(0) }; ROW] }; ROWS] }; 2];
 
 /// ADC1 on the pins of the hand's channels.
 pub struct DmaScan {
@@ -41,7 +40,7 @@ impl DmaScan {
     }
 }
 
-impl ScanConverter<RANKS, SCANS> for DmaScan {
+impl ScanConverter<ROW, ROWS> for DmaScan {
     const PERIOD: u32 = PERIOD;
 
     fn restart(&mut self) {
@@ -61,7 +60,7 @@ impl ScanConverter<RANKS, SCANS> for DmaScan {
         running.then_some(position)
     }
 
-    fn ring(&self) -> &[ScanBlock<RANKS, SCANS>; 2] {
+    fn ring(&self) -> &[ScanBlock<ROW, ROWS>; 2] {
         &RING
     }
 }

@@ -1,19 +1,19 @@
 //! The tips of a hand between their samples and the line: what [`Device`] is for one fingertip. Each tip has its own zero, faults
-//! and answers; the reports of one instant share a frame and a time.
-//!
-//! Calibrations are not stored: `save` and `forget` are answered "not in this image".
+//! and answers, and a calibration that is stored beside the others'; the reports of one instant share a frame and a time.
 
-use crate::device::logic::{Counters, Device};
-use crate::link::command::{Command, Outcome, Request};
+use crate::device::logic::{Counters, Device, ToStore};
+use crate::link::command::{Command, Request};
 use crate::link::telemetry::{Answer, Hello, Message};
 use crate::link::tips::{ALL_TIPS, FrameStart};
 use crate::signal::design::Design;
 use crate::signal::report::Report;
+use crate::signal::zero::Zero;
 use crate::status::{Fault, Status};
+use crate::storage::log::StoreError;
 use crate::transducer::driver::Sample;
 use crate::units::Microseconds;
 
-/// One of two reports goes on the line at the start: five tips take 55 of its 92 kB/s.
+/// One of two reports goes on the line at the start: five tips take 55 of its 100 kB/s.
 pub const EVERY: u16 = 2;
 
 /// A tip, whatever its design.
@@ -26,8 +26,25 @@ pub trait HandTip {
         put: &mut dyn FnMut(&Message),
     ) -> Report;
 
-    /// [`Device::request`], of a command that stores nothing.
-    fn request(&mut self, now: Microseconds, request: Request, put: &mut dyn FnMut(&Message));
+    /// [`Device::request`].
+    fn request(
+        &mut self,
+        now: Microseconds,
+        request: Request,
+        put: &mut dyn FnMut(&Message),
+    ) -> Option<ToStore>;
+
+    /// [`Device::stored`].
+    fn stored(
+        &mut self,
+        now: Microseconds,
+        result: Result<(), StoreError>,
+        number: u32,
+        put: &mut dyn FnMut(&Message),
+    );
+
+    /// [`Device::zero`].
+    fn zero(&self) -> Option<Zero>;
 
     /// What others count.
     fn counters(&mut self) -> &mut Counters;
@@ -46,9 +63,27 @@ impl<D: Design> HandTip for Device<D> {
         Device::step(self, now, sample, put)
     }
 
-    fn request(&mut self, now: Microseconds, request: Request, put: &mut dyn FnMut(&Message)) {
-        // None is asked for that stores something.
-        let _ = Device::request(self, now, request, put);
+    fn request(
+        &mut self,
+        now: Microseconds,
+        request: Request,
+        put: &mut dyn FnMut(&Message),
+    ) -> Option<ToStore> {
+        Device::request(self, now, request, put)
+    }
+
+    fn stored(
+        &mut self,
+        now: Microseconds,
+        result: Result<(), StoreError>,
+        number: u32,
+        put: &mut dyn FnMut(&Message),
+    ) {
+        Device::stored(self, now, result, number, put);
+    }
+
+    fn zero(&self) -> Option<Zero> {
+        Device::zero(self)
     }
 
     fn counters(&mut self) -> &mut Counters {
@@ -100,6 +135,12 @@ impl HandFrame<'_> {
     }
 }
 
+/// Before the first one.
+const NO_REPORT: Report = Report {
+    time: Microseconds(0),
+    outcome: Err(Fault::Zeroing),
+};
+
 /// What a hand is called.
 #[derive(Clone, Copy, Debug)]
 pub struct HandNames<const TIPS: usize> {
@@ -118,6 +159,7 @@ pub struct Hand<const TIPS: usize> {
     every: u16,
     passed: u16,
     statuses: [Option<Status>; TIPS],
+    reports: [Report; TIPS],
 }
 
 impl<const TIPS: usize> Hand<TIPS> {
@@ -132,6 +174,7 @@ impl<const TIPS: usize> Hand<TIPS> {
             every: EVERY,
             passed: 0,
             statuses: [None; TIPS],
+            reports: [NO_REPORT; TIPS],
         };
         hand.slow_down(tips, EVERY);
         hand
@@ -145,47 +188,56 @@ impl<const TIPS: usize> Hand<TIPS> {
             command: Command::Rate { every },
         };
         for tip in tips {
-            tip.request(Microseconds(0), request, &mut |_| {});
+            // It stores nothing.
+            let _ = tip.request(Microseconds(0), request, &mut |_| {});
         }
     }
 
-    /// The reports of one instant; what goes on the line is given to `put`.
+    /// Makes the [reports](Self::reports) of one instant; what goes on the line is given to `put`. Whether a tip's status changed.
     pub fn step(
         &mut self,
         tips: &mut [&mut dyn HandTip; TIPS],
         now: Microseconds,
         samples: &[Result<Sample, Fault>; TIPS],
         mut put: impl FnMut(&HandFrame<'_>),
-    ) -> [Report; TIPS] {
-        let names = self.names;
-        let mut number = 0;
-        let reports = tips.each_mut().map(|tip| {
-            let which = number;
-            number += 1;
-            let sample = samples.get(which).copied().unwrap_or(Err(Fault::SamplesLost));
-            tip.step(now, sample, &mut |message| tell(&names, which, message, &mut put))
-        });
+    ) -> bool {
+        let names = &self.names;
+        let mut changed = false;
+        for (number, tip) in tips.iter_mut().enumerate() {
+            let report = tip.step(now, samples[number], &mut |message| {
+                tell(names, number, message, &mut put);
+            });
+            let status = Some(report.status());
+            changed |= status != self.statuses[number];
+            self.statuses[number] = status;
+            self.reports[number] = report;
+        }
         self.passed = self.passed.saturating_add(1);
-        let statuses = reports.each_ref().map(|report| Some(report.status()));
         // A change is never held back, at whatever rate.
-        if self.passed >= self.every || statuses != self.statuses {
+        if self.passed >= self.every || changed {
             self.passed = 0;
-            self.statuses = statuses;
             put(&HandFrame::Readings {
-                reports: &reports,
+                reports: &self.reports,
                 fraction_bits: (self.bits, &self.shifts),
             });
         }
-        reports
+        changed
     }
 
-    /// Does what is asked of a tip, or of all; whether there is such a tip.
+    /// The reports of the last instant, in the order of the tips.
+    pub const fn reports(&self) -> &[Report; TIPS] {
+        &self.reports
+    }
+
+    /// Does what is asked of a tip, or of all; whether there is such a tip. What has to be stored is given to `store`, with the
+    /// number of its tip.
     pub fn request(
         &mut self,
         tips: &mut [&mut dyn HandTip; TIPS],
         now: Microseconds,
         (tip, request): (u8, Request),
         mut put: impl FnMut(&HandFrame<'_>),
+        mut store: impl FnMut(u8, ToStore),
     ) -> bool {
         let which = match usize::from(tip) {
             tip if tip < TIPS => tip..tip + 1,
@@ -201,24 +253,30 @@ impl<const TIPS: usize> Hand<TIPS> {
             .enumerate()
             .filter(|(number, _)| which.contains(number))
         {
-            match request.command {
-                Command::Save { .. } | Command::Forget => put(&HandFrame::Answer(
-                    number as u8,
-                    Answer {
-                        time: now,
-                        command: request.command.kind(),
-                        command_sequence: request.sequence,
-                        outcome: Outcome::NotInImage,
-                        findings: 0,
-                        known: None,
-                    },
-                )),
-                _ => tip.request(now, request, &mut |message| {
-                    tell(&names, number, message, &mut put);
-                }),
+            let to_store = tip.request(now, request, &mut |message| {
+                tell(&names, number, message, &mut put);
+            });
+            if let Some(to_store) = to_store {
+                store(number as u8, to_store);
             }
         }
         true
+    }
+
+    /// What came of storing a tip's calibration, and the number of the record that holds it.
+    pub fn stored(
+        &self,
+        tips: &mut [&mut dyn HandTip; TIPS],
+        now: Microseconds,
+        (tip, result, number): (u8, Result<(), StoreError>, u32),
+        mut put: impl FnMut(&HandFrame<'_>),
+    ) {
+        let which = usize::from(tip);
+        if let Some(tip) = tips.get_mut(which) {
+            tip.stored(now, result, number, &mut |message| {
+                tell(&self.names, which, message, &mut put);
+            });
+        }
     }
 }
 
@@ -246,7 +304,7 @@ fn tell<const TIPS: usize>(
             ));
         }
         Message::Answer(answer) => put(&HandFrame::Answer(tip, *answer)),
-        // A frame has those of all tips.
+        // Those of all tips are in a frame.
         Message::Report { .. } => {}
         #[cfg(feature = "load-tip")]
         Message::Load(_) => {}

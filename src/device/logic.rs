@@ -10,7 +10,7 @@ use crate::signal::pipeline::Pipeline;
 use crate::signal::report::Report;
 use crate::signal::zero::{StartUp, Zero};
 use crate::status::{Fault, LastFault, ResetCause, Status, Stored, Warnings};
-use crate::storage::store::StoreError;
+use crate::storage::log::StoreError;
 use crate::transducer::driver::Sample;
 use crate::units::Microseconds;
 use model_tables::constants::DesignConstants;

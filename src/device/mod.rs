@@ -3,6 +3,8 @@
 
 #[cfg(tips)]
 pub mod hand;
+#[cfg(tips)]
+pub mod kept_zeros;
 pub mod logic;
 pub mod task_monitor;
 #[cfg(feature = "load-tip")]

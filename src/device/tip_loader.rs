@@ -9,7 +9,7 @@ use crate::link::load::{CHUNK, LoadCommand, LoadOutcome, LoadReply, LoadRequest,
 use crate::signal::calibration::Calibration;
 use crate::signal::design::Design as _;
 use crate::signal::loaded_design::LoadedDesign;
-use crate::storage::store::StoreError;
+use crate::storage::log::StoreError;
 use crate::storage::tip_slots::{SlotBlock, TipSlots};
 use crate::units::Microseconds;
 use embedded_storage_async::nor_flash::NorFlash;

@@ -1,22 +1,34 @@
 //! The tasks of a hand's firmware: [`signal`] makes the reports of all tips, [`send`] puts them on the line, [`listen`] takes
-//! commands from it. The first one feeds the watchdog, while all report.
+//! commands from it, [`remember`] stores the calibrations. The first one feeds the watchdog, while all report.
 
 use crate::firmware::line::{listen, send};
-use crate::firmware::queues::{self, REFUSED, REMEMBER, REQUESTS, SEND, SENT, Waiting, alive, refuse};
+use crate::firmware::queues::{
+    self, IDLE, REFUSED, REMEMBER, REQUESTS, SEND, SENT, STORED, TO_STORE, Waiting, alive, refuse,
+};
 use crate::firmware::retained;
 use crate::firmware::watch::{self, NOTES, WATCHDOG_PERIOD, missing, version};
 use core::sync::atomic::Ordering;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
-use embassy_time::{Duration, Ticker};
-use fingertip::board::{self, Board, Clock, Port, Watchdog};
+use embassy_time::{Duration, Ticker, with_timeout};
+use fingertip::board::{self, Board, Clock, FlashMemory, Port, SLOT, Watchdog};
 use fingertip::device::hand::Hand;
-use fingertip::device::logic::Beginning;
-use fingertip::device::task_monitor::{CrashRecord, GOOD_RUN, Stage};
-use fingertip::image::{NAME, NAMES, PERIOD, RANKS, SCANS, TIPS, TRANSDUCERS, Tips};
+use fingertip::device::kept_zeros::ZeroWords;
+use fingertip::device::logic::{Beginning, ToStore};
+use fingertip::device::task_monitor::{CrashRecord, GOOD_RUN, Stage, Start};
+use fingertip::image::{IDENTITIES, NAME, NAMES, PERIOD, RECORD, ROW, ROWS, TIPS, TRANSDUCERS, Tips};
 use fingertip::signal::report::Report;
 use fingertip::status::{Fault, Status, Stored};
+use fingertip::storage::hand_store::{HandStore, StoredTip};
+use fingertip::storage::log::StoreError;
 use fingertip::transducer::scan::Scan;
+
+/// After reset upon reset the flash is left alone.
+const NOT_READ: StoredTip = StoredTip {
+    state: Stored::Unreadable,
+    number: 0,
+    calibration: None,
+};
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
@@ -24,17 +36,29 @@ async fn main(spawner: Spawner) {
     let reset_cause = board::begin();
     let start = CrashRecord::start(retained::read(), reset_cause, NAMES.hash);
     retained::write(&start.crash_record);
+    let kept = retained::read_zeros().zeros(NAMES.hash);
     let board = Board::take(start.give_up);
+    let firmware = version();
+    let mut store = (!start.give_up).then(|| HandStore::new(board.memory, SLOT, IDENTITIES, firmware));
+    if let Some(store) = &mut store {
+        retained::enter(Stage::Store);
+        store.load().await;
+    }
     retained::enter(Stage::Transducer);
-    let beginning = Beginning {
-        reset_cause,
-        start,
-        stored: Stored::None,
-        stored_sequence: 0,
-        calibration: None,
-        clock_failed: !board.crystal,
-        firmware: version(),
-    };
+    let mut tip = 0;
+    let beginnings = kept.map(|kept| {
+        let stored = store.as_ref().map_or(NOT_READ, |store| store.stored(tip));
+        tip += 1;
+        Beginning {
+            reset_cause,
+            start: Start { kept, ..start },
+            stored: stored.state,
+            stored_sequence: stored.number,
+            calibration: stored.calibration,
+            clock_failed: !board.crystal,
+            firmware,
+        }
+    });
     defmt::info!(
         "fingertip {=str}, hand {=str} ({=u64:016x}), reset by {=str}",
         env!("CARGO_PKG_VERSION"),
@@ -46,7 +70,8 @@ async fn main(spawner: Spawner) {
     let waiting = queues::outbox();
     spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
     spawner.spawn(listen(board.serial_rx, clock).expect("spawned once"));
-    signal(clock, board.port, waiting, board.watchdog, &beginning).await
+    spawner.spawn(remember(store, clock).expect("spawned once"));
+    signal(clock, board.port, waiting, board.watchdog, &beginnings).await
 }
 
 /// Turns samples into reports, and answers commands. Period: [`PERIOD`]. Deadline: the next one; when late, samples are lost, which is
@@ -57,24 +82,24 @@ async fn signal(
     port: Option<Port>,
     waiting: &'static Waiting,
     mut watchdog: Watchdog,
-    beginning: &Beginning,
+    beginnings: &[Beginning; TIPS],
 ) -> ! {
-    let mut tips = Tips::new(beginning);
+    let mut tips = Tips::new(beginnings);
     let mut hand = Hand::new(NAMES, &mut tips.each());
     let mut crash_record = CrashRecord {
         detail: Stage::Running as u32,
-        ..beginning.start.crash_record
+        ..beginnings[0].start.crash_record
     };
     let mut log = Log::default();
     let mut pace = Ticker::every(Duration::from_micros(u64::from(PERIOD)));
-    let mut scan = port.map(|port| Scan::<_, TIPS, RANKS, SCANS>::new(TRANSDUCERS, port));
+    let mut scan = port.map(|port| Scan::<_, TIPS, ROW, ROWS>::new(TRANSDUCERS, port));
     let (mut last_sample, mut next_feed, mut next_note) = (None, 0, 0);
     loop {
         let samples = if let Some(scan) = &mut scan {
             scan.next().await
         } else {
             pace.next().await;
-            [Err(Fault::ResetLoop); TIPS]
+            &[Err(Fault::ResetLoop); TIPS]
         };
         let now = clock.now();
         if now.0 >= next_feed && waiting.frames.borrow().is_empty() {
@@ -84,15 +109,25 @@ async fn signal(
         if let Some(sample) = samples.iter().find_map(|sample| sample.ok()) {
             let measured = now.0.saturating_sub(u64::from(sample.age));
             let lost = missing(last_sample.replace(measured), measured, PERIOD);
-            for tip in tips.each() {
-                let counters = tip.counters();
-                counters.samples_lost = counters.samples_lost.saturating_add(lost);
+            if lost > 0 {
+                for tip in tips.each() {
+                    let counters = tip.counters();
+                    counters.samples_lost = counters.samples_lost.saturating_add(lost);
+                }
             }
         }
-        let reports = hand.step(&mut tips.each(), now, &samples, |frame| waiting.put_frame(frame));
-        log.reports(&reports);
+        if hand.step(&mut tips.each(), now, samples, |frame| waiting.put_frame(frame)) {
+            log.reports(hand.reports());
+        }
         if let Ok(asked) = REQUESTS.try_receive()
-            && !hand.request(&mut tips.each(), now, asked, |frame| waiting.put_frame(frame))
+            && !hand.request(
+                &mut tips.each(),
+                now,
+                asked,
+                |frame| waiting.put_frame(frame),
+                // Each tip asks for one at a time.
+                |tip, to_store| _ = TO_STORE.try_send((tip, to_store)),
+            )
         {
             refuse();
         }
@@ -100,8 +135,9 @@ async fn signal(
             continue;
         }
         next_feed = now.0.saturating_add(WATCHDOG_PERIOD);
-        // Nothing is stored.
-        alive(REMEMBER, clock);
+        while let Ok(stored) = STORED.try_receive() {
+            hand.stored(&mut tips.each(), now, stored, |frame| waiting.put_frame(frame));
+        }
         for tip in tips.each() {
             let counters = tip.counters();
             counters.frames_dropped = waiting.frames.borrow().dropped();
@@ -112,6 +148,27 @@ async fn signal(
             next_note = now.0.saturating_add(NOTES);
             crash_record.good = now.0 >= GOOD_RUN;
             retained::write(&crash_record);
+            let zeros = tips.each().map(|tip| tip.zero());
+            retained::write_zeros(ZeroWords::of(NAMES.hash, zeros));
+        }
+    }
+}
+
+/// Stores the calibrations, one tip at a time. Period: when asked for. Deadline: none; other tasks run meanwhile. Without a store
+/// every save fails.
+#[embassy_executor::task]
+async fn remember(mut store: Option<HandStore<FlashMemory, TIPS, RECORD>>, clock: Clock) {
+    loop {
+        alive(REMEMBER, clock);
+        if let Ok((tip, ToStore(calibration))) = with_timeout(IDLE, TO_STORE.receive()).await {
+            let (result, number) = match &mut store {
+                Some(store) => {
+                    let result = store.save(usize::from(tip), calibration).await;
+                    (result, store.stored(usize::from(tip)).number)
+                }
+                None => (Err(StoreError::Failed), 0),
+            };
+            STORED.send((tip, result, number)).await;
         }
     }
 }

@@ -10,7 +10,6 @@ use embassy_time::Duration;
 use fingertip::board::Clock;
 #[cfg(hand)]
 use fingertip::device::hand::HandFrame;
-#[cfg(not(hand))]
 use fingertip::device::logic::ToStore;
 use fingertip::device::task_monitor::TaskMonitor;
 use fingertip::image;
@@ -21,8 +20,7 @@ use fingertip::link::telemetry::Message;
 #[cfg(hand)]
 use fingertip::link::tips::FrameStart;
 use fingertip::link::wire::Encoded;
-#[cfg(not(hand))]
-use fingertip::storage::store::StoreError;
+use fingertip::storage::log::StoreError;
 use fingertip::units::Microseconds;
 use static_cell::{ConstStaticCell, StaticCell};
 
@@ -94,6 +92,13 @@ pub(super) static REFUSED: AtomicU32 = AtomicU32::new(0);
 pub(super) static TO_STORE: Channel<ThreadModeRawMutex, ToStore, 1> = Channel::new();
 #[cfg(not(hand))]
 pub(super) static STORED: Channel<ThreadModeRawMutex, (Result<(), StoreError>, u32), 1> = Channel::new();
+
+/// The same of a hand, with the tip: each has one under way at most.
+#[cfg(hand)]
+pub(super) static TO_STORE: Channel<ThreadModeRawMutex, (u8, ToStore), { image::TIPS }> = Channel::new();
+#[cfg(hand)]
+pub(super) static STORED: Channel<ThreadModeRawMutex, (u8, Result<(), StoreError>, u32), { image::TIPS }> =
+    Channel::new();
 
 /// Who reported when.
 pub(super) static TASK_MONITOR: ThreadModeMutex<RefCell<TaskMonitor<3>>> =

@@ -7,16 +7,39 @@ use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 use cortex_m_rt::{ExceptionFrame, exception};
 use fingertip::board::ecc;
+#[cfg(hand)]
+use fingertip::device::kept_zeros::ZeroWords;
 use fingertip::device::task_monitor::{CrashRecord, Stage, WORDS};
+#[cfg(hand)]
+use fingertip::image::TIPS;
 use fingertip::status::LastFault;
 
-struct Words(UnsafeCell<MaybeUninit<[u32; WORDS]>>);
+struct Words<T = [u32; WORDS]>(UnsafeCell<MaybeUninit<T>>);
 
 // SAFETY: one core; written by the signal task, and by handlers that do not return to it.
-unsafe impl Sync for Words {}
+unsafe impl<T> Sync for Words<T> {}
 
 #[unsafe(link_section = ".uninit.crash_record")]
 static WORDS_KEPT: Words = Words(UnsafeCell::new(MaybeUninit::uninit()));
+
+/// The zeros of a hand's tips.
+#[cfg(hand)]
+#[unsafe(link_section = ".uninit.tip_zeros")]
+static ZEROS_KEPT: Words<ZeroWords<TIPS>> = Words(UnsafeCell::new(MaybeUninit::uninit()));
+
+/// The zeros that the run before left, or whatever lies there.
+#[cfg(hand)]
+pub(super) fn read_zeros() -> ZeroWords<TIPS> {
+    // SAFETY: plain words in RAM, for which any bits are a value; their check tells whether they mean something.
+    unsafe { ZEROS_KEPT.0.get().cast::<ZeroWords<TIPS>>().read_volatile() }
+}
+
+/// Leaves these for the next run.
+#[cfg(hand)]
+pub(super) fn write_zeros(zeros: ZeroWords<TIPS>) {
+    // SAFETY: as above; nothing holds a reference into it, and the signal task alone writes it.
+    unsafe { ZEROS_KEPT.0.get().cast::<ZeroWords<TIPS>>().write_volatile(zeros) }
+}
 
 /// What the run before left, or this one so far.
 pub(crate) fn read() -> Option<CrashRecord> {

@@ -29,7 +29,7 @@ use fingertip::transducer::driver::Driver;
 use fingertip::transducer::supervisor::TransducerSupervisor;
 #[cfg(not(feature = "load-tip"))]
 use fingertip::{
-    board::FlashMemory, device::logic::ToStore, image::FirmwareDesign, storage::store::StoreError,
+    board::FlashMemory, device::logic::ToStore, image::FirmwareDesign, storage::log::StoreError,
 };
 
 /// Every how many reports one goes to the log.

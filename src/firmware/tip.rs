@@ -16,7 +16,8 @@ use fingertip::link::telemetry::Message;
 use fingertip::signal::calibration::Calibration;
 use fingertip::signal::tip_design::TipDesign;
 use fingertip::status::{LastFault, Stored};
-use fingertip::storage::store::{Store, StoreError};
+use fingertip::storage::log::StoreError;
+use fingertip::storage::store::Store;
 use fingertip::storage::tip_slots::TipSlots;
 use static_cell::ConstStaticCell;
 

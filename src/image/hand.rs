@@ -2,15 +2,15 @@
 
 use crate::device::hand::{HandNames, HandTip};
 use crate::device::logic::{Beginning, Device};
-use crate::signal::design::{Design, Parameters};
-#[allow(unused_imports)] // a hand may have walls of one kind alone
-use crate::signal::wall::{Elastic, Memory};
-use crate::signal::zero::limits::Limits;
-use crate::signal::zero::surroundings::Surroundings;
+use crate::signal::design::Parameters;
+use crate::storage::hand_record::length;
+use crate::storage::hand_store::TipIdentity;
+use crate::transducer::scan::row;
 use model_tables::constants::Transducer;
-use model_tables::material::series::WallSeries;
-use model_tables::table::Reading;
 use model_tables::units::PressureRise;
+
+#[macro_use]
+mod folded;
 
 /// The build script's words.
 #[allow(clippy::unreadable_literal)] // nobody reads them
@@ -19,8 +19,17 @@ pub mod generated {
 }
 pub use generated::{CHANNELS, NAME, PERIOD, SCANS, TIPS};
 
-/// Ranks of a scan: the tips', and the internal reference's.
-pub const RANKS: usize = TIPS + 1;
+/// Words of a row of the converter's ring: each scan has a code of each tip and one of the internal reference.
+pub const ROW: usize = row(TIPS);
+
+/// Rows of a block.
+pub const ROWS: usize = SCANS * (TIPS + 1) / (2 * ROW);
+
+/// The rows are whole scans.
+const _: () = assert!(2 * ROW * ROWS == SCANS * (TIPS + 1));
+
+/// Bytes of the record of their calibrations.
+pub const RECORD: usize = length(TIPS);
 
 /// No design of a hand has an `[object]`.
 pub const HAS_OBJECT: bool = false;
@@ -31,57 +40,15 @@ pub const NAMES: HandNames<TIPS> = HandNames {
     tips: generated::TIP_NAMES,
 };
 
-/// A design that folds into the code, as that of an image of one fingertip does.
-macro_rules! design {
-    ($name:ident, $module:ident, elastic) => {
-        design!($name, $module, Elastic, None);
-    };
-    ($name:ident, $module:ident, relaxing) => {
-        design!(
-            $name,
-            $module,
-            Memory<{ generated::$module::RELAXATION.step.count }>,
-            Some(&generated::$module::RELAXATION)
-        );
-    };
-    ($name:ident, $module:ident, $wall:ty, $series:expr) => {
-        /// A design of the hand: no bytes, as all of it folds into the code.
-        #[derive(Clone, Copy, Debug)]
-        pub struct $name;
-
-        impl $name {
-            const PARAMETERS: Parameters = Parameters::of_scan(
-                generated::$module::DESIGN,
-                generated::$module::TABLES.layout.pressure_fraction_bits,
-                PressureRise(generated::$module::TABLES.layout.maximum),
-                [PERIOD, SCANS as u32],
-            );
-        }
-
-        impl Design for $name {
-            type Wall = $wall;
-            type Around = [Surroundings; Self::PARAMETERS.rates.places()];
-
-            #[inline]
-            fn series(&self) -> Option<&WallSeries> {
-                const { $series }
-            }
-
-            #[inline]
-            fn parameters(&self) -> &Parameters {
-                const { &Self::PARAMETERS }
-            }
-
-            #[inline]
-            fn limits(&self) -> Limits {
-                const { Self::PARAMETERS.limits }
-            }
-
-            #[inline]
-            fn lookup(&self, rise: PressureRise) -> Reading {
-                generated::$module::TABLES.lookup(rise)
-            }
-        }
+/// A design of this many codes a report.
+macro_rules! of_scan {
+    ($module:ident) => {
+        Parameters::of_scan(
+            generated::$module::DESIGN,
+            generated::$module::TABLES.layout.pressure_fraction_bits,
+            PressureRise(generated::$module::TABLES.layout.maximum),
+            [PERIOD, SCANS as u32],
+        )
     };
 }
 
@@ -91,10 +58,12 @@ macro_rules! hand {
         designs { $($design:ident $module:ident $wall:ident,)* }
         tips { $($tip:ident $of:ident,)* }
     ) => {
-        $(design!($design, $module, $wall);)*
+        $(folded_design!($design, generated::$module, $wall, of_scan!($module), {});)*
 
         /// The transducers of the tips.
         pub const TRANSDUCERS: [Transducer; TIPS] = [$($of::PARAMETERS.constants.transducer,)*];
+
+        const TABLE_VERSIONS: [u32; TIPS] = [$($of::PARAMETERS.constants.table_version,)*];
 
         /// The tips.
         #[derive(Debug)]
@@ -103,10 +72,10 @@ macro_rules! hand {
         }
 
         impl Tips {
-            /// Tips that have seen nothing yet, from what the board knows when it starts.
-            pub fn new(beginning: &Beginning) -> Self {
+            /// Tips that have seen nothing yet, from what the board knows of each when it starts.
+            pub fn new([$($tip,)*]: &[Beginning; TIPS]) -> Self {
                 Self {
-                    $($tip: Device::new($of, beginning),)*
+                    $($tip: Device::new($of, $tip),)*
                 }
             }
 
@@ -119,3 +88,23 @@ macro_rules! hand {
 }
 
 include!(concat!(env!("OUT_DIR"), "/hand.rs"));
+
+/// What the stored calibration of each tip is for.
+pub const IDENTITIES: [TipIdentity; TIPS] = {
+    let none = TipIdentity {
+        hash: 0,
+        table_version: 0,
+        range: [0; 2],
+    };
+    let mut identities = [none; TIPS];
+    let mut tip = 0;
+    while tip < TIPS {
+        identities[tip] = TipIdentity {
+            hash: generated::TIP_HASHES[tip],
+            table_version: TABLE_VERSIONS[tip],
+            range: TRANSDUCERS[tip].range,
+        };
+        tip += 1;
+    }
+    identities
+};

@@ -20,14 +20,12 @@
 
 use crate::link::wire::Reader;
 use crate::signal::calibration::Calibration;
+use crate::storage::log::{Found, LoggedRecord};
 use crate::units::{Centidegrees, Millipascals};
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 /// Bytes of a record: a multiple of every write unit there is (1 to 16 bytes).
 pub const LENGTH: usize = 48;
-
-/// Bytes at the end of a record, erasures and check, that are never all blank: no memory stands so many erasures.
-pub const END: usize = 8;
 
 const MAGIC: [u8; 4] = *b"FTC\x01";
 
@@ -51,15 +49,26 @@ pub struct Record {
     pub erasures: u32,
 }
 
-/// What lies in the place of a record.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Found {
-    /// Erased memory.
-    Blank,
-    /// A whole record.
-    Record(Record),
-    /// Something else: torn, worn, or not ours.
-    Torn,
+impl LoggedRecord<LENGTH> for Record {
+    fn sequence(&self) -> u32 {
+        self.sequence
+    }
+
+    fn erasures(&self) -> u32 {
+        self.erasures
+    }
+
+    fn set_erasures(&mut self, erasures: u32) {
+        self.erasures = erasures;
+    }
+
+    fn encode(&self) -> [u8; LENGTH] {
+        encode(self)
+    }
+
+    fn decode(bytes: &[u8; LENGTH]) -> Found<Self> {
+        decode(bytes)
+    }
 }
 
 /// The bytes of a record.
@@ -96,13 +105,8 @@ pub fn encode(record: &Record) -> [u8; LENGTH] {
     bytes
 }
 
-/// Whether the end of a record was never written.
-pub fn ends_blank(bytes: &[u8; LENGTH]) -> bool {
-    bytes[LENGTH - END..].iter().all(|&byte| byte == 0xFF)
-}
-
 /// What the bytes are.
-pub fn decode(bytes: &[u8; LENGTH]) -> Found {
+pub fn decode(bytes: &[u8; LENGTH]) -> Found<Record> {
     if bytes.iter().all(|&byte| byte == 0xFF) {
         return Found::Blank;
     }

@@ -20,7 +20,7 @@
 //! from before or the new one, whole. What cannot be read is no activation.
 
 use crate::link::wire::Reader;
-use crate::storage::store::StoreError;
+use crate::storage::log::StoreError;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use embedded_storage_async::nor_flash::NorFlash;
 

@@ -81,8 +81,8 @@ const fn halves_of([low, high]: [u16; 2]) -> u32 {
 const WORDS: usize = 10;
 
 /// Bit 15 of the half-words of the earlier and the later codes.
-const EARLIER: u32 = 1 << 15;
-const LATER: u32 = 1 << 31;
+pub(super) const EARLIER: u32 = 1 << 15;
+pub(super) const LATER: u32 = 1 << 31;
 
 /// The windows of the earlier and the later codes of a block's words, as a pass over it wants them. Added to a code, each
 /// sets bit 15 exactly from the window's edge on: codes have 12 bits, so no half reaches the next.
@@ -103,7 +103,8 @@ impl Edges {
         Self::of([window, SUPPLY])
     }
 
-    const fn of([earlier, later]: [Window; 2]) -> Self {
+    /// The earlier and the later codes have a window each.
+    pub(super) const fn of([earlier, later]: [Window; 2]) -> Self {
         // The edges are held where the addition makes sense.
         const fn open(window: Window) -> u16 {
             let end = FULL_SCALE + 1;
@@ -121,12 +122,13 @@ impl Edges {
 }
 
 /// What a pass over a block finds, for the earlier and the later codes of its words apart.
-struct Found {
-    totals: [u32; 2],
+pub(super) struct Found {
+    /// Sums of the codes.
+    pub(super) totals: [u32; 2],
     /// [`EARLIER`], [`LATER`]: some of these codes are at or above their window's end, ...
-    open: u32,
+    pub(super) open: u32,
     /// ... or at or below its start.
-    short: u32,
+    pub(super) short: u32,
 }
 
 /// Adds up a block, two codes at a time, each against its own window.
@@ -153,6 +155,44 @@ fn add_up(block: &Block, edges: Edges) -> Found {
         take(h);
         take(i);
         take(j);
+        totals[0] += halves & 0xFFFF;
+        totals[1] += halves >> 16;
+    }
+    Found {
+        totals,
+        open: open & (EARLIER | LATER),
+        short: !inside & (EARLIER | LATER),
+    }
+}
+
+/// Adds up one column of words of a block of rows, as [`add_up`] does a block.
+#[cfg(tips)]
+#[inline]
+pub(super) fn add_up_column<const ROW: usize>(rows: &[[AtomicU32; ROW]], word: usize, edges: Edges) -> Found {
+    const AT_ONCE: usize = 5;
+    // 15 * 4095 stays below 2^16.
+    const ROWS: usize = 3 * AT_ONCE;
+    let (mut totals, mut open, mut inside) = ([0_u32; 2], 0_u32, u32::MAX);
+    for rows in rows.chunks(ROWS) {
+        let mut halves = 0_u32;
+        let mut take = |row: &[AtomicU32; ROW]| {
+            let codes = row[word].load(Ordering::Relaxed);
+            halves = halves.wrapping_add(codes);
+            open |= codes.wrapping_add(edges.from_open);
+            inside &= codes.wrapping_add(edges.above_short);
+        };
+        let (fives, rest) = rows.as_chunks::<AT_ONCE>();
+        // Written out, as a loop would stay one where the compiler is told to save space.
+        for [a, b, c, d, e] in fives {
+            take(a);
+            take(b);
+            take(c);
+            take(d);
+            take(e);
+        }
+        for row in rest {
+            take(row);
+        }
         totals[0] += halves & 0xFFFF;
         totals[1] += halves >> 16;
     }

@@ -7,10 +7,12 @@
 //! 100 kPa, from 30.1 to 36.9 kPa.
 
 use crate::status::Fault;
-use crate::transducer::counts::{self, BLOCK_LENGTH, Complete, CountSum, FULL_SCALE, Window};
+use crate::transducer::counts::{
+    self, BLOCK_LENGTH, Complete, CountSum, EARLIER, Edges, Found, LATER, Window,
+};
 use crate::transducer::driver::Sample;
 use crate::transducer::ratiometric::Conversion;
-use core::sync::atomic::{AtomicU16, Ordering};
+use core::sync::atomic::AtomicU32;
 use model_tables::constants::Transducer;
 
 /// Codes of the internal reference: 1.18 to 1.24 V (DS9405 table 84, DS11451, embedded voltage reference) of a supply of 3.3 V within 5 %.
@@ -19,13 +21,19 @@ pub const REFERENCE: Window = Window {
     open: 1620,
 };
 
-/// Scans as DMA writes them, a code for each rank; the last rank is the internal reference's. Atomic, because the DMA may write
-/// while it is read.
-pub type ScanBlock<const RANKS: usize, const SCANS: usize> = [[AtomicU16; RANKS]; SCANS];
+/// Rows of a block as DMA writes them, two codes a word, the earlier one in its lower half. A row is a scan where the ranks are an
+/// even number, and two scans where they are odd ([`row`]). Atomic, because the DMA may write while it is read.
+pub type ScanBlock<const ROW: usize, const ROWS: usize> = [[AtomicU32; ROW]; ROWS];
+
+/// Words of a row of scans of `tips` and the internal reference.
+pub const fn row(tips: usize) -> usize {
+    let ranks = tips + 1;
+    if ranks.is_multiple_of(2) { ranks / 2 } else { ranks }
+}
 
 /// A converter that scans for ever and whose DMA fills a ring of two blocks.
 #[allow(async_fn_in_trait)] // one task awaits it, on one thread: no bound is missing
-pub trait ScanConverter<const RANKS: usize, const SCANS: usize> {
+pub trait ScanConverter<const ROW: usize, const ROWS: usize> {
     /// One block, microseconds.
     const PERIOD: u32;
 
@@ -40,115 +48,140 @@ pub trait ScanConverter<const RANKS: usize, const SCANS: usize> {
     fn position(&self) -> Option<usize>;
 
     /// The ring.
-    fn ring(&self) -> &[ScanBlock<RANKS, SCANS>; 2];
+    fn ring(&self) -> &[ScanBlock<ROW, ROWS>; 2];
 }
 
 /// The transducers of a hand on a converter.
 #[derive(Debug)]
-pub struct Scan<C, const TIPS: usize, const RANKS: usize, const SCANS: usize> {
+pub struct Scan<C, const TIPS: usize, const ROW: usize, const ROWS: usize> {
     converter: C,
     started: bool,
     last: usize,
-    tips: [(Window, Conversion); TIPS],
+    /// Of the words of a row.
+    edges: [Edges; ROW],
+    tips: [Conversion; TIPS],
+    /// The last ones: moved, they cost as much as they are worth.
+    samples: [Result<Sample, Fault>; TIPS],
 }
 
-impl<C: ScanConverter<RANKS, SCANS>, const TIPS: usize, const RANKS: usize, const SCANS: usize>
-    Scan<C, TIPS, RANKS, SCANS>
+/// What a block has of a rank.
+#[derive(Clone, Copy, Default)]
+struct Rank {
+    /// At most 50 * 4095 < 2^18.
+    total: u32,
+    open: bool,
+    short: bool,
+}
+
+impl Rank {
+    /// The codes added up.
+    ///
+    /// # Errors
+    /// [`Fault::SensorOpen`] or [`Fault::SensorShort`] when even one code lies outside of its window.
+    const fn sum(&self) -> Result<u32, Fault> {
+        if self.open {
+            Err(Fault::SensorOpen)
+        } else if self.short {
+            Err(Fault::SensorShort)
+        } else {
+            Ok(self.total)
+        }
+    }
+}
+
+impl<C: ScanConverter<ROW, ROWS>, const TIPS: usize, const ROW: usize, const ROWS: usize>
+    Scan<C, TIPS, ROW, ROWS>
 {
-    const BLOCK: usize = RANKS * SCANS;
+    const RANKS: usize = TIPS + 1;
+
+    /// Codes of a block.
+    const BLOCK: usize = 2 * ROW * ROWS;
+
+    /// Scans of a block: codes of each rank.
+    const SCANS: u32 = (Self::BLOCK / Self::RANKS) as u32;
 
     /// The transducers, in the order of the scan's ranks.
     ///
     /// # Panics
     /// If one is not ratiometric.
     pub fn new(transducers: [Transducer; TIPS], converter: C) -> Self {
-        const { assert!(RANKS == TIPS + 1 && SCANS > 0) };
+        const { assert!(ROW == row(TIPS) && ROWS > 0) };
+        let window = |rank: usize| {
+            let tip = transducers.get(rank % Self::RANKS);
+            tip.map_or(REFERENCE, |tip| Window::of(&tip.kind))
+        };
         Self {
             converter,
             started: false,
             last: 0,
-            tips: transducers.map(|transducer| (Window::of(&transducer.kind), Conversion::of(&transducer))),
+            edges: core::array::from_fn(|word| Edges::of([window(2 * word), window(2 * word + 1)])),
+            tips: transducers.each_ref().map(Conversion::of),
+            samples: [Err(Fault::SamplesLost); TIPS],
         }
     }
 
     /// The next samples, or the reason why there are none: of a tip's line its own, of the converter all tips'.
-    pub async fn next(&mut self) -> [Result<Sample, Fault>; TIPS] {
+    pub async fn next(&mut self) -> &[Result<Sample, Fault>; TIPS] {
         if !self.started {
             self.converter.restart();
             self.started = true;
             self.last = 0;
         }
         self.converter.tick().await;
-        match self.block() {
-            Ok(samples) => samples,
-            Err((fault, restart)) => {
-                self.started = !restart;
-                [Err(fault); TIPS]
-            }
+        if let Err((fault, restart)) = self.block() {
+            self.started = !restart;
+            self.samples = [Err(fault); TIPS];
         }
+        &self.samples
     }
 
-    /// The samples of the last block, or a fault and whether the converter has to be started anew.
-    fn block(&mut self) -> Result<[Result<Sample, Fault>; TIPS], (Fault, bool)> {
+    /// Takes the samples of the last block, or gives a fault and whether the converter has to be started anew.
+    fn block(&mut self) -> Result<(), (Fault, bool)> {
         let position = self.converter.position().ok_or((Fault::SamplesLost, true))?;
         let Complete { half, since } = counts::look(&mut self.last, position, Self::BLOCK)
             .map_err(|fault| (fault, fault == Fault::ConverterStalled))?;
-        let block = &self.converter.ring()[half];
-        if sum(block, TIPS, REFERENCE).is_err() {
+        let (tips, reference) = self.add_up(half);
+        if reference.sum().is_err() {
             return Err((Fault::ChannelIdentity, true));
         }
-        let late = since * C::PERIOD / Self::BLOCK as u32;
-        let mut rank = 0;
-        let samples = self.tips.each_ref().map(|(window, conversion)| {
-            let total = sum(block, rank, *window);
-            rank += 1;
-            total.map(|total| Sample {
-                age: C::PERIOD / 2 + late,
-                ..conversion.sample(of_a_hundred::<SCANS>(total), 0)
-            })
-        });
+        let age = C::PERIOD / 2 + since * C::PERIOD / Self::BLOCK as u32;
+        for ((sample, conversion), rank) in self.samples.iter_mut().zip(&self.tips).zip(&tips) {
+            *sample = rank.sum().map(|total| Sample {
+                age,
+                ..conversion.sample(Self::of_a_hundred(total), 0)
+            });
+        }
         let now = self.converter.position();
         if now.is_some_and(|now| self.last / Self::BLOCK == now / Self::BLOCK % 2) {
-            Ok(samples)
+            Ok(())
         } else {
             Err((Fault::SamplesLost, false))
         }
     }
-}
 
-/// The sum that a block of a single transducer would have: at most 50 * 4095 * 100 < 2^25 on the way.
-const fn of_a_hundred<const SCANS: usize>(total: u32) -> CountSum {
-    let scans = SCANS as u32;
-    CountSum((total * BLOCK_LENGTH as u32 + scans / 2) / scans)
-}
-
-/// The codes of a rank added up, at most 50 * 4095 < 2^18.
-///
-/// # Errors
-/// [`Fault::SensorOpen`] or [`Fault::SensorShort`] when even one code lies outside of the window.
-fn sum<const RANKS: usize, const SCANS: usize>(
-    block: &ScanBlock<RANKS, SCANS>,
-    rank: usize,
-    window: Window,
-) -> Result<u32, Fault> {
-    const BIT: u32 = 1 << 15;
-    let end = FULL_SCALE + 1;
-    // Added to a code, each sets bit 15 exactly from the window's edge on.
-    let from_open = BIT - u32::from(window.open.min(end));
-    let above_short = BIT - 1 - u32::from(window.short.min(FULL_SCALE));
-    let (mut total, mut open, mut inside) = (0, 0, u32::MAX);
-    for code in block.as_flattened().iter().skip(rank).step_by(RANKS) {
-        let code = u32::from(code.load(Ordering::Relaxed));
-        total += code;
-        open |= code + from_open;
-        inside &= code + above_short;
+    /// What a block has of each tip, and of the internal reference.
+    fn add_up(&self, half: usize) -> ([Rank; TIPS], Rank) {
+        let block = &self.converter.ring()[half];
+        let (mut tips, mut reference) = ([Rank::default(); TIPS], Rank::default());
+        let mut number = 0;
+        let mut take = |total: u32, open: u32, short: u32| {
+            let rank = tips.get_mut(number).unwrap_or(&mut reference);
+            rank.total += total;
+            rank.open |= open != 0;
+            rank.short |= short != 0;
+            number = if number == TIPS { 0 } else { number + 1 };
+        };
+        for (word, &edges) in self.edges.iter().enumerate() {
+            let Found { totals, open, short } = counts::add_up_column(block, word, edges);
+            take(totals[0], open & EARLIER, short & EARLIER);
+            take(totals[1], open & LATER, short & LATER);
+        }
+        (tips, reference)
     }
-    if open & BIT != 0 {
-        Err(Fault::SensorOpen)
-    } else if inside & BIT == 0 {
-        Err(Fault::SensorShort)
-    } else {
-        Ok(total)
+
+    /// The sum that a block of a single transducer would have: at most 50 * 4095 * 100 < 2^25 on the way.
+    const fn of_a_hundred(total: u32) -> CountSum {
+        CountSum((total * BLOCK_LENGTH as u32 + Self::SCANS / 2) / Self::SCANS)
     }
 }
 

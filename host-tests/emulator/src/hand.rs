@@ -108,7 +108,11 @@ pub fn run(
         clock_zero: None,
         end: VirtualNanos((duration * 1e9) as u64),
     };
-    let images = vec![elf];
+    let mut images = vec![elf];
+    for (address, bytes) in image.beside() {
+        let beside = rigless::image::Image::new(image.path(), bytes.clone(), Some(*address));
+        images.push(beside.map_err(emulator)?);
+    }
     let finished = rigless::emulator::run(session, &Start::new(&images), driver).map_err(emulator)?;
     let (time, instructions) = finished
         .stop

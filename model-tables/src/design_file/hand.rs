@@ -133,13 +133,13 @@ impl HandFile {
 
     /// The first eight bytes, big-endian, of the SHA-256 of its tips: their names, where they are, and the hashes of their designs.
     pub fn hash(&self, designs: &[DesignFile]) -> u64 {
-        let mut digest = Sha256::new();
-        for (tip, design) in self.tips.iter().zip(designs) {
-            digest.update(format!("{} {:?} ", tip.name, tip.place));
-            digest.update(design.hash());
-        }
-        let [a, b, c, d, e, f, g, h, ..] = <[u8; 32]>::from(digest.finalize());
-        u64::from_be_bytes([a, b, c, d, e, f, g, h])
+        hash(self.tips.iter().zip(designs))
+    }
+
+    /// The same of each tip alone: what its stored calibration is for.
+    pub fn tip_hashes(&self, designs: &[DesignFile]) -> Vec<u64> {
+        let tips = self.tips.iter().zip(designs);
+        tips.map(|tip| hash([tip])).collect()
     }
 
     fn design(&self, tip: &TipSection) -> Result<DesignFile, DesignFileError> {
@@ -182,6 +182,16 @@ impl HandFile {
             },
         }
     }
+}
+
+fn hash<'a>(tips: impl IntoIterator<Item = (&'a TipSection, &'a DesignFile)>) -> u64 {
+    let mut digest = Sha256::new();
+    for (tip, design) in tips {
+        digest.update(format!("{} {:?} ", tip.name, tip.place));
+        digest.update(design.hash());
+    }
+    let [a, b, c, d, e, f, g, h, ..] = <[u8; 32]>::from(digest.finalize());
+    u64::from_be_bytes([a, b, c, d, e, f, g, h])
 }
 
 /// The place of a part on a bus with the address that it answers to.

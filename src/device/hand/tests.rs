@@ -1,7 +1,7 @@
 use super::*;
 use crate::device::logic::Beginning;
 use crate::device::task_monitor::CrashRecord;
-use crate::link::command::CommandKind;
+use crate::link::command::{CommandKind, Outcome};
 use crate::signal::test_design::Linear;
 use crate::status::{ResetCause, Stored, Touch};
 use crate::units::Millipascals;
@@ -37,6 +37,7 @@ struct Bench {
     hand: Hand<3>,
     ms: u64,
     sent: Vec<Sent>,
+    to_store: Vec<(u8, ToStore)>,
 }
 
 /// A pressure, pascals, or a broken wire.
@@ -67,6 +68,7 @@ impl Bench {
             hand,
             ms: 0,
             sent: vec![],
+            to_store: vec![],
         }
     }
 
@@ -87,7 +89,8 @@ impl Bench {
             let samples = pascals.map(sample);
             let all = &mut self.sent;
             let put = |frame: &HandFrame<'_>| all.push(sent(frame));
-            last = Some(self.hand.step(&mut dynamic(&mut self.tips), now, &samples, put));
+            self.hand.step(&mut dynamic(&mut self.tips), now, &samples, put);
+            last = Some(*self.hand.reports());
         }
         last.expect("a step")
     }
@@ -97,8 +100,37 @@ impl Bench {
         let now = Microseconds(self.ms * 1000);
         let all = &mut self.sent;
         let put = |frame: &HandFrame<'_>| all.push(sent(frame));
+        let kept = &mut self.to_store;
+        let store = |tip, to_store| kept.push((tip, to_store));
         self.hand
-            .request(&mut dynamic(&mut self.tips), now, (tip, request), put)
+            .request(&mut dynamic(&mut self.tips), now, (tip, request), put, store)
+    }
+
+    fn stored(&mut self, tip: u8, result: Result<(), StoreError>, number: u32) {
+        let now = Microseconds(self.ms * 1000);
+        let all = &mut self.sent;
+        let put = |frame: &HandFrame<'_>| all.push(sent(frame));
+        self.hand
+            .stored(&mut dynamic(&mut self.tips), now, (tip, result, number), put);
+    }
+
+    /// The tips' greetings, when asked for.
+    fn greeted(&mut self) -> Vec<Hello> {
+        let mut greetings = vec![];
+        let request = Request {
+            sequence: 9,
+            command: Command::Info,
+        };
+        let put = |frame: &HandFrame<'_>| {
+            if let HandFrame::Tip(_, _, hello) = frame {
+                greetings.push(*hello);
+            }
+        };
+        let now = Microseconds(self.ms * 1000);
+        let asked = (ALL_TIPS, request);
+        self.hand
+            .request(&mut dynamic(&mut self.tips), now, asked, put, |_, _| {});
+        greetings
     }
 
     fn answers(&self) -> Vec<Sent> {
@@ -190,13 +222,54 @@ fn a_command_is_answered_by_its_tip_or_by_all() {
     );
     bench.sent.clear();
     assert!(!bench.ask(3, Command::Undo));
-    assert!(bench.ask(2, Command::Save { gain: None }) && bench.ask(0, Command::Forget));
+}
+
+#[test]
+fn each_tip_stores_its_own_calibration_and_answers_when_it_is_stored() {
+    let mut bench = Bench::new();
+    // Each rests at another pressure.
+    bench.steps(400, [Some(20_000.0), Some(20_010.0), Some(20_020.0)]);
+    bench.sent.clear();
+    assert!(bench.ask(ALL_TIPS, Command::Save { gain: Some(5_000) }));
+    let zeros: Vec<(u8, i32, i32)> = bench
+        .to_store
+        .iter()
+        .map(|(tip, ToStore(calibration))| {
+            let calibration = calibration.expect("a zero that holds");
+            let zero = calibration.zero.expect("it was found").0;
+            (*tip, (zero + 500) / 1000, calibration.gain)
+        })
+        .collect();
+    assert_eq!(
+        zeros,
+        [(0, 20_000, 5_000), (1, 20_010, 5_000), (2, 20_020, 5_000)]
+    );
+    // Nothing is done before the flash has it; a tip that waits is busy.
+    assert_eq!(bench.answers(), []);
+    assert!(bench.ask(1, Command::Forget));
     assert_eq!(
         bench.answers(),
-        [
-            Sent::Answer(2, CommandKind::Save, Outcome::NotInImage),
-            Sent::Answer(0, CommandKind::Forget, Outcome::NotInImage)
-        ]
+        [Sent::Answer(1, CommandKind::Forget, Outcome::Busy)]
+    );
+    bench.sent.clear();
+    bench.stored(2, Ok(()), 3);
+    bench.stored(0, Err(StoreError::Failed), 0);
+    // There is no such tip.
+    bench.stored(3, Ok(()), 9);
+    let answer = |tip, outcome| Sent::Answer(tip, CommandKind::Save, outcome);
+    assert_eq!(
+        bench.answers(),
+        [answer(2, Outcome::Done), answer(0, Outcome::MemoryFailed)]
+    );
+    bench.sent.clear();
+    let numbers: Vec<(Stored, u32)> = bench
+        .greeted()
+        .iter()
+        .map(|hello| (hello.stored, hello.stored_sequence))
+        .collect();
+    assert_eq!(
+        numbers,
+        [(Stored::None, 0), (Stored::None, 0), (Stored::InUse, 3)]
     );
 }
 

@@ -3,6 +3,21 @@
 /// `2^((2 j + 1) / 16)` in 16 fraction bits: above the `j`-th, the eighth of an octave after it is nearer.
 const NEARER: [u32; 8] = [68_438, 74_632, 81_386, 88_752, 96_785, 105_545, 115_098, 125_515];
 
+/// Of each thirty-second of an octave how many of those lie below its begin.
+const BELOW: [u8; 32] = {
+    let mut below = [0; 32];
+    let mut part = 0;
+    while part < 32 {
+        let mut j = 0;
+        while j < 8 && NEARER[j] < (32 + part as u32) << 11 {
+            j += 1;
+        }
+        below[part] = j as u8;
+        part += 1;
+    }
+    below
+};
+
 /// `2^(j / 8)` in 30 fraction bits.
 const EIGHTHS: [u32; 8] = [
     1_073_741_824,
@@ -23,9 +38,11 @@ pub(super) fn eighths(deviation: i32) -> u8 {
     }
     let value = deviation.max(1).unsigned_abs();
     let octave = value.ilog2();
-    // Below 2^17.
-    let mantissa = ((u64::from(value) << 16) >> octave) as u32;
-    let above = NEARER.iter().filter(|&&nearer| mantissa > nearer).count();
+    // 2^16 to 2^17.
+    let mantissa = (value << (31 - octave)) >> 15;
+    // How many it is above: those below its thirty-second of an octave, which has one more at most.
+    let mut above = usize::from(BELOW[(mantissa >> 11) as usize % 32]);
+    above += usize::from(above < 8 && mantissa > NEARER[above % 8]);
     // At most 8 * 30 + 8.
     (octave * 8) as u8 + above as u8
 }

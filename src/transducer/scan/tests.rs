@@ -2,10 +2,14 @@ use super::*;
 use embassy_futures::block_on;
 use model_tables::constants::{Quantity, TransducerKind};
 use std::cell::Cell;
+use std::sync::atomic::Ordering;
 
 const TIPS: usize = 2;
-const RANKS: usize = 3;
+const RANKS: usize = TIPS + 1;
 const SCANS: usize = 20;
+/// Two scans are a row.
+const ROW: usize = row(TIPS);
+const ROWS: usize = RANKS * SCANS / (2 * ROW);
 /// 1.21 V of 3.3 V.
 const IN_PLACE: u16 = 1501;
 
@@ -23,14 +27,14 @@ const MPX5100: Transducer = Transducer {
 
 /// A converter by hand: a block further at each tick.
 struct Hand {
-    ring: [ScanBlock<RANKS, SCANS>; 2],
+    ring: [ScanBlock<ROW, ROWS>; 2],
     position: Cell<usize>,
     step: usize,
     overrun: bool,
     restarts: usize,
 }
 
-impl ScanConverter<RANKS, SCANS> for &mut Hand {
+impl ScanConverter<ROW, ROWS> for &mut Hand {
     const PERIOD: u32 = 900;
 
     fn restart(&mut self) {
@@ -48,17 +52,39 @@ impl ScanConverter<RANKS, SCANS> for &mut Hand {
         (!self.overrun).then(|| self.position.get())
     }
 
-    fn ring(&self) -> &[ScanBlock<RANKS, SCANS>; 2] {
+    fn ring(&self) -> &[ScanBlock<ROW, ROWS>; 2] {
         &self.ring
+    }
+}
+
+/// A block whose every scan has these codes.
+fn block<const RANKS: usize, const ROW: usize, const ROWS: usize>(
+    codes: [u16; RANKS],
+) -> ScanBlock<ROW, ROWS> {
+    let code = |place: usize| u32::from(codes[place % RANKS]);
+    core::array::from_fn(|row| {
+        core::array::from_fn(|word| {
+            let place = 2 * (row * ROW + word);
+            AtomicU32::new(code(place) | code(place + 1) << 16)
+        })
+    })
+}
+
+impl Hand {
+    /// Puts a code into a scan of a block.
+    fn put(&mut self, half: usize, [scan, rank]: [usize; 2], code: u16) {
+        let place = scan * RANKS + rank;
+        let word = &self.ring[half].as_flattened()[place / 2];
+        let shift = 16 * (place % 2);
+        let others = word.load(Ordering::Relaxed) & !(0xFFFF << shift);
+        word.store(others | u32::from(code) << shift, Ordering::Relaxed);
     }
 }
 
 /// Every scan has these codes.
 fn hand(codes: [u16; RANKS]) -> Hand {
-    let scan = || codes.map(AtomicU16::new);
-    let block = || core::array::from_fn(|_| scan());
     Hand {
-        ring: [block(), block()],
+        ring: [block(codes), block(codes)],
         position: Cell::new(0),
         step: RANKS * SCANS,
         overrun: false,
@@ -68,8 +94,8 @@ fn hand(codes: [u16; RANKS]) -> Hand {
 
 /// What so many looks give.
 fn looks(hand: &mut Hand, count: usize) -> Vec<[Result<Sample, Fault>; TIPS]> {
-    let mut scan = Scan::<_, TIPS, RANKS, SCANS>::new([MPX5100; TIPS], hand);
-    (0..count).map(|_| block_on(scan.next())).collect()
+    let mut scan = Scan::<_, TIPS, ROW, ROWS>::new([MPX5100; TIPS], hand);
+    (0..count).map(|_| *block_on(scan.next())).collect()
 }
 
 #[test]
@@ -94,8 +120,8 @@ fn each_tip_has_its_own_pressure_and_all_one_age() {
 #[test]
 fn a_broken_wire_is_one_tips_fault() {
     let mut hand = hand([1000, 2000, IN_PLACE]);
-    hand.ring[0][7][1].store(4095, Ordering::Relaxed);
-    hand.ring[1][19][0].store(0, Ordering::Relaxed);
+    hand.put(0, [7, 1], 4095);
+    hand.put(1, [19, 0], 0);
     let seen = looks(&mut hand, 2);
     assert!(seen[0][0].is_ok());
     assert_eq!(seen[0][1], Err(Fault::SensorOpen));
@@ -118,7 +144,7 @@ fn channels_out_of_place_are_no_tips_pressure() {
     }
     // One code is enough.
     let mut hand = hand([600, 700, IN_PLACE]);
-    hand.ring[0][3][2].store(700, Ordering::Relaxed);
+    hand.put(0, [3, 2], 700);
     let seen = looks(&mut hand, 2);
     assert_eq!(seen[0], [Err(Fault::ChannelIdentity); TIPS]);
     assert_eq!(seen[1], [Err(Fault::ChannelIdentity); TIPS]);
@@ -141,9 +167,58 @@ fn a_converter_that_stands_or_overran_is_started_anew() {
     assert_eq!(seen, faults.map(|fault| [Err(fault); TIPS]));
     assert_eq!(standing.restarts, 2);
     let mut overrun = hand([1000, 2000, IN_PLACE]);
-    let mut scan = Scan::<_, TIPS, RANKS, SCANS>::new([MPX5100; TIPS], &mut overrun);
+    let mut scan = Scan::<_, TIPS, ROW, ROWS>::new([MPX5100; TIPS], &mut overrun);
     assert!(block_on(scan.next())[0].is_ok());
     scan.converter.overrun = true;
-    assert_eq!(block_on(scan.next()), [Err(Fault::SamplesLost); TIPS]);
+    assert_eq!(*block_on(scan.next()), [Err(Fault::SamplesLost); TIPS]);
     assert!(block_on(scan.next())[0].is_ok());
+}
+
+/// Beside a sum code by code: an even number of ranks, whose row is a scan, and more rows than one word sums.
+#[test]
+fn a_block_is_added_up_rank_by_rank() {
+    struct Still([ScanBlock<3, 40>; 2]);
+    impl ScanConverter<3, 40> for Still {
+        const PERIOD: u32 = 1;
+        fn restart(&mut self) {}
+        async fn tick(&mut self) {}
+        fn position(&self) -> Option<usize> {
+            None
+        }
+        fn ring(&self) -> &[ScanBlock<3, 40>; 2] {
+            &self.0
+        }
+    }
+    let mut code = 0_u32;
+    let blocks: [ScanBlock<3, 40>; 2] = core::array::from_fn(|_| {
+        core::array::from_fn(|_| {
+            core::array::from_fn(|_| {
+                code = code.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                // 1024 to 2047, all of them in their windows but for the reference's.
+                AtomicU32::new((code >> 6 & 0x03FF_03FF) | 0x0400_0400)
+            })
+        })
+    });
+    let expected: Vec<[u32; 6]> = blocks
+        .iter()
+        .map(|block| {
+            let mut totals = [0; 6];
+            for (word, codes) in block.as_flattened().iter().enumerate() {
+                let codes = codes.load(Ordering::Relaxed);
+                totals[2 * word % 6] += codes & 0xFFFF;
+                totals[(2 * word + 1) % 6] += codes >> 16;
+            }
+            totals
+        })
+        .collect();
+    let scan = Scan::<_, 5, 3, 40>::new([MPX5100; 5], Still(blocks));
+    for (half, expected) in expected.iter().enumerate() {
+        let (tips, reference) = scan.add_up(half);
+        assert_eq!(
+            tips.map(|rank| rank.sum()),
+            [0, 1, 2, 3, 4].map(|rank| Ok(expected[rank]))
+        );
+        assert_eq!(reference.total, expected[5]);
+        assert!(reference.sum().is_err());
+    }
 }

@@ -1,15 +1,24 @@
 //! Five fingertips on one board: one is pressed, the wire of one comes off.
 
 use crate::{SIGNAL_PATH, design, press_hold_release};
+use emulator::fingertip_design::FingertipDesign;
 use emulator::hand::{EmulatedHand, HandInstant, HandRun};
 use emulator::image::{Image, Size};
 use emulator::plant::Plant;
 use emulator::scenario::{Phase, Scenario, WireFault};
 use emulator::transducer::Wiring;
+use fingertip::image::ImageDesign;
 use fingertip::link::command::{Command, CommandKind, Outcome, Request};
 use fingertip::link::tips::encode_request;
+use fingertip::signal::calibration::Calibration;
 use fingertip::signal::report::Measurement;
-use fingertip::status::{Fault, Touch};
+use fingertip::status::{Fault, Stored, Touch, Warnings};
+use fingertip::storage::hand_record::length;
+use fingertip::storage::hand_store::TipIdentity;
+use fingertip::units::Millipascals;
+use host_tests::nor_flash::saved_hand;
+use model_tables::design_file::hand::HandFile;
+use std::fs;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
@@ -17,8 +26,10 @@ const TIPS: usize = 5;
 /// Scans of a block, each with one code of a tip: (5 * 10 + 17) us * 15 = 1005 us.
 const CODES: f64 = 15.0;
 const PERIOD: f64 = 1005e-6;
-/// Most instructions in a millisecond. Asked for were 2.6 times the 3102 of one fingertip, 8065: not met.
-const PER_MILLISECOND: f64 = 9_900.0;
+/// Most instructions in a millisecond: 2.6 times the 3102 of one fingertip.
+const PER_MILLISECOND: f64 = 8_065.0;
+/// The same of five walls that relax in seven terms: an eighth of the core's 128 000 cycles if each took one.
+const RELAXING_PER_MILLISECOND: f64 = 16_000.0;
 /// Instructions of a report of one fingertip, which each of five may exceed by a tenth.
 const REPORT: f64 = 513.0;
 /// Most bytes of flash and RAM, the stack left out.
@@ -262,8 +273,97 @@ fn a_hand_greets_and_each_tip_answers_for_itself() {
     println!("commands refused: {refused:?}");
 }
 
+/// Bytes of a slot of the default board, and where the first one lies.
+const SLOT: usize = 16 * 1024;
+const CALIBRATIONS: u64 = 0x0810_0000;
+
+/// A start with a record in the flash: the index has a gain of 2 %, the middle what was saved for another tip, the others nothing.
 #[test]
-fn five_tips_cost_three_boards_and_a_report_no_more() {
+fn each_tip_starts_with_its_own_stored_calibration() {
+    const GAIN: i32 = 20_000;
+    let file = HandFile::read(&hand_file()).expect("it is shipped");
+    let designs = file.designs().expect("they are shipped");
+    let hashes = file.tip_hashes(&designs);
+    let constants = ImageDesign::CONSTANTS;
+    let identity = |hash: u64| TipIdentity {
+        hash,
+        table_version: constants.table_version,
+        range: constants.transducer.range,
+    };
+    let mut identities: [TipIdentity; TIPS] = std::array::from_fn(|tip| identity(hashes[tip]));
+    identities[2] = identity(!hashes[2]);
+    let calibration = Calibration {
+        zero: Some(Millipascals(constants.rest_pressure * 1000)),
+        gain: GAIN,
+        ..Calibration::default()
+    };
+    let bytes =
+        saved_hand::<SLOT, TIPS, { length(TIPS) }>(identities, &[(2, calibration), (PRESSED, calibration)]);
+    let image = image().clone().with_flash(CALIBRATIONS, bytes);
+    let one = design()
+        .plant(scenario(0))
+        .expect("the default design can be pressed");
+    let plants: Vec<Plant> = (0..TIPS).map(|tip| one.through(scenario(tip))).collect();
+    let save = Request {
+        sequence: 7,
+        command: Command::Save { gain: None },
+    };
+    let hand = EmulatedHand {
+        tips: plants.clone(),
+        shifted: 9.0..9.0,
+        sent: vec![(0.47, encode_request(4, &save).to_vec())],
+    };
+    let hand = emulator::hand::run(&image, hand, 1.25, &[]).expect("the image runs");
+    assert_eq!(hand.gaps, Vec::<String>::new());
+    let states: Vec<(Stored, u32)> = hand.greetings[hand.greetings.len() - TIPS..]
+        .iter()
+        .map(|greeting| (greeting.stored, greeting.stored_sequence))
+        .collect();
+    let nothing = (Stored::None, 0);
+    let expected = [
+        nothing,
+        (Stored::InUse, 2),
+        (Stored::OtherDesign, 1),
+        nothing,
+        nothing,
+    ];
+    assert_eq!(states, expected);
+    // The emulated flash takes no writes.
+    let answers: Vec<(u8, Outcome)> = hand
+        .answers
+        .iter()
+        .map(|(tip, answer)| (*tip, answer.outcome))
+        .collect();
+    assert_eq!(answers, [(4, Outcome::MemoryFailed)]);
+    let mut held = 0;
+    for instant in hand
+        .instants
+        .iter()
+        .filter(|instant| (0.95..1.2).contains(&instant.time))
+    {
+        held += 1;
+        let bits = u32::from(instant.pressure_fraction_bits);
+        let found = measured(instant, PRESSED)
+            .expect("a reading")
+            .pressure_rise
+            .pascals(bits);
+        let [low, high] = plants[PRESSED].pressure_rises(instant.time);
+        let ratio = 2.0 * found / (low + high);
+        assert!((ratio - 1.02).abs() < 1.5e-3, "{ratio}");
+        let refused = |tip: usize| {
+            measured(instant, tip)
+                .expect("a reading")
+                .warnings
+                .contains(Warnings::CALIBRATION_REFUSED)
+        };
+        let of_tips: Vec<bool> = [0, 1, 2, 4].map(refused).to_vec();
+        assert_eq!(of_tips, [false, false, true, false]);
+    }
+    assert!(held > 100, "{held}");
+}
+
+#[test]
+fn five_tips_cost_less_than_three_boards_and_a_report_no_more() {
     let hand = &run().hand;
     let per_millisecond = hand.instructions as f64 / (hand.time * 1e3);
     let reports = hand.calls.len() as f64;
@@ -271,6 +371,61 @@ fn five_tips_cost_three_boards_and_a_report_no_more() {
     println!("five tips: {per_millisecond:.0} instructions a millisecond, {report:.0} a report");
     assert!(per_millisecond <= PER_MILLISECOND, "{per_millisecond}");
     assert!(report <= 1.1 * REPORT, "{report}");
+}
+
+/// Five tips of a wall that relaxes, at rest and one pressed.
+#[test]
+fn five_relaxing_tips_cost_an_eighth_of_the_core() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    let design = host_tests::design("index-fingertip");
+    let tips: String = NAMES
+        .iter()
+        .enumerate()
+        .map(|(channel, name)| {
+            format!("[[tip]]\nname = {name:?}\ndesign = {design:?}\nchannel = {channel}\n")
+        })
+        .collect();
+    let file = folder.join("relaxing-hand.toml");
+    fs::write(&file, format!("name = \"relaxing\"\n{tips}")).expect("the test folder");
+    let image = Image::firmware(Some(&file)).expect("the firmware builds");
+    let one = FingertipDesign::read(&design)
+        .expect("it is shipped")
+        .plant(scenario(0))
+        .expect("it can be pressed");
+    let hand = EmulatedHand {
+        tips: (0..TIPS).map(|tip| one.through(scenario(tip))).collect(),
+        shifted: END..END,
+        sent: vec![],
+    };
+    let hand = emulator::hand::run(&image, hand, 1.2, SIGNAL_PATH).expect("the image runs");
+    assert_eq!((hand.gaps.len(), hand.broken.len(), hand.lost), (0, 0, 0));
+    // In the hold; what the wall makes of it in time is a single tip's matter.
+    let pressed = one.through(scenario(PRESSED));
+    let held = hand.instants.iter().filter(|instant| instant.time > 1.0);
+    let mut held_for = 0;
+    for instant in held {
+        held_for += 1;
+        let found = measured(instant, PRESSED).expect("a reading");
+        assert_eq!(found.touch, Touch::Touched);
+        let bits = u32::from(instant.pressure_fraction_bits);
+        let [low, high] = pressed.pressure_rises(instant.time);
+        let allowed = 6.3 * found.sigma.pressure_rise.pascals(bits);
+        let rise = found.pressure_rise.pascals(bits);
+        assert!(
+            (low - allowed..=high + allowed).contains(&rise),
+            "{rise} Pa for {low}"
+        );
+    }
+    assert!(held_for > 80, "{held_for}");
+    let per_millisecond = hand.instructions as f64 / (hand.time * 1e3);
+    let report = hand.calls.iter().sum::<u64>() as f64 / hand.calls.len() as f64;
+    let size = image.size().expect("it is an image");
+    println!(
+        "five relaxing tips: {per_millisecond:.0} instructions a millisecond, {report:.0} a report; flash {} bytes, RAM {} bytes",
+        size.flash, size.ram
+    );
+    assert!(per_millisecond <= RELAXING_PER_MILLISECOND, "{per_millisecond}");
+    assert!(size.flash <= LARGEST.flash && size.ram <= LARGEST.ram, "{size:?}");
 }
 
 #[test]

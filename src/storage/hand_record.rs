@@ -1,0 +1,296 @@
+//! The calibrations of a hand's tips as they lie in the flash, all in one record: fixed size, versioned, checked.
+//!
+//! | offset | bytes | field |
+//! |---|---|---|
+//! | 0 | 4 | `FTH` and the version of this layout, 1 |
+//! | 4 | 4 | sequence number, from 1; the highest is the one in use |
+//! | 8 | 3 | version of the firmware that wrote it |
+//! | 11 | 1 | number of tips |
+//! | 12 | 12 | 0 |
+//! | 24 | 32 a tip | the tips, below |
+//! | length - 8 | 4 | erasures so far, of both slots together |
+//! | length - 4 | 4 | CRC-32/ISO-HDLC of the bytes before |
+//!
+//! | offset in a tip | bytes | field |
+//! |---|---|---|
+//! | 0 | 8 | hash of the tip: its name, its place on the board and its design |
+//! | 8 | 4 | version of that design's tables |
+//! | 12 | 4 | sequence number of the record that changed it last; 0: none did |
+//! | 16 | 4 | zero, millipascals; the lowest number: none |
+//! | 20 | 2 | temperature of that zero, hundredths of a degree Celsius; the lowest number: none |
+//! | 22 | 1 | 1: a calibration; 0: nothing is stored |
+//! | 23 | 1 | 1: a later one than this may have been lost; 0: this is the last |
+//! | 24 | 4 | what temperature adds to the zero, millipascals a kelvin |
+//! | 28 | 4 | gain trim, parts in a million |
+//!
+//! Numbers are little-endian. One record holds every tip, so that a save of one tip is as atomic as that of a board of one.
+
+use crate::link::wire::Reader;
+use crate::signal::calibration::Calibration;
+use crate::storage::log::{END, Found, LoggedRecord};
+use crate::units::{Centidegrees, Millipascals};
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+
+const HEAD: usize = 24;
+const TIP: usize = 32;
+
+const MAGIC: [u8; 4] = *b"FTH\x01";
+
+/// Records are few: no table for speed.
+const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+
+/// Bytes of the record of so many tips: a multiple of every write unit there is (1 to 16 bytes).
+pub const fn length(tips: usize) -> usize {
+    HEAD + TIP * tips + END
+}
+
+/// What is stored of one tip.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct TipEntry {
+    /// The tip it is for: its name, its place and its design.
+    pub hash: u64,
+    /// The version of that design's tables.
+    pub table_version: u32,
+    /// The record that changed it last; 0: none did.
+    pub number: u32,
+    /// What was calibrated; `None`: nothing is stored.
+    pub calibration: Option<Calibration>,
+    /// A later one may have been lost in a place that could not be read.
+    pub doubtful: bool,
+}
+
+impl TipEntry {
+    /// Nothing was ever stored.
+    pub const NOTHING: Self = Self {
+        hash: 0,
+        table_version: 0,
+        number: 0,
+        calibration: None,
+        doubtful: false,
+    };
+
+    fn encode(&self) -> [u8; TIP] {
+        let calibration = self.calibration.unwrap_or_default();
+        let zero = calibration.zero.map_or(i32::MIN, |zero| zero.0);
+        let temperature = calibration.temperature.map_or(i16::MIN, |found| found.0);
+        let fields: [&[u8]; 8] = [
+            &self.hash.to_le_bytes(),
+            &self.table_version.to_le_bytes(),
+            &self.number.to_le_bytes(),
+            &zero.to_le_bytes(),
+            &temperature.to_le_bytes(),
+            &[u8::from(self.calibration.is_some()), u8::from(self.doubtful)],
+            &calibration.coefficient.to_le_bytes(),
+            &calibration.gain.to_le_bytes(),
+        ];
+        let mut bytes = [0; TIP];
+        for (place, &byte) in bytes.iter_mut().zip(fields.iter().copied().flatten()) {
+            *place = byte;
+        }
+        bytes
+    }
+
+    fn read(fields: &mut Reader<'_>) -> Option<Self> {
+        let hash = u64::from_le_bytes(fields.take().ok()?);
+        let table_version = u32::from_le_bytes(fields.take().ok()?);
+        let number = u32::from_le_bytes(fields.take().ok()?);
+        let zero = i32::from_le_bytes(fields.take().ok()?);
+        let temperature = i16::from_le_bytes(fields.take().ok()?);
+        let [kind, doubt] = fields.take().ok()?;
+        let coefficient = i32::from_le_bytes(fields.take().ok()?);
+        let gain = i32::from_le_bytes(fields.take().ok()?);
+        let calibration = Calibration {
+            zero: (zero != i32::MIN).then_some(Millipascals(zero)),
+            temperature: (temperature != i16::MIN).then_some(Centidegrees(temperature)),
+            coefficient,
+            gain,
+        };
+        (kind <= 1 && doubt <= 1).then_some(Self {
+            hash,
+            table_version,
+            number,
+            calibration: (kind == 1).then_some(calibration),
+            doubtful: doubt == 1,
+        })
+    }
+}
+
+/// What is stored of all tips.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct HandRecord<const TIPS: usize> {
+    /// The highest is in use.
+    pub sequence: u32,
+    /// The firmware that wrote it: major, minor, patch.
+    pub firmware: [u8; 3],
+    /// The tips, in their order.
+    pub tips: [TipEntry; TIPS],
+    /// Erasures so far, of both slots together.
+    pub erasures: u32,
+}
+
+impl<const TIPS: usize, const LENGTH: usize> LoggedRecord<LENGTH> for HandRecord<TIPS> {
+    fn sequence(&self) -> u32 {
+        self.sequence
+    }
+
+    fn erasures(&self) -> u32 {
+        self.erasures
+    }
+
+    fn set_erasures(&mut self, erasures: u32) {
+        self.erasures = erasures;
+    }
+
+    fn encode(&self) -> [u8; LENGTH] {
+        const { assert!(LENGTH == length(TIPS)) };
+        let mut bytes = [0; LENGTH];
+        let (head, rest) = bytes.split_at_mut(HEAD);
+        let (tips, end) = rest.split_at_mut(TIP * TIPS);
+        head[..4].copy_from_slice(&MAGIC);
+        head[4..8].copy_from_slice(&self.sequence.to_le_bytes());
+        head[8..11].copy_from_slice(&self.firmware);
+        head[11] = TIPS as u8;
+        for (place, tip) in tips.chunks_exact_mut(TIP).zip(&self.tips) {
+            place.copy_from_slice(&tip.encode());
+        }
+        end[..4].copy_from_slice(&self.erasures.to_le_bytes());
+        let check = CHECK.checksum(&bytes[..LENGTH - 4]);
+        bytes[LENGTH - 4..].copy_from_slice(&check.to_le_bytes());
+        bytes
+    }
+
+    fn decode(bytes: &[u8; LENGTH]) -> Found<Self> {
+        if bytes.iter().all(|&byte| byte == 0xFF) {
+            return Found::Blank;
+        }
+        let (body, check) = bytes.split_at(LENGTH - 4);
+        let whole = body.starts_with(&MAGIC) && CHECK.checksum(body).to_le_bytes() == *check;
+        if !whole {
+            return Found::Torn;
+        }
+        // A body that fits its check has all fields.
+        read(body).map_or(Found::Torn, Found::Record)
+    }
+}
+
+fn read<const TIPS: usize>(body: &[u8]) -> Option<HandRecord<TIPS>> {
+    let mut fields = Reader(body);
+    let [_, _, _, _] = fields.take().ok()?;
+    let sequence = u32::from_le_bytes(fields.take().ok()?);
+    let firmware = fields.take().ok()?;
+    let [count] = fields.take().ok()?;
+    let padding: [u8; 12] = fields.take().ok()?;
+    let mut tips = [TipEntry::NOTHING; TIPS];
+    for tip in &mut tips {
+        *tip = TipEntry::read(&mut fields)?;
+    }
+    let erasures = u32::from_le_bytes(fields.take().ok()?);
+    (usize::from(count) == TIPS && padding == [0; 12]).then_some(HandRecord {
+        sequence,
+        firmware,
+        tips,
+        erasures,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const LENGTH: usize = length(2);
+
+    const RECORD: HandRecord<2> = HandRecord {
+        sequence: 7,
+        firmware: [0, 1, 0],
+        tips: [
+            TipEntry {
+                hash: 0x0123_4567_89AB_CDEF,
+                table_version: 3,
+                number: 6,
+                calibration: Some(Calibration {
+                    zero: Some(Millipascals(20_100_000)),
+                    temperature: Some(Centidegrees(-250)),
+                    coefficient: -2_000,
+                    gain: 25_000,
+                }),
+                doubtful: false,
+            },
+            TipEntry {
+                hash: 0x1122_3344_5566_7788,
+                table_version: 5,
+                number: 7,
+                calibration: None,
+                doubtful: true,
+            },
+        ],
+        erasures: 2,
+    };
+
+    /// By the tables above, with Python's `struct` and `binascii.crc32`:
+    /// `4s I 3B B 12x | Q I I i h B B i i | Q I I i h B B i i | I I`.
+    const BYTES: [u8; LENGTH] = [
+        0x46, 0x54, 0x48, 0x01, 0x07, 0x00, 0x00, 0x00, 0x00, 0x01, 0x00, 0x02, 0x00, 0x00, 0x00, 0x00, 0x00,
+        0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xEF, 0xCD, 0xAB, 0x89, 0x67, 0x45, 0x23, 0x01, 0x03, 0x00,
+        0x00, 0x00, 0x06, 0x00, 0x00, 0x00, 0xA0, 0xB3, 0x32, 0x01, 0x06, 0xFF, 0x01, 0x00, 0x30, 0xF8, 0xFF,
+        0xFF, 0xA8, 0x61, 0x00, 0x00, 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11, 0x05, 0x00, 0x00, 0x00,
+        0x07, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x80, 0x00, 0x80, 0x00, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00,
+        0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x42, 0x1C, 0x26, 0x6F,
+    ];
+
+    #[test]
+    fn a_record_is_the_documented_bytes() {
+        assert_eq!(RECORD.encode(), BYTES);
+        assert_eq!(HandRecord::decode(&BYTES), Found::Record(RECORD));
+        assert_eq!((length(5), length(12)), (192, 416));
+    }
+
+    #[test]
+    fn no_prefix_of_a_record_on_erased_memory_is_one() {
+        for length in 1..LENGTH {
+            let mut bytes = [0xFF; LENGTH];
+            bytes[..length].copy_from_slice(&BYTES[..length]);
+            assert_eq!(HandRecord::<2>::decode(&bytes), Found::Torn, "{length}");
+        }
+        assert_eq!(HandRecord::<2>::decode(&[0xFF; LENGTH]), Found::Blank);
+    }
+
+    #[test]
+    fn every_flipped_bit_and_a_record_of_other_tips_are_torn() {
+        for bit in 0..8 * LENGTH {
+            let mut bytes = BYTES;
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(HandRecord::<2>::decode(&bytes), Found::Torn, "{bit}");
+        }
+        // The same bytes, of three tips or of a number that is no kind, their check made to fit.
+        for (at, byte) in [(11, 3), (12, 1), (HEAD + 22, 2), (HEAD + TIP + 23, 2)] {
+            let mut bytes = BYTES;
+            bytes[at] = byte;
+            let check = CHECK.checksum(&bytes[..LENGTH - 4]);
+            bytes[LENGTH - 4..].copy_from_slice(&check.to_le_bytes());
+            assert_eq!(HandRecord::<2>::decode(&bytes), Found::Torn, "{at}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_record_is_read_as_it_was_written(
+            sequence in any::<u32>(), hash in any::<u64>(), zero in any::<i32>(), temperature in any::<i16>(), gain in any::<i32>(),
+        ) {
+            let mut record = RECORD;
+            record.sequence = sequence;
+            record.tips[1] = TipEntry {
+                hash,
+                calibration: Some(Calibration {
+                    zero: (zero != i32::MIN).then_some(Millipascals(zero)),
+                    temperature: (temperature != i16::MIN).then_some(Centidegrees(temperature)),
+                    coefficient: gain,
+                    gain,
+                }),
+                ..record.tips[1]
+            };
+            let bytes: [u8; LENGTH] = record.encode();
+            prop_assert_eq!(HandRecord::decode(&bytes), Found::Record(record));
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! The calibrations of a hand in flash: a [log](crate::storage::log) of [records](HandRecord), each of all tips. A save changes one
+//! tip and keeps what is stored of the others, also what is of another tip than is there now. What is stored already is not
+//! stored again.
+//!
+//! Where a later record may have been lost, every tip is told so ([`Stored::Unreadable`]); each one's own save ends it for that tip
+//! alone.
+
+use crate::signal::calibration::Calibration;
+use crate::status::Stored;
+use crate::storage::hand_record::{HandRecord, TipEntry};
+use crate::storage::log::{RecordLog, StoreError};
+use embedded_storage_async::nor_flash::NorFlash;
+
+/// What a tip's entry is for.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct TipIdentity {
+    /// The tip: its name, its place on the board and its design.
+    pub hash: u64,
+    /// Version of its tables.
+    pub table_version: u32,
+    /// Its transducer's range, pascals: bounds what can be a zero.
+    pub range: [i32; 2],
+}
+
+/// What is stored of a tip.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct StoredTip {
+    /// What became of it.
+    pub state: Stored,
+    /// The record that changed it last; 0: none did.
+    pub number: u32,
+    /// The calibration in use; `None`: the design's own values are.
+    pub calibration: Option<Calibration>,
+}
+
+/// The two slots, with records of `LENGTH` bytes: [`length`](crate::storage::hand_record::length) of `TIPS`.
+#[derive(Clone, Debug)]
+pub struct HandStore<F, const TIPS: usize, const LENGTH: usize> {
+    log: RecordLog<F, HandRecord<TIPS>, LENGTH>,
+    identities: [TipIdentity; TIPS],
+    /// Major, minor, patch.
+    firmware: [u8; 3],
+    /// Of the log.
+    state: Stored,
+}
+
+impl<F: NorFlash, const TIPS: usize, const LENGTH: usize> HandStore<F, TIPS, LENGTH> {
+    /// The first two slots of `slot` bytes in `flash`, to be read by [`HandStore::load`].
+    ///
+    /// # Panics
+    /// At compile time, for a memory whose write unit a record is not a multiple of.
+    pub const fn new(flash: F, slot: u32, identities: [TipIdentity; TIPS], firmware: [u8; 3]) -> Self {
+        Self {
+            log: RecordLog::new(flash, slot),
+            identities,
+            firmware,
+            state: Stored::None,
+        }
+    }
+
+    /// Reads both slots.
+    pub async fn load(&mut self) {
+        self.state = self.log.load().await;
+    }
+
+    /// What is stored of a tip; of one that is not there nothing.
+    pub fn stored(&self, tip: usize) -> StoredTip {
+        let entry = self.entry(tip);
+        let own = self
+            .identities
+            .get(tip)
+            .map_or(Stored::None, |identity| state_of(identity, &entry));
+        let state = match self.state {
+            Stored::InUse if entry.doubtful => Stored::Unreadable,
+            Stored::InUse => own,
+            lost => lost,
+        };
+        StoredTip {
+            state,
+            number: entry.number,
+            calibration: entry.calibration.filter(|_| own == Stored::InUse),
+        }
+    }
+
+    fn entry(&self, tip: usize) -> TipEntry {
+        let entry = self.log.latest().and_then(|latest| latest.tips.get(tip));
+        entry.copied().unwrap_or(TipEntry::NOTHING)
+    }
+
+    /// The memory.
+    pub fn into_flash(self) -> F {
+        self.log.into_flash()
+    }
+
+    /// The memory, for what lies outside of the two slots.
+    #[cfg(feature = "load-tip")]
+    pub fn flash_mut(&mut self) -> &mut F {
+        self.log.flash_mut()
+    }
+
+    /// Stores a tip's calibration, or that there is none.
+    ///
+    /// # Errors
+    /// [`StoreError`]; what was stored before stays in use.
+    pub async fn save(&mut self, tip: usize, calibration: Option<Calibration>) -> Result<(), StoreError> {
+        let identity = self.identities.get(tip).ok_or(StoreError::Failed)?;
+        let before = self.log.latest().map(|latest| latest.tips);
+        let mut tips = before.unwrap_or([TipEntry::NOTHING; TIPS]);
+        let sequence = self.log.next_sequence()?;
+        if matches!(self.state, Stored::Unreadable | Stored::Damaged) {
+            for entry in &mut tips {
+                entry.doubtful = true;
+            }
+        }
+        if let Some(entry) = tips.get_mut(tip) {
+            *entry = TipEntry {
+                hash: identity.hash,
+                table_version: identity.table_version,
+                number: entry.number,
+                calibration,
+                doubtful: false,
+            };
+            if self.state == Stored::InUse && before == Some(tips) {
+                return Ok(());
+            }
+            if let Some(entry) = tips.get_mut(tip) {
+                entry.number = sequence;
+            }
+        }
+        let mut record = HandRecord {
+            sequence,
+            firmware: self.firmware,
+            tips,
+            erasures: 0,
+        };
+        self.log.save(&mut record).await?;
+        self.state = Stored::InUse;
+        Ok(())
+    }
+}
+
+/// What an entry is to the tip that is there.
+fn state_of(identity: &TipIdentity, entry: &TipEntry) -> Stored {
+    match entry.calibration {
+        None => Stored::None,
+        Some(_) if (entry.hash, entry.table_version) != (identity.hash, identity.table_version) => {
+            Stored::OtherDesign
+        }
+        Some(calibration) if !calibration.is_plausible(identity.range) => Stored::Damaged,
+        Some(_) => Stored::InUse,
+    }
+}

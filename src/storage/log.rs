@@ -1,0 +1,320 @@
+//! Records in flash: two slots of erasable memory, each a log of records; the highest sequence number is in use.
+//!
+//! A new record goes behind the last one in its slot. When that is full the *other* slot is erased and written, never
+//! the one that holds the record in use: power may fail at any write or erasure, and what is read afterwards is
+//! the old record or the new one. Every record is read back before it counts. One erasure frees a slot for a slot full of
+//! saves, and [`ENDURANCE`] ends it before the memory does.
+//!
+//! Memory with error correction refuses to read a unit whose programming or erasure was cut. A place with such a unit
+//! holds no record and is passed over: saves go on behind it, and the next erasure of its slot heals it. A place that
+//! may have held a whole record, newer than the one in use, makes the state [`Stored::Unreadable`] until the next
+//! save. A record is written in order, so a place that ends blank never held one.
+//!
+//! Own code and no key-value crate: one value and no keys, so that there is nothing to collect; what is proven is the
+//! whole of it, by a sweep over every cut (`host-tests/tests/calibration_store.rs`, `hand_store.rs`).
+
+use crate::status::Stored;
+use embedded_storage_async::nor_flash::NorFlash;
+
+/// Erasures of a slot: what flash is specified for at the least (DS9405 table 49: 10 000 cycles).
+pub const ENDURANCE: u32 = 10_000;
+
+/// Places tried in one slot before it is given up for the other.
+const TRIES: u32 = 3;
+
+/// Bytes at the end of a record, erasures and check, that are never all blank: no memory stands so many erasures.
+pub const END: usize = 8;
+
+/// What lies in the place of a record.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Found<R> {
+    /// Erased memory.
+    Blank,
+    /// A whole record.
+    Record(R),
+    /// Something else: torn, worn, or not ours.
+    Torn,
+}
+
+/// A record of `LENGTH` bytes, a multiple of the memory's write unit. Its last [`END`] bytes are never all blank.
+pub trait LoggedRecord<const LENGTH: usize>: Copy + PartialEq {
+    /// The highest is in use.
+    fn sequence(&self) -> u32;
+
+    /// Erasures of both slots together when it was written.
+    fn erasures(&self) -> u32;
+
+    /// It is written after so many erasures.
+    fn set_erasures(&mut self, erasures: u32);
+
+    /// Its bytes.
+    fn encode(&self) -> [u8; LENGTH];
+
+    /// What the bytes are.
+    fn decode(bytes: &[u8; LENGTH]) -> Found<Self>;
+}
+
+/// Why a record was not stored. What was stored before is stored still.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum StoreError {
+    /// The memory does not take it, or not what was given.
+    Failed,
+    /// The memory was erased as often as it stands.
+    WornOut,
+}
+
+/// The two slots.
+#[derive(Clone, Debug)]
+pub struct RecordLog<F, R, const LENGTH: usize> {
+    flash: F,
+    /// Bytes of a slot.
+    slot: u32,
+    latest: Option<R>,
+    /// The slot that holds it.
+    home: u32,
+    /// The slot that is written to.
+    current: u32,
+    /// The next place in it.
+    next: u32,
+    erasures: u32,
+    /// Spoilt places that may have held newer records than the one in use.
+    hidden: u32,
+    /// The memory refused to read some place.
+    refused: bool,
+}
+
+/// What a place holds.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Place<R> {
+    Blank,
+    Record(R),
+    /// A record that was never written to its end.
+    Cut,
+    /// Perhaps a record once: it cannot be read, or its check does not fit.
+    Spoilt,
+}
+
+/// What one slot holds.
+#[derive(Clone, Copy, Debug, Default)]
+struct SlotScan {
+    /// Places up to the last one that is not blank.
+    used: u32,
+    /// Whether there is a record.
+    holds: bool,
+    /// Spoilt places behind the last one.
+    hidden: u32,
+    /// The largest count of erasures in a record.
+    erasures: u32,
+}
+
+impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, LENGTH> {
+    const PLACE: u32 = LENGTH as u32;
+
+    /// The first two slots of `slot` bytes in `flash`, to be read by [`RecordLog::load`].
+    ///
+    /// # Panics
+    /// At compile time, for a memory whose write unit a record is not a multiple of.
+    pub const fn new(flash: F, slot: u32) -> Self {
+        const { assert!(LENGTH.is_multiple_of(F::WRITE_SIZE)) };
+        Self {
+            flash,
+            slot,
+            latest: None,
+            home: 0,
+            current: 0,
+            next: 0,
+            erasures: 0,
+            hidden: 0,
+            refused: false,
+        }
+    }
+
+    /// Reads both slots; whether the latest record is the last one that was written ([`Stored::InUse`]), and else why not.
+    // In place, and the latest record into its own: moved from one future to another they take a `memmove`, 1.6 kB of flash.
+    pub async fn load(&mut self) -> Stored {
+        let logs = [self.scan(0).await, self.scan(1).await];
+        let [first, second] = &logs;
+        let (in_use, other) = if self.home == 0 {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        // Saves leave a slot when it is full, so behind a slot that is not full there is no newer one; and the records
+        // of a slot are older than the first of the next.
+        let turned_over = !in_use.holds || in_use.used == self.places();
+        self.hidden = in_use.hidden;
+        if turned_over && !other.holds {
+            self.hidden += other.hidden;
+        }
+        self.current = self.home;
+        self.next = in_use.used;
+        self.erasures = in_use.erasures.max(other.erasures);
+        match &self.latest {
+            Some(_) if self.hidden > 0 => Stored::Unreadable,
+            Some(_) => Stored::InUse,
+            None if self.refused => Stored::Unreadable,
+            None if in_use.used + other.used > 0 => Stored::Damaged,
+            None => Stored::None,
+        }
+    }
+
+    /// Reads one slot, each place once, and keeps its last record where that is newer than the other slot's. All of it: a place that cannot be read now may read as blank at another start,
+    /// so blanks may lie before a record.
+    async fn scan(&mut self, which: u32) -> SlotScan {
+        let mut log = SlotScan::default();
+        for place in 0..self.places() {
+            match self.read(which, place).await {
+                Place::Blank => continue,
+                // A slot is written from its first place on: the last record is the newest.
+                Place::Record(record) => {
+                    log.erasures = log.erasures.max(record.erasures());
+                    log.holds = true;
+                    if self.home == which || record.sequence() > self.sequence() {
+                        self.latest = Some(record);
+                        self.home = which;
+                    }
+                    log.hidden = 0;
+                }
+                Place::Cut => {}
+                Place::Spoilt => log.hidden += 1,
+            }
+            log.used = place + 1;
+        }
+        log
+    }
+
+    /// The latest record.
+    pub const fn latest(&self) -> Option<&R> {
+        self.latest.as_ref()
+    }
+
+    /// Whether a later record may lie in a place that cannot be read.
+    pub const fn is_hidden(&self) -> bool {
+        self.hidden > 0
+    }
+
+    /// The number of the last record; 0 before the first.
+    pub fn sequence(&self) -> u32 {
+        self.latest.as_ref().map_or(0, R::sequence)
+    }
+
+    /// The number of the next record.
+    ///
+    /// # Errors
+    /// [`StoreError::WornOut`] after the last one.
+    pub fn next_sequence(&self) -> Result<u32, StoreError> {
+        // Each spoilt place may hold one.
+        let passed = self.sequence().checked_add(self.hidden);
+        let sequence = passed.and_then(|passed| passed.checked_add(1));
+        sequence.ok_or(StoreError::WornOut)
+    }
+
+    /// The memory.
+    pub fn into_flash(self) -> F {
+        self.flash
+    }
+
+    /// The memory, for what lies outside of the two slots.
+    #[cfg(feature = "load-tip")]
+    pub fn flash_mut(&mut self) -> &mut F {
+        &mut self.flash
+    }
+
+    /// Stores a record, whose count of erasures is the log's.
+    ///
+    /// # Errors
+    /// [`StoreError`]; the record from before stays in use.
+    // By reference: the futures hold one copy of it.
+    pub async fn save(&mut self, record: &mut R) -> Result<(), StoreError> {
+        record.set_erasures(self.erasures);
+        if self.append(record).await {
+            return Ok(());
+        }
+        self.turn_over().await?;
+        record.set_erasures(self.erasures);
+        if self.append(record).await {
+            return Ok(());
+        }
+        Err(StoreError::Failed)
+    }
+
+    /// Writes into the next places of the current slot; whether one took it.
+    async fn append(&mut self, record: &R) -> bool {
+        // The first place that is blank after all is the next one still.
+        let mut blank = None;
+        for place in self.next..self.places().min(self.next + TRIES) {
+            // A place that is not blank, or cannot be read, is passed over.
+            if self.read(self.current, place).await != Place::Blank {
+                continue;
+            }
+            let bytes = record.encode();
+            // What is read back is what the next start will read, whatever the memory says of the write.
+            let _ = self.flash.write(self.offset(self.current, place), &bytes).await;
+            match self.read(self.current, place).await {
+                Place::Record(found) if found == *record => {
+                    self.latest = Some(found);
+                    self.hidden = 0;
+                    self.home = self.current;
+                    self.next = place + 1;
+                    return true;
+                }
+                Place::Blank => blank = blank.or(Some(place)),
+                _ => {}
+            }
+        }
+        self.next = blank.unwrap_or(self.next + TRIES).min(self.places());
+        false
+    }
+
+    /// Erases the slot that does not hold the record in use, and goes on there.
+    async fn turn_over(&mut self) -> Result<(), StoreError> {
+        if self.erasures >= 2 * ENDURANCE {
+            return Err(StoreError::WornOut);
+        }
+        let other = 1 - self.home;
+        let from = other * self.slot;
+        // The slots take turns, so each has half of these.
+        self.erasures += 1;
+        self.flash
+            .erase(from, from + self.slot)
+            .await
+            .map_err(|_| StoreError::Failed)?;
+        self.current = other;
+        self.next = 0;
+        Ok(())
+    }
+
+    async fn read(&mut self, which: u32, place: u32) -> Place<R> {
+        let mut bytes = [0; LENGTH];
+        let offset = self.offset(which, place);
+        if self.flash.read(offset, &mut bytes).await.is_ok() {
+            return match R::decode(&bytes) {
+                Found::Blank => Place::Blank,
+                Found::Record(record) => Place::Record(record),
+                Found::Torn if ends_blank(&bytes) => Place::Cut,
+                Found::Torn => Place::Spoilt,
+            };
+        }
+        self.refused = true;
+        let end = LENGTH - END;
+        let last = self.flash.read(offset + end as u32, &mut bytes[end..]).await;
+        if last.is_ok() && ends_blank(&bytes) {
+            Place::Cut
+        } else {
+            Place::Spoilt
+        }
+    }
+
+    const fn places(&self) -> u32 {
+        self.slot / Self::PLACE
+    }
+
+    const fn offset(&self, which: u32, place: u32) -> u32 {
+        which * self.slot + place * Self::PLACE
+    }
+}
+
+/// Whether the end of a record was never written.
+fn ends_blank<const LENGTH: usize>(bytes: &[u8; LENGTH]) -> bool {
+    bytes[LENGTH - END..].iter().all(|&byte| byte == 0xFF)
+}
