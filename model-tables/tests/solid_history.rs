@@ -7,6 +7,7 @@ use model_tables::design::{Design, RestBy};
 use model_tables::material::Law;
 use model_tables::material::preset::AGILUS30;
 use model_tables::material::relaxation::{Relaxation, Term};
+use model_tables::object::{Friction, Object, Shape};
 use model_tables::solid::history::{Drive, History, HistoryError, Instant};
 use model_tables::solid::mesh::Elements;
 use model_tables::solid::press::Press;
@@ -234,6 +235,33 @@ fn shorter_steps_converge() {
         let ratio = (coarse - middle) / (middle - fine);
         assert!(ratio > 1.3, "{term:?}: {coarse} {middle} {fine}");
         assert!((coarse / fine - 1.0).abs() < 2e-3);
+    }
+}
+
+/// A row a few ten nanometres after first touch, where the contact is far smaller than an element, is a state too, and leaves no trace.
+#[test]
+fn a_press_begins_with_a_step_however_short() {
+    let ball = |radius| Design {
+        object: Object {
+            shape: Shape::Ball { radius },
+            friction: Friction::NONE,
+        },
+        ..dome_a()
+    };
+    for design in [dome_a(), ball(5e-3), ball(8e-3)] {
+        let series = series(&[[0.1, 18.8], [1.0, 4.5]]);
+        let rows = [[0.1, 0.08], [0.4, 0.3]];
+        let plain = pressed(&design, &series, COARSE, &rows).now();
+        for first in [3e-5, 2.7e-4, 8e-4] {
+            let mut dense = vec![[first / 0.8, first]];
+            dense.extend(rows);
+            let found = pressed(&design, &series, COARSE, &dense).now();
+            assert!(
+                (found.pressure_rise / plain.pressure_rise - 1.0).abs() < 2e-3,
+                "{first}"
+            );
+            assert!((found.force / plain.force - 1.0).abs() < 3e-3, "{first}");
+        }
     }
 }
 

@@ -85,7 +85,7 @@ fn grasps_in_time_are_read_better_by_a_chip_that_is_told_and_within_the_band_by_
     let tip = GraspedTip::new(&design, Some(COARSE)).expect("tables");
     let tally = tip.run(2026, 4, 1, |_| {});
     println!("{tally}");
-    assert_eq!((tally.scenes, tally.unsolved), (4, 0));
+    assert_eq!((tally.scenes, tally.unsolved()), (4, 0));
     let of = |told: bool, row: GraspRow| tally.row(told, row).expect("touched");
     let [not_told, told] = [false, true].map(|told| of(told, GraspRow::Ball).within(0.5));
     assert!(told[0] < 2.0 && told[1] < 2.0, "{told:?}");

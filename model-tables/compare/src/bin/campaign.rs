@@ -370,7 +370,7 @@ fn judge_grasps(arguments: &GraspArguments) -> Result<bool, Box<dyn Error>> {
             println!();
         }
         print!("### {}\n\n{tally}", design.name);
-        kept &= tally.scenes > tally.unsolved;
+        kept &= tally.scenes > tally.unsolved();
     }
     Ok(kept)
 }

@@ -1,8 +1,8 @@
 //! One step of time: predicted, solved, judged and taken.
 
 use super::{
-    Drive, ENERGY_TOLERANCE, FIRST_ENERGY_TOLERANCE, FORCE_ITERATIONS, FORCE_TOLERANCE, History,
-    LARGEST_BEND, LARGEST_GROWTH, LARGEST_TRAVEL, Next, Rejected, Solved,
+    Drive, ENERGY_TOLERANCE, FIRST_ENERGY_TOLERANCE, FIRST_TRAVEL, FORCE_ITERATIONS, FORCE_TOLERANCE,
+    History, LARGEST_BEND, LARGEST_GROWTH, LARGEST_TRAVEL, Next, Rejected, Solved,
 };
 use crate::solid::disc::DiscEnd;
 use crate::solid::state::Balance;
@@ -79,12 +79,15 @@ impl History {
             work += 0.5 * (self.state.fluid + self.trial.fluid) * (self.volume - balance.volume);
         }
         let supplied = 0.5 * (self.force + balance.force) * (indentation - self.indentation);
-        let [of_step, of_all] = if self.most_work > 0.0 {
-            ENERGY_TOLERANCE
+        let of_both = supplied.abs().max(work.abs());
+        let first = FIRST_TRAVEL * LARGEST_TRAVEL * self.height;
+        let allowed = if self.most_work > 0.0 && self.indentation >= first {
+            ENERGY_TOLERANCE[0] * of_both + ENERGY_TOLERANCE[1] * self.most_work
         } else {
-            [FIRST_ENERGY_TOLERANCE, 0.0]
+            // Work grows as the square of the travel: a shorter step is allowed what the first one would be.
+            let part = (indentation - self.indentation).abs() / first;
+            FIRST_ENERGY_TOLERANCE * of_both / (part * part).clamp(1e-6, 1.0)
         };
-        let allowed = of_step * supplied.abs().max(work.abs()) + of_all * self.most_work;
         // Nothing at all was done before the plate touches.
         if (work - supplied).abs() <= allowed + f64::EPSILON {
             Ok((energy, work))

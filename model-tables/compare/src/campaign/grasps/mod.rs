@@ -18,6 +18,7 @@ use model_tables::generate::{self, GenerateError, Generated};
 use model_tables::material::relaxation::Relaxation;
 use model_tables::model::choice::FINE;
 use model_tables::object::Friction;
+use model_tables::solid::history::HistoryError;
 use model_tables::solid::mesh::Elements;
 use model_tables::table::law::Touched;
 use scene::{Scene, SceneSpace};
@@ -127,10 +128,10 @@ impl GraspedTip {
         self.relaxes
     }
 
-    /// The scene of a number with so many zeros and noises, half of them of the absolute part; nothing where the solid finds no state.
-    fn scene(&self, seed: u64, index: u64, worlds: u64) -> Option<Vec<PlayedScene>> {
+    /// The scene of a number with so many zeros and noises, half of them of the absolute part; or why there is none.
+    fn scene(&self, seed: u64, index: u64, worlds: u64) -> Result<Vec<PlayedScene>, &'static str> {
         let scene = self.space.draw(seed, index);
-        let truth = self.space.solve(&scene).ok()?;
+        let truth = self.space.solve(&scene).map_err(|error| why(&error))?;
         let stiffness = if self.relaxes {
             1.0
         } else {
@@ -142,7 +143,8 @@ impl GraspedTip {
             for told in [false, true] {
                 // The same zero and noise, told and not told.
                 let seed = seed ^ (index * worlds + world).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-                let readings = chip::play(block, &scene, &truth, told, stiffness, seed)?;
+                let readings = chip::play(block, &scene, &truth, told, stiffness, seed)
+                    .ok_or("the chip has no tables of the object")?;
                 played.push(PlayedScene {
                     scene,
                     told,
@@ -150,7 +152,7 @@ impl GraspedTip {
                 });
             }
         }
-        Some(played)
+        Ok(played)
     }
 
     /// So many scenes on every core; the result does not depend on how many there are. `progress` is called with the number done.
@@ -168,7 +170,7 @@ impl GraspedTip {
             }
         };
         let cores = std::thread::available_parallelism().map_or(1, core::num::NonZero::get);
-        let mut found: Vec<(u64, Option<Vec<PlayedScene>>)> = std::thread::scope(|scope| {
+        let mut found: Vec<(u64, Result<Vec<PlayedScene>, &'static str>)> = std::thread::scope(|scope| {
             let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
             let joined = threads.into_iter().flat_map(|thread| {
                 thread
@@ -181,16 +183,26 @@ impl GraspedTip {
         let mut tally = GraspTally::default();
         for (_, played) in found {
             match played {
-                Some(played) => {
+                Ok(played) => {
                     tally.scenes += 1;
                     for scene in &played {
                         tally.add(self, scene);
                     }
                 }
-                None => tally.unsolved += 1,
+                Err(why) => *tally.reasons.entry(why).or_default() += 1,
             }
         }
         tally
+    }
+}
+
+/// Why a scene has no truth, in words.
+const fn why(error: &HistoryError) -> &'static str {
+    match error {
+        HistoryError::Unsolved { indentation, .. } if *indentation <= 0.0 => "no state at first touch",
+        HistoryError::Unsolved { .. } => "no further state in balance",
+        HistoryError::Ends { .. } => "the wall comes down on its base",
+        _ => "refused",
     }
 }
 

@@ -98,11 +98,16 @@ pub struct GraspTally {
     free: Vec<(f64, f64)>,
     /// Scenes of which the solid found a state.
     pub scenes: u64,
-    /// Scenes without.
-    pub unsolved: u64,
+    /// How many have none, by reason.
+    pub reasons: BTreeMap<&'static str, u64>,
 }
 
 impl GraspTally {
+    /// Scenes of which the solid found no state.
+    pub fn unsolved(&self) -> u64 {
+        self.reasons.values().sum()
+    }
+
     /// A row, of a chip that is told or not told what it touches.
     pub fn row(&self, told: bool, row: GraspRow) -> Option<&GraspErrors> {
         self.rows.get(&(told, row))
@@ -208,7 +213,13 @@ impl fmt::Display for GraspTally {
             f,
             "\n{} scenes ({} without a state), {} readings in contact, told and not told. No longer touched: force read {most:.1} % of the scene's \
              largest (95 %), {largest:.1} % at most.",
-            self.scenes, self.unsolved, self.readings
-        )
+            self.scenes,
+            self.unsolved(),
+            self.readings
+        )?;
+        for (why, scenes) in &self.reasons {
+            writeln!(f, "Without a state: {scenes} ({why}).")?;
+        }
+        Ok(())
     }
 }
