@@ -149,20 +149,20 @@ fn held_to(name: &str, series: &str, [force, depth, after]: [f64; 3], presses: &
 
 #[test]
 fn a_ball_is_read_while_its_wall_relaxes() {
-    held_to("Agilus30", AGILUS, [6.0, 4.0, 8.0], &[[8.0, 1.0, 1.0]]);
-    held_to("mild", MILD, [2.0, 1.5, 8.0], &[[8.0, 1.5, 1.0]]);
+    held_to("Agilus30", AGILUS, [4.0, 2.0, 6.0], &[[8.0, 1.0, 1.0]]);
+    held_to("mild", MILD, [1.5, 1.5, 3.0], &[[8.0, 1.5, 1.0]]);
 }
 
-/// On Agilus30 beyond the 6 and 4 % of the other test: 6.2 % of force on 8 mm in 3 s, 4.6 % of indentation on 5 mm.
 #[test]
 #[ignore = "takes a minute"]
 fn balls_of_other_radii_are_read_while_their_wall_relaxes() {
     held_to(
         "Agilus30",
         AGILUS,
-        [7.0, 5.0, 8.0],
+        [4.0, 2.0, 6.0],
         &[
             [5.0, 0.8, 1.0],
+            [5.0, 1.6, 1.0],
             [8.0, 0.8, 3.0],
             [20.0, 0.8, 0.3],
             [20.0, 1.5, 3.0],
@@ -171,7 +171,7 @@ fn balls_of_other_radii_are_read_while_their_wall_relaxes() {
     held_to(
         "mild",
         MILD,
-        [2.0, 1.5, 8.0],
+        [1.5, 1.5, 3.0],
         &[[5.0, 1.5, 0.3], [20.0, 1.5, 3.0]],
     );
 }

@@ -1,17 +1,22 @@
 //! Pressure rise -> elastic pressure -> force and indentation, where the wall relaxes.
 //!
-//! A wall that relaxes as `g(t) = 1 + sum g_i exp(-t / tau_i)` answers an indentation with `P = g * P_e`, the convolution of its series with the
-//! changes of the pressure `P_e` that the settled wall has at that indentation. Each step of time inverts it exactly:
+//! A wall that relaxes as `g(t) = 1 + sum g_i exp(-t / tau_i)` answers an indentation with `P = w g * (P_e / w)`, the convolution of its series with
+//! the changes of the pressure `P_e` that the settled wall has at that indentation. The weight `w = 1 / (1 + kappa P_e / (P_2 + P_e))` falls as the
+//! contact grows: stress from when it was small lies where it does little now. Each step of time inverts it exactly, with `v = P_e / w`:
 //!
-//! `q_i -= k_i q_i; d = P - P_e - sum q_i; P_e += d / (1 + sum c); q_i += d c_i / (1 + sum c)`
+//! `q_i -= k_i q_i; d = P / w - v - sum q_i; v += d / (1 + sum c); q_i += d c_i / (1 + sum c)`
 //!
-//! with `k_i = 1 - exp(-dt / tau_i)` and `c_i = g_i tau_i / dt k_i`. Afterwards `P = P_e + sum q_i` again, so that nothing drifts. The tables
-//! lead from `P_e` to the indentation and to the settled force `F_e`.
+//! with `k_i = 1 - exp(-dt / tau_i)` and `c_i = g_i tau_i / dt k_i`. Afterwards `P / w = v + sum q_i` again, so that nothing drifts. The weight is
+//! that of the `P_e` that the two steps before lead half way on to; from there one step of Newton's method leads to the `P_e` of `v`. An error of
+//! what is expected moves the next one by `P_e / w` times the weight's slope at most, 0.48 of it, so that none grows. The tables lead
+//! from `P_e` to the indentation and to the settled force `F_e`.
 //!
 //! The contact's force is borne by the fluid, whose pressure acts on the area of contact at once, and by the wall, which remembers. Of the
-//! settled force the fluid bears the share `phi = P_e / (P_1 + P_e)`; `P_1` belongs to the design. So
+//! settled force the fluid bears the share `phi = phi_0 + (1 - phi_0) P_e / (P_1 + P_e)`. So
 //!
 //! `F = phi A P + (1 - phi) g * F_e` with `A = F_e / P_e`.
+//!
+//! `kappa`, `P_2`, `phi_0` and `P_1` belong to the design: its tables' generator fits them to a press of the solid in time.
 //!
 //! A plate cannot pull: there is no force below zero.
 //!
@@ -25,8 +30,8 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// Pressures are counted in `1 / 2^32` pascal here: the term of 10 000 s still moves by less than 0.01 Pa at 1 kHz.
 pub const FRACTION_BITS: u32 = 32;
-/// Largest pressure, pascals either way: of the states' word a hundredth, as terms may add.
-const LARGEST: i64 = 1 << 24;
+/// Largest pressure, pascals either way: of the states' word a five-hundredth, as weights divide by up to eight and terms may add.
+const LARGEST: i64 = 1 << 22;
 const LARGEST_STATE: i64 = LARGEST << FRACTION_BITS;
 /// Part of the tables' range, `1 / 2^8`, below which the area counts as constant.
 const AREA_SHIFT: u32 = 8;
@@ -50,8 +55,11 @@ pub struct RelaxedReading {
 /// A wall's memory, from untouched rest on.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Relaxing<const TERMS: usize> {
-    /// `P_e`.
+    /// `P_e`, and that of the step before.
     elastic: i64,
+    before: i64,
+    /// `v`.
+    weighted: i64,
     /// `q_i`.
     held: [i64; TERMS],
     /// `F_e`, and to it what `q_i` is to `P_e`.
@@ -75,7 +83,7 @@ impl Lookup {
     fn at(design: &impl Design, elastic: i64) -> Self {
         let below_count = FRACTION_BITS - design.parameters().pressure_fraction_bits;
         let part = (elastic >> (below_count - FORCE_BITS)) & i64::from(WHOLE - 1);
-        // The states' words have room for a hundred times a largest pressure of 2^24 Pa, which has 41 bits here.
+        // The states' words have room for five hundred times a largest pressure of 2^22 Pa, which has 38 bits here.
         let counts = (elastic >> below_count).clamp(i64::from(-i32::MAX), i64::from(i32::MAX - 1)) as i32;
         let [below, above] = [counts, counts + 1].map(|count| design.lookup(PressureRise(count)));
         // Outputs are below 2^31.
@@ -94,6 +102,8 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     /// At untouched rest for ever.
     pub const NEW: Self = Self {
         elastic: 0,
+        before: 0,
+        weighted: 0,
         held: [0; TERMS],
         settled: 0,
         forces: [0; TERMS],
@@ -101,9 +111,11 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     };
 
     /// It has been at a pressure for ever.
-    pub fn settle(&mut self, design: &impl Design, rise: PressureRise) {
+    pub fn settle(&mut self, design: &impl Design, wall: &WallSeries, rise: PressureRise) {
         *self = Self::NEW;
         self.elastic = pressure(design, rise);
+        self.before = self.elastic;
+        self.weighted = Weight::at(design, wall, self.elastic).over(self.elastic);
         self.settled = Lookup::at(design, self.elastic).force;
     }
 
@@ -112,19 +124,26 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         let step = &wall.step;
         let parameters = design.parameters();
         let pressure = pressure(design, rise);
-        let stress = pressure - self.elastic - decay(step, &mut self.held);
+        let expected = self.elastic + ((self.elastic - self.before) >> 1);
+        let weight = Weight::at(design, wall, expected);
+        let stress = weight.over(pressure) - self.weighted - decay(step, &mut self.held);
         take(step, &mut self.held, stress);
-        self.elastic += step.settled.of(stress);
+        self.weighted += scaled(step.settled, stress);
+        self.before = self.elastic;
+        let off = self.weighted - weight.over(expected);
+        self.elastic = expected + off - scaled(weight.flatter(), off);
         let at = Lookup::at(design, self.elastic);
         let convolved = self.convolved(step, at.force);
         let pressed_before = at.elastic.0 > parameters.limits.margin;
         let by_fluid = by_area(design, self.elastic, &at, rise);
         let half = wall.fluid_half.min(i32::MAX.unsigned_abs()) as i32;
-        let by_wall = share(part(half, half.saturating_add(at.elastic.0.max(0))));
-        let force = by_fluid + by_wall.of(convolved - by_fluid);
+        let by_wall = part(half, half.saturating_add(at.elastic.0.max(0)));
+        let most = WHOLE - wall.fluid_least.min(WHOLE);
+        let by_wall = share(((u64::from(by_wall) * u64::from(most)) >> 16) as u32);
+        let force = by_fluid + scaled(by_wall, convolved - by_fluid);
         let force = (force >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
         if let Some(slowest) = step.terms().last() {
-            self.peak_force -= slowest.lost.of(self.peak_force);
+            self.peak_force -= scaled(slowest.lost, self.peak_force);
         }
         self.peak_force = self.peak_force.max(i64::from(force) << FORCE_BITS);
 
@@ -161,8 +180,50 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     }
 
     /// The zero moved, and with it every pressure: by so many counts.
-    pub fn shift(&mut self, design: &impl Design, by: PressureRise) {
-        self.elastic = (self.elastic + pressure(design, by)).clamp(-LARGEST_STATE, LARGEST_STATE);
+    pub fn shift(&mut self, design: &impl Design, wall: &WallSeries, by: PressureRise) {
+        // The terms keep what they hold: `v` moves by as much as `P / w`, and the next step's `P_e` with it.
+        let by = Weight::at(design, wall, self.elastic).over(pressure(design, by));
+        self.weighted = (self.weighted + by).clamp(-8 * LARGEST_STATE, 8 * LARGEST_STATE);
+    }
+}
+
+/// The weight at an elastic pressure.
+struct Weight {
+    /// `1 / w`: from 1 to below 8, in `1 / 2^16`.
+    inverse: u32,
+    /// The slope of `v` over `P_e`, likewise.
+    slope: u32,
+}
+
+impl Weight {
+    #[inline(never)]
+    fn at(design: &impl Design, wall: &WallSeries, elastic: i64) -> Self {
+        let below_count = FRACTION_BITS - design.parameters().pressure_fraction_bits;
+        let counts = (elastic >> below_count).clamp(0, i64::from(i32::MAX)) as i32;
+        let half = wall.weight_half.min(i32::MAX.unsigned_abs()) as i32;
+        let share = u64::from(part(counts, half.saturating_add(counts)));
+        let gain = u64::from(wall.weight_gain.min(WallSeries::LARGEST_GAIN));
+        let steep = (share * (u64::from(2 * WHOLE) - share)) >> 16;
+        Self {
+            inverse: WHOLE + ((gain * share) >> 16) as u32,
+            slope: WHOLE + ((gain * steep) >> 16) as u32,
+        }
+    }
+
+    /// A pressure over the weight.
+    #[inline(never)]
+    fn over(&self, pressure: i64) -> i64 {
+        // A mantissa of 31 bits at most; a pressure is below 2^56.
+        let eighth = Factor {
+            mantissa: self.inverse << 12,
+            shift: 0,
+        };
+        scaled(eighth, pressure << 4)
+    }
+
+    /// What a change of `P_e` is less than one of `v`, over the latter.
+    fn flatter(&self) -> Factor {
+        share(part((self.slope - WHOLE) as i32, self.slope as i32))
     }
 }
 
@@ -186,7 +247,13 @@ fn by_area(design: &impl Design, elastic: i64, at: &Lookup, rise: PressureRise) 
         mantissa: ratio << 15,
         shift: up.saturating_sub(down + 1).min(Factor::MAX_SHIFT),
     };
-    area.of(pressure(design, rise))
+    scaled(area, pressure(design, rise))
+}
+
+/// A product once in the image: terms have their own.
+#[inline(never)]
+fn scaled(factor: Factor, x: i64) -> i64 {
+    factor.of(x)
 }
 
 /// What is left of the terms after a step, and their sum.
@@ -209,6 +276,7 @@ fn take(step: &SeriesStep, terms: &mut [i64], change: i64) {
 }
 
 /// A part of a whole, as a share: at least nothing and at most all of it.
+#[inline(never)]
 fn part(of: i32, whole: i32) -> u32 {
     let (of, whole) = (of.max(0) as u32, whole.max(1) as u32);
     if of >= whole {

@@ -73,7 +73,7 @@ impl<const TERMS: usize> Wall for Memory<TERMS> {
         let Some(series) = design.series() else {
             return Elastic.read(design, rise);
         };
-        let steps = self.steps(design, &rise);
+        let steps = self.steps(design, series, &rise);
         let from = i64::from(self.rise.0);
         let change = i64::from(rise.rise.0) - from;
         let mut readings = [RelaxedReading::default(); 2];
@@ -113,8 +113,10 @@ impl<const TERMS: usize> Wall for Memory<TERMS> {
     }
 
     fn shift(&mut self, design: &impl Design, by: PressureRise) {
-        self.wall.shift(design, by);
-        self.settled.shift(design, by);
+        if let Some(series) = design.series() {
+            self.wall.shift(design, series, by);
+            self.settled.shift(design, series, by);
+        }
         self.rise.0 = self.rise.0.saturating_add(by.0);
     }
 
@@ -125,7 +127,7 @@ impl<const TERMS: usize> Wall for Memory<TERMS> {
 
 impl<const TERMS: usize> Memory<TERMS> {
     /// How many reports after the last one this one is; one where that is not known, and then the bracket opens.
-    fn steps(&mut self, design: &impl Design, to: &Rise) -> u32 {
+    fn steps(&mut self, design: &impl Design, series: &WallSeries, to: &Rise) -> u32 {
         let parameters = design.parameters();
         let passed = to.time.0.saturating_sub(self.time.0);
         self.time = to.time;
@@ -136,7 +138,7 @@ impl<const TERMS: usize> Memory<TERMS> {
         // At rest there is nothing to be settled or not.
         self.open = to.rise.0.saturating_abs() > parameters.thresholds.release.0;
         if self.open {
-            self.settled.settle(design, to.rise);
+            self.settled.settle(design, series, to.rise);
         }
         1
     }

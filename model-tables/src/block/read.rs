@@ -151,8 +151,16 @@ fn relaxation(mut own: Cursor<'_>) -> Result<WallSeries, BlockError> {
     if wall.remaining_permille > 1000 {
         return Err(value("remaining_permille"));
     }
-    if !(1..=i32::MAX.unsigned_abs()).contains(&wall.fluid_half) {
-        return Err(value("fluid_half"));
+    if wall.fluid_least > 1 << 16 {
+        return Err(value("fluid_least"));
+    }
+    if wall.weight_gain > WallSeries::LARGEST_GAIN {
+        return Err(value("weight_gain"));
+    }
+    for (field, half) in [("fluid_half", wall.fluid_half), ("weight_half", wall.weight_half)] {
+        if !(1..=i32::MAX.unsigned_abs()).contains(&half) {
+            return Err(value(field));
+        }
     }
     if wall.step.stiffness < 1 << SeriesStep::STIFFNESS_BITS {
         return Err(value("stiffness"));

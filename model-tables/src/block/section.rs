@@ -147,7 +147,10 @@ pub fn calibration<V: Visit>(value: &mut StoredCalibration, visit: &mut V) -> Re
 /// The visitor's.
 pub fn relaxation<V: Visit>(value: &mut WallSeries, visit: &mut V) -> Result<(), V::Stop> {
     visit.field("remaining_permille", &mut value.remaining_permille)?;
+    visit.field("fluid_least", &mut value.fluid_least)?;
     visit.field("fluid_half", &mut value.fluid_half)?;
+    visit.field("weight_gain", &mut value.weight_gain)?;
+    visit.field("weight_half", &mut value.weight_half)?;
     visit.field("stiffness", &mut value.step.stiffness)?;
     visit.field("settled", &mut value.step.settled)
 }

@@ -104,7 +104,10 @@ fn wall(terms: usize) -> WallSeries {
     WallSeries {
         step,
         remaining_permille: 30,
+        fluid_least: 10_000,
         fluid_half: 5_000,
+        weight_gain: 40_000,
+        weight_half: 700,
     }
 }
 
@@ -175,7 +178,16 @@ fn a_wall_in_time_that_cannot_be_is_refused() {
         let mut odd = wall(2);
         odd.fluid_half = half;
         assert_eq!(refused(odd), value("fluid_half"));
+        let mut odd = wall(2);
+        odd.weight_half = half;
+        assert_eq!(refused(odd), value("weight_half"));
     }
+    let mut odd = wall(2);
+    odd.fluid_least = (1 << 16) + 1;
+    assert_eq!(refused(odd), value("fluid_least"));
+    let mut odd = wall(2);
+    odd.weight_gain = 7 << 16;
+    assert_eq!(refused(odd), value("weight_gain"));
     let mut odd = wall(2);
     odd.step.stiffness = (1 << SeriesStep::STIFFNESS_BITS) - 1;
     assert_eq!(refused(odd), value("stiffness"));

@@ -79,14 +79,19 @@ impl Generated {
     pub fn wall(&self) -> Option<WallSeries> {
         let relaxation = self.design.relaxation.as_ref()?;
         let bits = self.certified.tables.layout.pressure_fraction_bits;
-        let half = PressureRise::from_pascals(self.fluid_half?, bits);
+        let rules = self.in_time?;
+        let counts = |pascals: f64| PressureRise::from_pascals(pascals, bits).0.max(1).unsigned_abs();
+        let sixteen_bits = |value: f64| libm::round(65_536.0 * value) as u32;
         let membrane = &self.design.design().membrane;
         let thin = membrane.thickness <= THIN * membrane.radial_semi_axis;
         let period = 1e-6 * f64::from(self.transducer().kind.period());
         Some(WallSeries {
             step: SeriesStep::over(relaxation, period),
             remaining_permille: if thin { REMAINING_THIN } else { REMAINING },
-            fluid_half: half.0.max(1).unsigned_abs(),
+            fluid_least: sixteen_bits(rules.fluid_least).min(1 << 16),
+            fluid_half: counts(rules.fluid_half),
+            weight_gain: sixteen_bits(rules.weight_gain).min(WallSeries::LARGEST_GAIN),
+            weight_half: counts(rules.weight_half),
         })
     }
 
@@ -187,11 +192,20 @@ fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
         "\n/// The wall in time: only a wall that relaxes has it.\n\
          pub const RELAXATION: {OF}::WallSeries = {OF}::WallSeries {{\n\
          \x20   remaining_permille: {},\n\
+         \x20   fluid_least: {},\n\
          \x20   fluid_half: {},\n\
+         \x20   weight_gain: {},\n\
+         \x20   weight_half: {},\n\
          \x20   step: {OF}::SeriesStep {{\n\
          \x20       count: {},\n\
          \x20       stiffness: {},",
-        wall.remaining_permille, wall.fluid_half, wall.step.count, wall.step.stiffness
+        wall.remaining_permille,
+        wall.fluid_least,
+        wall.fluid_half,
+        wall.weight_gain,
+        wall.weight_half,
+        wall.step.count,
+        wall.step.stiffness
     )?;
     let mut source = Source { out, indent: 8 };
     source.field("settled", &mut wall.step.settled)?;

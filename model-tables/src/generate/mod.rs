@@ -27,7 +27,7 @@ use truth::Truth;
 
 pub use certify::Certificate;
 pub use design::{
-    AccuracyLimit, DesignState, GenerateError, Generated, Solved, from_design, from_design_file,
+    AccuracyLimit, DesignState, GenerateError, Generated, InTime, Solved, from_design, from_design_file,
     from_design_or_worse, solve,
 };
 pub use owned::OwnedTables;

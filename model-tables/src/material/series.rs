@@ -123,9 +123,21 @@ pub struct WallSeries {
     pub step: SeriesStep,
     /// Force that the wall may still bear where none is read, permille of the peak before.
     pub remaining_permille: u32,
-    /// Settled pressure rise at which the fluid under the contact bears half of the force and the wall the other half, counts of the
-    /// tables' pressure: 1 to `i32::MAX`.
+    /// Share of the contact's force that the fluid bears at no pressure, in 1/65536: to 65536. See [`WallSeries::fluid_half`].
+    pub fluid_least: u32,
+    /// Settled pressure rise at which the fluid bears half of the rest too, and the wall the other half, counts of the tables' pressure: 1 to
+    /// `i32::MAX`. Without a least share it is where each bears half.
     pub fluid_half: u32,
+    /// `kappa` of the weight `1 / (1 + kappa P / (P_2 + P))` with which stress is remembered over the settled pressure, in 1/65536: to
+    /// [`WallSeries::LARGEST_GAIN`].
+    pub weight_gain: u32,
+    /// `P_2` of it, counts of the tables' pressure: 1 to `i32::MAX`.
+    pub weight_half: u32,
+}
+
+impl WallSeries {
+    /// Largest gain of the weight: below seven, with which the chip's steps do not swing.
+    pub const LARGEST_GAIN: u32 = (7 << 16) - 1;
 }
 
 #[cfg(test)]

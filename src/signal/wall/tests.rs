@@ -14,7 +14,10 @@ impl InTime {
         let wall = WallSeries {
             step: SeriesStep::over(series, 1e-3),
             remaining_permille: 30,
+            fluid_least: 0,
             fluid_half: 4_000 << 8,
+            weight_gain: 1 << 16,
+            weight_half: 1_000 << 8,
         };
         Self(Linear::NEW, wall)
     }

@@ -7,6 +7,7 @@ use crate::generate::NoTables;
 use crate::generate::object::NoObjects;
 use crate::model::ModelError;
 use crate::model::feedback::LoopError;
+use crate::solid::history::HistoryError;
 use std::fmt;
 
 /// Why a design has no tables. `Display` is one line that names the design's key, the numbers and the remedy.
@@ -25,6 +26,8 @@ pub enum GenerateError {
     NotHaptic(&'static str),
     /// Fingertip and actuator give no answer together.
     Loop(LoopError),
+    /// The wall relaxes, and the solid finds no press in time that the chip's rules are fitted to.
+    InTime(HistoryError),
     /// `air.reference` is `"part"`: no board has a second transducer.
     SecondTransducer,
     /// The model gives no answer, or ends before `max_indentation_mm`.
@@ -96,6 +99,10 @@ impl fmt::Display for GenerateError {
             Self::File(error) => error.fmt(f),
             Self::NotConvolved(reason) | Self::NotHaptic(reason) => f.write_str(reason),
             Self::Loop(error) => error.fmt(f),
+            Self::InTime(error) => write!(
+                f,
+                "the chip's rules for a wall with [material.relaxation] are fitted to a press of 1 s, and {error}"
+            ),
             Self::SecondTransducer => write!(
                 f,
                 "`air.reference` is \"part\", and no board reads a second transducer: give \"host\" and send the air with the \

@@ -2,12 +2,13 @@
 
 mod error;
 mod haptic;
+mod in_time;
 mod limit;
 mod press;
-mod share;
 mod unknown;
 
 pub use error::{DesignState, GenerateError};
+pub use in_time::InTime;
 pub use limit::AccuracyLimit;
 
 use super::feedback::FeedbackCurve;
@@ -72,9 +73,8 @@ pub struct Generated {
     pub model_error: Option<Comparison>,
     /// The model that the curve is of; `None` where it was measured.
     pub kind: Option<Kind>,
-    /// Settled pressure rise at which the fluid bears half of the contact's force, pascals; `None` where the wall does
-    /// not relax.
-    pub fluid_half: Option<f64>,
+    /// What the chip's rules for a wall in time need; `None` where the wall does not relax.
+    pub in_time: Option<InTime>,
     /// The membrane against the solid of the same wall; `None` where the model is a solid, or there is none.
     pub membrane_error: Option<OwnError>,
     /// What an object that the chip is not told leaves open; `None` where the curve is of data, the object a punch, or a ball has no
@@ -134,14 +134,9 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         None => return Err(GenerateError::Objects(NoObjects::Data)),
         Some(fingertip) => Some(SolvedObjects::solve(&design, fingertip, &curve, end)?),
     };
-    let fluid_half = match design.relaxation {
+    let in_time = match &design.relaxation {
         None => None,
-        Some(_) => Some(share::half_borne_by_the_fluid(
-            &design,
-            &touching,
-            fingertip.as_ref(),
-            end,
-        )?),
+        Some(relaxation) => Some(in_time::fitted(&design, &touching, relaxation, end)?),
     };
     let is_unknown = design.object.is_some_and(|object| object.unknown);
     // The presses on balls would be of the fingertip alone.
@@ -173,7 +168,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         accuracy.model_percent,
     )?;
     let beside = Beside { objects, feedback };
-    let mut allowed = accuracy;
+    let mut allowed = in_time::accuracy(accuracy, design.relaxation.as_ref());
     let mut doubled = 0;
     let mut certified = loop {
         match tables_with(&curve, end, &allowed, transducer.resolution_pa, &beside) {
@@ -202,7 +197,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         certified,
         model_error,
         kind,
-        fluid_half,
+        in_time,
         membrane_error,
         band,
         feedback_mesh_percent,
