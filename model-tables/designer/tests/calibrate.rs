@@ -427,8 +427,23 @@ fn size_finds_membranes_that_feel_like_a_fingertip() {
         "{rms} {:?}",
         found[0]
     );
-    // By its own definition: what a tenth of a millimetre more of wall does, a membrane's force going with its wall.
-    close(number(&found[0], 18), 100.0 * 0.1 / number(&found[0], 4), 0.02);
+    // What a tenth of a millimetre more of wall does: the same design with that wall, solved.
+    let text = fs::read_to_string(&best).expect("the design");
+    let thickness = text
+        .lines()
+        .find_map(|line| line.strip_prefix("thickness_mm = ")?.parse::<f64>().ok())
+        .expect("a wall");
+    let thicker = text.replace(
+        &format!("thickness_mm = {thickness}"),
+        &format!("thickness_mm = {}", thickness + 0.1),
+    );
+    assert_ne!(thicker, text);
+    let thicker_file = out.join("thicker.toml");
+    fs::write(&thicker_file, thicker).expect("written");
+    let thicker = rows(&["solve", thicker_file.to_str().expect("text"), "--indentation-mm", "0.5,2"]);
+    for (thicker, solved) in thicker.iter().zip(&solved) {
+        close(number(&found[0], 18), 100.0 * (thicker[3] / solved[3] - 1.0), 0.02);
+    }
 }
 
 #[test]
