@@ -440,9 +440,18 @@ fn size_finds_membranes_that_feel_like_a_fingertip() {
     assert_ne!(thicker, text);
     let thicker_file = out.join("thicker.toml");
     fs::write(&thicker_file, thicker).expect("written");
-    let thicker = rows(&["solve", thicker_file.to_str().expect("text"), "--indentation-mm", "0.5,2"]);
+    let thicker = rows(&[
+        "solve",
+        thicker_file.to_str().expect("text"),
+        "--indentation-mm",
+        "0.5,2",
+    ]);
     for (thicker, solved) in thicker.iter().zip(&solved) {
-        close(number(&found[0], 18), 100.0 * (thicker[3] / solved[3] - 1.0), 0.02);
+        close(
+            number(&found[0], 18),
+            100.0 * (thicker[3] / solved[3] - 1.0),
+            0.02,
+        );
     }
 }
 

@@ -18,6 +18,7 @@ pub mod choice;
 mod error;
 pub mod feedback;
 mod inflation;
+pub mod mesh_error;
 pub mod own_error;
 pub mod state;
 

@@ -6,6 +6,7 @@ use model_tables::material::Law;
 use model_tables::material::preset::PRESETS;
 use model_tables::model::ModelError;
 use model_tables::model::choice::Wanted;
+use model_tables::model::mesh_error::MeshError;
 use model_tables::object::Object;
 use model_tables::random::Random;
 use model_tables::solid::SolidError;
@@ -14,31 +15,24 @@ use model_tables::solid::press::Press;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Elements of the solids asked, of those by which `designer solve` states their error, and of those that judge that.
-const MESHES: [Elements; 3] = [
-    Elements {
-        through: 2,
-        along: 24,
-    },
-    Elements {
-        through: 3,
-        along: 60,
-    },
-    Elements {
-        through: 3,
-        along: 96,
-    },
-];
+/// Elements of the solids asked.
+const ASKED: Elements = Elements {
+    through: 2,
+    along: 24,
+};
+/// Elements of those that judge the error that `designer solve` states.
+const JUDGE: Elements = Elements {
+    through: 3,
+    along: 96,
+};
 /// Indentations, over the deepest.
 const PARTS: [f64; 5] = [0.04, 0.15, 0.4, 0.7, 1.0];
 /// Deepest indentation over the undeformed height; less where the press ends before.
 const DEPTH: f64 = 0.35;
 /// The part of the deepest reading below which errors count in absolute terms.
 const FROM: f64 = 0.01;
-/// Error by the judge over the stated one, up to which that holds: `solve` says three times, of two elements through the wall.
-const SHORT: f64 = 3.0;
-/// Error below which the judge itself counts, relative.
-const SMALL: f64 = 2e-3;
+/// What the judge itself may be off, relative: [`model_tables::model::choice`] has the same of a finer mesh.
+const OF_THE_JUDGE: f64 = 6e-3;
 
 /// What became of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,9 +60,9 @@ pub struct JudgedSolid {
     pub design: Design,
     /// What became of it.
     pub verdict: SolidVerdict,
-    /// Error that the second mesh states, relative.
+    /// Error that `designer solve` states, relative; NaN where it is not known.
     pub stated: f64,
-    /// Error that the third mesh finds, relative.
+    /// Error that the judge finds, relative; NaN where it has not every state.
     pub found: f64,
     /// Word of what ends the press.
     pub ends_by: &'static str,
@@ -130,7 +124,7 @@ pub fn judge(index: u64) -> JudgedSolid {
         found: f64::NAN,
         ends_by: "",
     };
-    let rest = match Press::new(&design, MESHES[0]) {
+    let rest = match Press::new(&design, ASKED) {
         Ok(rest) => rest,
         Err(error) => {
             judged.verdict = SolidVerdict::NoRest(match error {
@@ -171,15 +165,17 @@ pub fn judge(index: u64) -> JudgedSolid {
         from: FROM,
         deepest,
     };
-    let distance = |elements: Elements| {
-        let mut press = Press::new(&design, elements).ok()?;
-        let truth = list(&mut press, &depths).ok()?;
-        Some(wanted.distance(&in_list, &truth))
-    };
-    judged.verdict = match (distance(MESHES[1]), distance(MESHES[2])) {
+    let found = Press::new(&design, JUDGE)
+        .ok()
+        .and_then(|mut press| list(&mut press, &depths).ok())
+        .map(|truth| wanted.distance(&in_list, &truth));
+    let stated = MeshError::of(&design, ASKED, &in_list)
+        .ok()
+        .map(|error| error.bound);
+    judged.verdict = match (stated, found) {
         (Some(stated), Some(found)) => {
             (judged.stated, judged.found) = (stated, found);
-            if found <= SHORT * stated.max(SMALL) {
+            if found <= stated.max(OF_THE_JUDGE) {
                 SolidVerdict::Agrees
             } else {
                 SolidVerdict::Silent

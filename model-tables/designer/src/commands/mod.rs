@@ -14,7 +14,6 @@ mod fit;
 mod history;
 mod load;
 mod materials;
-mod mesh_error;
 mod model;
 mod monitor;
 mod numbers;

@@ -3,7 +3,7 @@
 use super::at_force::{self, NoForce};
 use super::model::{self, Model};
 use super::numbers::{self, Numbers};
-use super::{Field, bench, mesh_error, read, refuse_plain, warn, warn_of_instability};
+use super::{Field, bench, read, refuse_plain, warn, warn_of_instability};
 use model_tables::curve::Contact;
 use model_tables::design_file::{Calibration, DesignFile};
 use model_tables::limit::Limit;
@@ -11,6 +11,7 @@ use model_tables::material::stability::Margin;
 use model_tables::membrane::press::Press;
 use model_tables::membrane::state::PressedState;
 use model_tables::model::ModelError;
+use model_tables::model::mesh_error::MeshError;
 use model_tables::model::{Fingertip, Kind};
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
@@ -208,7 +209,12 @@ fn solid(
         ]);
     }
     let mut notes: Vec<String> = model.note.iter().cloned().collect();
-    notes.push(mesh_error::note(&model.design, elements, &contacts));
+    notes.push(match MeshError::of(&model.design, elements, &contacts) {
+        Ok(error) => error.to_string(),
+        Err(error) => {
+            format!("error of the mesh: not known, as a finer mesh does not have every state ({error})")
+        }
+    });
     notes.extend(other_state(&mut press, &contacts, calibration));
     let mut tip = Fingertip::Solid(Box::new(press));
     bench::warn_of_strain(&arguments.design, design_file, &mut tip, deepest);
