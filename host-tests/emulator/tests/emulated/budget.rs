@@ -6,8 +6,9 @@ use host_tests::assert_measured_figure;
 use host_tests::budget::{Budget, PLACES};
 use model_tables::generate;
 
-/// A budget that is more than so many times what is observed says little.
-const LOOSE: f64 = 20.0;
+/// A budget that is more than so many times what is observed says little. The demo's noise lets the average resolve less than the
+/// step of the converter, which the budget counts in full, twice: in the reading and in the zero.
+const LOOSE: f64 = 4.0;
 
 #[test]
 fn the_demo_stays_within_its_error_budget() {
