@@ -126,7 +126,7 @@ fn hand(path: &Path) -> Result<(String, String), String> {
     let reference = chosen_board().map_or(BOARDS[0].2, |(_, _, reference)| reference);
     let scan = CONVERSION * channels.len() as u32 + reference;
     // Two scans are a row of words where their codes are an odd number.
-    let step = if channels.len() % 2 == 0 { 2 } else { 1 };
+    let step = if channels.len().is_multiple_of(2) { 2 } else { 1 };
     let scans = (BLOCK + step * scan / 2) / (step * scan) * step;
     let names: Vec<&str> = file.tips.iter().map(|tip| tip.name.as_str()).collect();
     let tips = channels.len();
