@@ -78,7 +78,7 @@ impl Rank {
     ///
     /// # Errors
     /// [`Fault::SensorOpen`] or [`Fault::SensorShort`] when even one code lies outside of its window.
-    const fn sum(&self) -> Result<u32, Fault> {
+    const fn sum(self) -> Result<u32, Fault> {
         if self.open {
             Err(Fault::SensorOpen)
         } else if self.short {
