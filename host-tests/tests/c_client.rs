@@ -50,20 +50,16 @@ fn program() -> Option<&'static PathBuf> {
             .arg("-o")
             .args([&to, &folder.join("read_frames.c"), &folder.join("fingertip.c")])
             .status();
-        match compiled {
-            Ok(status) => {
-                assert!(status.success(), "it does not compile");
-                Some(to)
-            }
-            Err(_) => {
-                assert!(
-                    std::env::var_os("FINGERTIP_REQUIRE_PYTHON").is_none(),
-                    "there is no C compiler `cc`"
-                );
-                eprintln!("no C compiler `cc`: not tested");
-                None
-            }
+        if let Ok(status) = compiled {
+            assert!(status.success(), "it does not compile");
+            return Some(to);
         }
+        assert!(
+            std::env::var_os("FINGERTIP_REQUIRE_PYTHON").is_none(),
+            "there is no C compiler `cc`"
+        );
+        eprintln!("no C compiler `cc`: not tested");
+        None
     });
     built.as_ref()
 }

@@ -215,7 +215,7 @@ fn a_block_is_added_up_rank_by_rank() {
     for (half, expected) in expected.iter().enumerate() {
         let (tips, reference) = scan.add_up(half);
         assert_eq!(
-            tips.map(|rank| rank.sum()),
+            tips.map(super::Rank::sum),
             [0, 1, 2, 3, 4].map(|rank| Ok(expected[rank]))
         );
         assert_eq!(reference.total, expected[5]);

@@ -18,6 +18,7 @@ use fingertip::storage::hand_store::TipIdentity;
 use fingertip::units::Millipascals;
 use host_tests::nor_flash::saved_hand;
 use model_tables::design_file::hand::HandFile;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -378,13 +379,13 @@ fn five_tips_cost_less_than_three_boards_and_a_report_no_more() {
 fn five_relaxing_tips_cost_an_eighth_of_the_core() {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     let design = host_tests::design("index-fingertip");
-    let tips: String = NAMES
-        .iter()
-        .enumerate()
-        .map(|(channel, name)| {
-            format!("[[tip]]\nname = {name:?}\ndesign = {design:?}\nchannel = {channel}\n")
-        })
-        .collect();
+    let mut tips = String::new();
+    for (channel, name) in NAMES.iter().enumerate() {
+        let _ = write!(
+            tips,
+            "[[tip]]\nname = {name:?}\ndesign = {design:?}\nchannel = {channel}\n"
+        );
+    }
     let file = folder.join("relaxing-hand.toml");
     fs::write(&file, format!("name = \"relaxing\"\n{tips}")).expect("the test folder");
     let image = Image::firmware(Some(&file)).expect("the firmware builds");
