@@ -435,7 +435,7 @@ size_t ft_hand_command(uint8_t out[FT_MAX_FRAME], uint8_t tip, uint8_t kind, uin
 
 #define HEAD 40u
 #define ENTRY 12u
-#define KINDS 8u /* 1 to 8; 7 is reserved */
+#define KINDS 8u
 
 enum section { CONSTANTS = 1, TABLES = 2, CALIBRATION = 3, NAME = 4, RELAXATION = 5, OBJECT = 6, FEEDBACK = 7, ZERO = 8 };
 
@@ -514,10 +514,13 @@ static enum ft_tip_result read_section(struct ft_tip *tip, uint16_t kind, struct
         return read_name(tip, from);
     case RELAXATION:
         tip->has_relaxation = true;
-        return from.left >= 36 && (from.left - 20) % 16 == 0 ? FT_TIP_OK : FT_TIP_FIELD;
+        return from.left >= 48 && (from.left - 32) % 16 == 0 ? FT_TIP_OK : FT_TIP_FIELD;
     case OBJECT:
         tip->has_object = true;
         return from.left > 80 ? FT_TIP_OK : FT_TIP_FIELD;
+    case FEEDBACK:
+        tip->has_feedback = true;
+        return from.left > 0 ? FT_TIP_OK : FT_TIP_FIELD;
     case ZERO:
         tip->has_zero = true;
         return from.left == 28 ? FT_TIP_OK : FT_TIP_FIELD;

@@ -210,6 +210,7 @@ struct ft_tip {
     int32_t zero_mpa_per_kelvin;
     int32_t gain_ppm;
     bool has_relaxation;
+    bool has_feedback;
     bool has_object;
     bool has_zero;
 };

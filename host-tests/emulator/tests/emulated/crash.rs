@@ -102,7 +102,7 @@ fn hello_with(address: u64, instructions: [u16; 2], over: f64, cause: ResetCause
 #[test]
 fn a_hang_while_the_store_opens_ends_in_a_board_that_says_so_without_it() {
     let store = firmware()
-        .function("store::Store", "scan::{{closure}}")
+        .function("log::RecordLog", "scan::{{closure}}")
         .expect("the image has a store");
     let hello = hello_with(store, ENDLESS, HANGS_OVER, ResetCause::Watchdog);
     assert_eq!(
