@@ -110,7 +110,10 @@ fn the_image_of_a_wall_that_relaxes_is_small_on_every_board() {
         let size = image.size().expect("it is an image");
         println!("{label}: {}, RAM {} bytes", size.flash, size.ram);
         assert_measured_figure(label, size.flash as f64, 0.01);
-        assert!(size.flash <= RELAXING_FLASH && size.ram <= RAM, "{label}: {size:?}");
+        assert!(
+            size.flash <= RELAXING_FLASH && size.ram <= RAM,
+            "{label}: {size:?}"
+        );
     }
 }
 
