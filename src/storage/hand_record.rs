@@ -27,17 +27,13 @@
 
 use crate::link::wire::Reader;
 use crate::signal::calibration::Calibration;
-use crate::storage::log::{END, Found, LoggedRecord};
+use crate::storage::log::{END, Found, LoggedRecord, seal, unseal};
 use crate::units::{Centidegrees, Millipascals};
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 const HEAD: usize = 24;
 const TIP: usize = 32;
 
 const MAGIC: [u8; 4] = *b"FTH\x01";
-
-/// Records are few: no table for speed.
-const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// Bytes of the record of so many tips: a multiple of every write unit there is (1 to 16 bytes).
 pub const fn length(tips: usize) -> usize {
@@ -154,22 +150,12 @@ impl<const TIPS: usize, const LENGTH: usize> LoggedRecord<LENGTH> for HandRecord
             place.copy_from_slice(&tip.encode());
         }
         end[..4].copy_from_slice(&self.erasures.to_le_bytes());
-        let check = CHECK.checksum(&bytes[..LENGTH - 4]);
-        bytes[LENGTH - 4..].copy_from_slice(&check.to_le_bytes());
+        seal(&mut bytes);
         bytes
     }
 
     fn decode(bytes: &[u8; LENGTH]) -> Found<Self> {
-        if bytes.iter().all(|&byte| byte == 0xFF) {
-            return Found::Blank;
-        }
-        let (body, check) = bytes.split_at(LENGTH - 4);
-        let whole = body.starts_with(&MAGIC) && CHECK.checksum(body).to_le_bytes() == *check;
-        if !whole {
-            return Found::Torn;
-        }
-        // A body that fits its check has all fields.
-        read(body).map_or(Found::Torn, Found::Record)
+        unseal(bytes, MAGIC, read)
     }
 }
 
@@ -266,8 +252,7 @@ mod tests {
         for (at, byte) in [(11, 3), (12, 1), (HEAD + 22, 2), (HEAD + TIP + 23, 2)] {
             let mut bytes = BYTES;
             bytes[at] = byte;
-            let check = CHECK.checksum(&bytes[..LENGTH - 4]);
-            bytes[LENGTH - 4..].copy_from_slice(&check.to_le_bytes());
+            seal(&mut bytes);
             assert_eq!(HandRecord::<2>::decode(&bytes), Found::Torn, "{at}");
         }
     }

@@ -14,6 +14,7 @@
 //! whole of it, by a sweep over every cut (`host-tests/tests/calibration_store.rs`, `hand_store.rs`).
 
 use crate::status::Stored;
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use embedded_storage_async::nor_flash::NorFlash;
 
 /// Erasures of a slot: what flash is specified for at the least (DS9405 table 49: 10 000 cycles).
@@ -24,6 +25,9 @@ const TRIES: u32 = 3;
 
 /// Bytes at the end of a record, erasures and check, that are never all blank: no memory stands so many erasures.
 pub const END: usize = 8;
+
+/// Records are few: no table for speed.
+const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// What lies in the place of a record.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -52,6 +56,30 @@ pub trait LoggedRecord<const LENGTH: usize>: Copy + PartialEq {
 
     /// What the bytes are.
     fn decode(bytes: &[u8; LENGTH]) -> Found<Self>;
+}
+
+/// Ends the bytes of a record with the check of those before it.
+pub(super) fn seal<const LENGTH: usize>(bytes: &mut [u8; LENGTH]) {
+    let check = CHECK.checksum(&bytes[..LENGTH - 4]);
+    bytes[LENGTH - 4..].copy_from_slice(&check.to_le_bytes());
+}
+
+/// What sealed bytes that begin with `magic` are; `read` gets all of them but the check.
+pub(super) fn unseal<R, const LENGTH: usize>(
+    bytes: &[u8; LENGTH],
+    magic: [u8; 4],
+    read: impl FnOnce(&[u8]) -> Option<R>,
+) -> Found<R> {
+    if bytes.iter().all(|&byte| byte == 0xFF) {
+        return Found::Blank;
+    }
+    let (body, check) = bytes.split_at(LENGTH - 4);
+    let whole = body.starts_with(&magic) && CHECK.checksum(body).to_le_bytes() == *check;
+    if !whole {
+        return Found::Torn;
+    }
+    // A body that fits its check has all fields.
+    read(body).map_or(Found::Torn, Found::Record)
 }
 
 /// Why a record was not stored. What was stored before is stored still.

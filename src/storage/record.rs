@@ -20,17 +20,13 @@
 
 use crate::link::wire::Reader;
 use crate::signal::calibration::Calibration;
-use crate::storage::log::{Found, LoggedRecord};
+use crate::storage::log::{Found, LoggedRecord, seal, unseal};
 use crate::units::{Centidegrees, Millipascals};
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 /// Bytes of a record: a multiple of every write unit there is (1 to 16 bytes).
 pub const LENGTH: usize = 48;
 
 const MAGIC: [u8; 4] = *b"FTC\x01";
-
-/// Records are few: no table for speed.
-const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// A calibration with what it is for.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -100,23 +96,13 @@ pub fn encode(record: &Record) -> [u8; LENGTH] {
             at += 1;
         }
     }
-    let check = CHECK.checksum(&bytes[..LENGTH - 4]);
-    bytes[LENGTH - 4..].copy_from_slice(&check.to_le_bytes());
+    seal(&mut bytes);
     bytes
 }
 
 /// What the bytes are.
 pub fn decode(bytes: &[u8; LENGTH]) -> Found<Record> {
-    if bytes.iter().all(|&byte| byte == 0xFF) {
-        return Found::Blank;
-    }
-    let (body, check) = bytes.split_at(LENGTH - 4);
-    let whole = body.starts_with(&MAGIC) && CHECK.checksum(body).to_le_bytes() == *check;
-    if !whole {
-        return Found::Torn;
-    }
-    // A body that fits its check has all fields.
-    read(body).map_or(Found::Torn, Found::Record)
+    unseal(bytes, MAGIC, read)
 }
 
 fn read(body: &[u8]) -> Option<Record> {
@@ -248,13 +234,12 @@ mod tests {
         }
 
         #[test]
-        fn no_bytes_make_the_reader_panic(bytes in prop::array::uniform32(any::<u8>()), seal in any::<bool>()) {
+        fn no_bytes_make_the_reader_panic(bytes in prop::array::uniform32(any::<u8>()), sealed in any::<bool>()) {
             let mut all = [0_u8; LENGTH];
             all[4..36].copy_from_slice(&bytes);
-            if seal {
+            if sealed {
                 all[..4].copy_from_slice(&MAGIC);
-                let check = CHECK.checksum(&all[..LENGTH - 4]);
-                all[LENGTH - 4..].copy_from_slice(&check.to_le_bytes());
+                seal(&mut all);
             }
             let _ = decode(&all);
         }
