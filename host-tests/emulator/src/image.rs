@@ -216,6 +216,38 @@ impl Image {
         &self.beside
     }
 
+    /// Bytes of flash that name folders of the machine that built it: where a panic lies, cargo gives the source file with the
+    /// folder of its registry or of the workspace before it. They differ from one machine to the next.
+    ///
+    /// # Errors
+    /// [`ImageError::Malformed`].
+    pub fn folder_bytes(&self) -> Result<u64, ImageError> {
+        let cargo = std::env::var_os("CARGO_HOME")
+            .map(PathBuf::from)
+            .or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));
+        let registry = cargo.map(|home| home.join("registry").join("src"));
+        let folders = [registry, workspace().canonicalize().ok()].map(|folder| {
+            let folder = folder?.to_str()?.as_bytes().to_vec();
+            Some([folder, std::path::MAIN_SEPARATOR_STR.as_bytes().to_vec()].concat())
+        });
+        let mut total = 0;
+        for section in self.file()?.sections() {
+            if !matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & u64::from(object::elf::SHF_ALLOC) != 0)
+            {
+                continue;
+            }
+            let data = section.data().map_err(|error| self.malformed(error))?;
+            for (at, _) in data.iter().enumerate() {
+                let found = folders
+                    .iter()
+                    .flatten()
+                    .find(|folder| data[at..].starts_with(folder));
+                total += found.map_or(0, |folder| folder.len() as u64);
+            }
+        }
+        Ok(total)
+    }
+
     /// What it takes of flash and RAM.
     ///
     /// # Errors
