@@ -15,9 +15,10 @@ const DEFAULT_DESIGN: &str = "model-tables/designs/index-fingertip-elastic.toml"
 
 /// Each board with the linker's sizes of its chip; those of the default board are in `memory.x`. And how long its converter takes for
 /// the internal reference, microseconds: `IDENTITY_CONVERSION` of its chip.
-const BOARDS: [(&str, Option<&str>, u32); 2] = [
+const BOARDS: [(&str, Option<&str>, u32); 3] = [
     ("nucleo-f429zi", None, 17),
     ("nucleo-l432kc", Some("src/board/nucleo_l432kc.x"), 10),
+    ("nucleo-g474re", Some("src/board/nucleo_g474re.x"), 10),
 ];
 
 /// A tip's conversion, and what the scans of a block come to at about, microseconds.

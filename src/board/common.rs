@@ -10,8 +10,6 @@ use super::memory::RetryingFlash;
 use super::scan::DmaScan as AnaloguePort;
 use crate::status::ResetCause;
 use crate::units::Microseconds;
-#[cfg(transducer = "ratiometric")]
-use embassy_stm32::adc::Adc;
 use embassy_stm32::mode::Async;
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::IWDG;
@@ -106,7 +104,7 @@ impl Board {
         watchdog.unleash();
 
         #[cfg(transducer = "ratiometric")]
-        let port = (!gave_up).then(|| AnaloguePort::new(Adc::new(pins.converter)));
+        let port = (!gave_up).then(|| AnaloguePort::new(pins.converter));
         #[cfg(not(transducer = "ratiometric"))]
         let port = (!gave_up).then_some(I2cBus(pins.bus));
 

@@ -6,7 +6,7 @@ use crate::image::ImageDesign;
 use crate::transducer::counts::{BLOCK_LENGTH, Block, PERIOD, Ring};
 use crate::transducer::ratiometric;
 use core::sync::atomic::{AtomicU32, Ordering, fence};
-use embassy_stm32::adc::Adc;
+use embassy_stm32::Peri;
 use embassy_stm32::peripherals::ADC1;
 use embassy_time::{Duration, Ticker};
 
@@ -26,9 +26,8 @@ impl DmaConverter {
     /// The ticks come this long after the end of a block, microseconds.
     const MARGIN: u64 = 20;
 
-    pub(super) fn new(adc: Adc<'static, ADC1>) -> Self {
-        // Powered and clocked, and calibrated where the chip needs it; dropping it would undo that.
-        core::mem::forget(adc);
+    pub(super) fn new(adc: Peri<'static, ADC1>) -> Self {
+        chip::power_converter(adc);
         chip::set_up_converter(SUPPLY_MEASURED);
         Self {
             ticker: Ticker::every(Duration::from_micros(u64::from(PERIOD))),

@@ -9,6 +9,8 @@ mod i2c;
 mod memory;
 #[macro_use]
 mod pins;
+#[cfg(all(transducer = "ratiometric", not(feature = "board-nucleo-f429zi")))]
+mod ring;
 #[cfg(hand)]
 mod scan;
 
@@ -32,10 +34,24 @@ mod chosen;
 #[path = "ecc_stm32l4.rs"]
 pub mod ecc;
 
+#[cfg(feature = "board-nucleo-g474re")]
+#[path = "stm32g4.rs"]
+mod chip;
+#[cfg(feature = "board-nucleo-g474re")]
+#[path = "nucleo_g474re.rs"]
+mod chosen;
+#[cfg(feature = "board-nucleo-g474re")]
+#[path = "ecc_stm32g4.rs"]
+pub mod ecc;
+
 pub use chosen::SLOT;
 #[cfg(feature = "load-tip")]
 pub use chosen::{TIP_SLOT, TIPS};
 pub use common::{Board, Clock, FlashMemory, Line, Port, SerialRx, Watchdog, begin};
 
-#[cfg(not(any(feature = "board-nucleo-f429zi", feature = "board-nucleo-l432kc")))]
+#[cfg(not(any(
+    feature = "board-nucleo-f429zi",
+    feature = "board-nucleo-l432kc",
+    feature = "board-nucleo-g474re"
+)))]
 compile_error!("choose a board: --no-default-features --features board-nucleo-l432kc");

@@ -67,53 +67,21 @@ bind_interrupts!(pub(super) struct BusInterrupts {
 /// What a hand's `channel` counts: A0, A1, A2, A6, A7 and D13 of the Zio and Arduino headers.
 #[cfg(hand)]
 pub(super) const CHANNELS: [Input; 6] = [
-    Input {
-        channel: 3,
-        port: pac::GPIOA,
-        pin: 3,
-    },
-    Input {
-        channel: 10,
-        port: pac::GPIOC,
-        pin: 0,
-    },
-    Input {
-        channel: 13,
-        port: pac::GPIOC,
-        pin: 3,
-    },
-    Input {
-        channel: 9,
-        port: pac::GPIOB,
-        pin: 1,
-    },
-    Input {
-        channel: 12,
-        port: pac::GPIOC,
-        pin: 2,
-    },
-    Input {
-        channel: 5,
-        port: pac::GPIOA,
-        pin: 5,
-    },
+    Input::new(3, pac::GPIOA, 3),
+    Input::new(10, pac::GPIOC, 0),
+    Input::new(13, pac::GPIOC, 3),
+    Input::new(9, pac::GPIOB, 1),
+    Input::new(12, pac::GPIOC, 2),
+    Input::new(5, pac::GPIOA, 5),
 ];
 
 /// The transducer's output.
 #[cfg(all(transducer = "ratiometric", not(hand)))]
-pub(super) const OUTPUT: Input = Input {
-    channel: 3,
-    port: pac::GPIOA,
-    pin: 3,
-};
+pub(super) const OUTPUT: Input = Input::new(3, pac::GPIOA, 3);
 
 /// Its supply.
 #[cfg(all(transducer = "ratiometric", not(hand)))]
-pub(super) const SUPPLY: Input = Input {
-    channel: 10,
-    port: pac::GPIOC,
-    pin: 0,
-};
+pub(super) const SUPPLY: Input = Input::new(10, pac::GPIOC, 0);
 
 /// The crystal oscillator of the ST-LINK.
 const HSE: Hertz = Hertz(8_000_000);

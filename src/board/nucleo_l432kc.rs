@@ -69,53 +69,21 @@ bind_interrupts!(pub(super) struct BusInterrupts {
 /// What a hand's `channel` counts: A0, A1, A2, A3, A6 and A4 of the Nano header.
 #[cfg(hand)]
 pub(super) const CHANNELS: [Input; 6] = [
-    Input {
-        channel: 5,
-        port: pac::GPIOA,
-        pin: 0,
-    },
-    Input {
-        channel: 6,
-        port: pac::GPIOA,
-        pin: 1,
-    },
-    Input {
-        channel: 8,
-        port: pac::GPIOA,
-        pin: 3,
-    },
-    Input {
-        channel: 9,
-        port: pac::GPIOA,
-        pin: 4,
-    },
-    Input {
-        channel: 12,
-        port: pac::GPIOA,
-        pin: 7,
-    },
-    Input {
-        channel: 10,
-        port: pac::GPIOA,
-        pin: 5,
-    },
+    Input::new(5, pac::GPIOA, 0),
+    Input::new(6, pac::GPIOA, 1),
+    Input::new(8, pac::GPIOA, 3),
+    Input::new(9, pac::GPIOA, 4),
+    Input::new(12, pac::GPIOA, 7),
+    Input::new(10, pac::GPIOA, 5),
 ];
 
 /// The transducer's output.
 #[cfg(all(transducer = "ratiometric", not(hand)))]
-pub(super) const OUTPUT: Input = Input {
-    channel: 5,
-    port: pac::GPIOA,
-    pin: 0,
-};
+pub(super) const OUTPUT: Input = Input::new(5, pac::GPIOA, 0);
 
 /// Its supply.
 #[cfg(all(transducer = "ratiometric", not(hand)))]
-pub(super) const SUPPLY: Input = Input {
-    channel: 6,
-    port: pac::GPIOA,
-    pin: 1,
-};
+pub(super) const SUPPLY: Input = Input::new(6, pac::GPIOA, 1);
 
 /// Half used by reports of 46 bytes each millisecond, or by those of five tips. By 26 from 24 MHz: 923 077, 0.2 % fast; of a hand by 24,
 /// exactly.

@@ -13,6 +13,11 @@ pub(super) struct Input {
 
 #[cfg(transducer = "ratiometric")]
 impl Input {
+    /// Pin `pin` of `port`, channel `channel` of ADC1.
+    pub(super) const fn new(channel: u8, port: embassy_stm32::pac::gpio::Gpio, pin: usize) -> Self {
+        Self { channel, port, pin }
+    }
+
     /// Connects the pin to the converter.
     pub(super) fn connect(&self) {
         use embassy_stm32::pac::gpio::vals::Moder;

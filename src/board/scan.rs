@@ -5,7 +5,7 @@ use super::chip;
 use crate::image::{CHANNELS, PERIOD, ROW, ROWS, SCANS, TIPS};
 use crate::transducer::scan::{ScanBlock, ScanConverter};
 use core::sync::atomic::{AtomicU32, Ordering, fence};
-use embassy_stm32::adc::Adc;
+use embassy_stm32::Peri;
 use embassy_stm32::peripherals::ADC1;
 use embassy_time::{Duration, Ticker};
 
@@ -30,9 +30,8 @@ impl DmaScan {
     /// The ticks come this long after the end of a block, microseconds.
     const MARGIN: u64 = 20;
 
-    pub(super) fn new(adc: Adc<'static, ADC1>) -> Self {
-        // Powered and clocked, and calibrated where the chip needs it; dropping it would undo that.
-        core::mem::forget(adc);
+    pub(super) fn new(adc: Peri<'static, ADC1>) -> Self {
+        chip::power_converter(adc);
         chip::set_up_scan(&CHANNELS);
         Self {
             ticker: Ticker::every(Duration::from_micros(u64::from(PERIOD))),

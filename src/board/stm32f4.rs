@@ -6,8 +6,10 @@ use super::chosen::CHANNELS;
 use super::chosen::{OUTPUT, SUPPLY};
 use crate::status::ResetCause;
 #[cfg(transducer = "ratiometric")]
-use embassy_stm32::adc::SampleTime;
+use embassy_stm32::adc::{Adc, SampleTime};
 use embassy_stm32::pac;
+#[cfg(transducer = "ratiometric")]
+use embassy_stm32::{Peri, peripherals::ADC1};
 #[cfg(transducer = "ratiometric")]
 use embassy_time::Duration;
 
@@ -31,6 +33,13 @@ pub(super) fn reset_cause() -> ResetCause {
     } else {
         ResetCause::Unknown
     }
+}
+
+/// Powers and clocks the converter, and calibrates it where the chip needs it.
+#[cfg(transducer = "ratiometric")]
+pub(super) fn power_converter(adc: Peri<'static, ADC1>) {
+    // Dropping it would undo that.
+    core::mem::forget(Adc::new(adc));
 }
 
 /// Sets up ADC1 to run free at 4 MHz, read by stream 0 of DMA2, channel 0. 28 cycles of sampling (7 us, enough for 10

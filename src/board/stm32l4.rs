@@ -4,10 +4,14 @@
 use super::chosen::CHANNELS;
 #[cfg(all(transducer = "ratiometric", not(hand)))]
 use super::chosen::{OUTPUT, SUPPLY};
+#[cfg(transducer = "ratiometric")]
+pub(super) use super::ring::{conversions_left, converter_runs, restart_converter};
 use crate::status::ResetCause;
 #[cfg(transducer = "ratiometric")]
-use embassy_stm32::adc::SampleTime;
+use embassy_stm32::adc::{Adc, SampleTime};
 use embassy_stm32::pac;
+#[cfg(transducer = "ratiometric")]
+use embassy_stm32::{Peri, peripherals::ADC1};
 
 /// Why the chip was reset; clears the flags. Every internal reset also pulls the pin, so that one is asked last, and a
 /// brown-out is a power-on too (RM0394 6.1.1).
@@ -27,6 +31,13 @@ pub(super) fn reset_cause() -> ResetCause {
     } else {
         ResetCause::Unknown
     }
+}
+
+/// Powers and clocks the converter, and calibrates it where the chip needs it.
+#[cfg(transducer = "ratiometric")]
+pub(super) fn power_converter(adc: Peri<'static, ADC1>) {
+    // Dropping it would undo that.
+    core::mem::forget(Adc::new(adc));
 }
 
 /// Sets up ADC1 to run free at 6 MHz, read by channel 1 of DMA1, request 0. 47.5 cycles of sampling (7.9 us, enough for 10
@@ -103,43 +114,14 @@ pub(super) fn set_up_scan(channels: &[u8]) {
     run_free();
 }
 
-/// Starts it at the front of the ring, also from any state it is stuck in.
+/// Connects its channel of the DMA to the converter: request 0.
 #[cfg(transducer = "ratiometric")]
-pub(super) fn restart_converter(ring: u32, length: u16) {
-    use pac::bdma::vals::{Dir, Pl, Size};
-    let (adc, dma, channel) = (pac::ADC1, pac::DMA1, pac::DMA1.ch(0));
-    if adc.cr().read().adstart() {
-        adc.cr().modify(|w| w.set_adstp(true));
-        // It ends the conversion under way, 10 us.
-        while adc.cr().read().adstart() {}
-    }
-    channel.cr().write(|_| {});
-    dma.ifcr().write(|w| w.set_gif(0, true));
-    dma.cselr().modify(|w| w.set_cs(0, 0));
-    channel.par().write_value(adc.dr().as_ptr() as u32);
-    channel.mar().write_value(ring);
-    channel.ndtr().write(|w| w.set_ndt(length));
-    channel.cr().write(|w| {
-        w.set_dir(Dir::FROM_PERIPHERAL);
-        w.set_pl(Pl::VERY_HIGH);
-        w.set_msize(Size::BITS16);
-        w.set_psize(Size::BITS16);
-        w.set_minc(true);
-        w.set_circ(true);
-        w.set_en(true);
-    });
-    adc.isr().write(|w| w.set_ovr(true));
-    adc.cr().modify(|w| w.set_adstart(true));
+pub(super) fn route_converter() {
+    pac::DMA1.cselr().modify(|w| w.set_cs(0, 0));
 }
 
-/// Whether it runs: it stops when a code was not fetched in time.
+/// Asks for an end after the conversion under way.
 #[cfg(transducer = "ratiometric")]
-pub(super) fn converter_runs() -> bool {
-    !pac::ADC1.isr().read().ovr()
-}
-
-/// Conversions until the DMA is at the front of the ring again.
-#[cfg(transducer = "ratiometric")]
-pub(super) fn conversions_left() -> u16 {
-    pac::DMA1.ch(0).ndtr().read().ndt()
+pub(super) fn stop_conversions() {
+    pac::ADC1.cr().modify(|w| w.set_adstp(true));
 }

@@ -1,0 +1,56 @@
+//! The error correction of the STM32G4's flash, from the manual alone: nothing here was tried on hardware.
+//!
+//! Each double word has a code beside it, as on the STM32L4. One error is corrected; at two the read gives arbitrary data, `FLASH_ECCR`
+//! keeps ECCD and the address, and the flash raises the non-maskable interrupt until ECCD is cleared (RM0440 3.3.4). The interrupt is no
+//! fault of the read: it comes some cycles later, and the code goes on behind the read. So the reader asks afterwards ([`failed`]), when
+//! the handler ([`take_failure`]) has run or is due. The address is within the bank that `BK_ECC` names.
+
+use super::chosen::{CALIBRATION, SLOT};
+use core::sync::atomic::{AtomicBool, Ordering};
+use embassy_stm32::flash::FLASH_BASE;
+use embassy_stm32::pac::FLASH;
+
+/// Bytes of a bank.
+const BANK: u32 = 256 * 1024;
+
+/// The handler met a place of the calibration that cannot be read.
+static MET: AtomicBool = AtomicBool::new(false);
+
+/// To be called before a read of the calibration. Forgets errors that were corrected: while one is noted, the address
+/// of the next is not.
+pub fn begin() {
+    FLASH.eccr().write(|w| w.set_eccc(true));
+    MET.store(false, Ordering::Relaxed);
+}
+
+/// Whether what was read since [`begin`] is arbitrary.
+pub fn failed() -> bool {
+    // The reads have ended, and the interrupt is taken if it is pending.
+    cortex_m::asm::dsb();
+    cortex_m::asm::isb();
+    // In this order: the handler clears the one after it has set the other.
+    FLASH.eccr().read().eccd() || MET.load(Ordering::Relaxed)
+}
+
+/// For the handler of the non-maskable interrupt: a place of the calibration could not be read, which the reader will
+/// ask for.
+///
+/// # Errors
+/// Another cause: the address in flash that was given up, a word of the image; or 0, none of the flash.
+pub fn take_failure() -> Result<(), u32> {
+    let register = FLASH.eccr().read();
+    if !register.eccd() {
+        return Err(0);
+    }
+    let offset = register.addr_ecc();
+    let of_calibration = register.bk_ecc() && (CALIBRATION..CALIBRATION + 2 * SLOT).contains(&offset);
+    if register.sysf_ecc() || !of_calibration {
+        return Err(FLASH_BASE as u32 + offset + if register.bk_ecc() { BANK } else { 0 });
+    }
+    MET.store(true, Ordering::Relaxed);
+    FLASH.eccr().write(|w| {
+        w.set_eccc(true);
+        w.set_eccd(true);
+    });
+    Ok(())
+}
