@@ -151,7 +151,11 @@ fn sweep_twice<const N: usize, const U: usize>(saves: std::ops::Range<i32>) -> u
 
 #[test]
 fn the_slots_here_are_the_boards() {
-    for (board, slot) in [("nucleo_f429zi", SECTOR), ("nucleo_l432kc", PAGE), ("nucleo_g474re", PAGE)] {
+    for (board, slot) in [
+        ("nucleo_f429zi", SECTOR),
+        ("nucleo_l432kc", PAGE),
+        ("nucleo_g474re", PAGE),
+    ] {
         let file = workspace().join("src/board").join(board).with_extension("rs");
         let source = std::fs::read_to_string(file).expect("the board has a file");
         let line = format!("pub const SLOT: u32 = {} * 1024;", slot / 1024);

@@ -1,6 +1,8 @@
 //! What every board gives the tasks, and how it is set up.
 
-use super::chosen::{BAUD, CALIBRATION, Interrupts, Pins, Region, SERIAL_CLOCK, WATCHDOG, clocks, region};
+use super::chosen::{
+    BAUD, CALIBRATION, Interrupts, Pins, Region, SERIAL_CLOCK, WATCHDOG, clocks, guard_crystal, region,
+};
 #[cfg(all(transducer = "ratiometric", not(hand)))]
 use super::converter::DmaConverter as AnaloguePort;
 #[cfg(not(transducer = "ratiometric"))]
@@ -89,16 +91,18 @@ pub type Port = I2cBus;
 impl Board {
     /// Sets up clocks, pins and peripherals. Called once.
     ///
-    /// After `gave_up` nothing is measured, and what the transducer is on is left alone.
+    /// After `gave_up` nothing is measured, and what the transducer is on is left alone. `cause` is that of the last reset.
     ///
     /// # Panics
     /// For faults of the board's file, found by running the image once.
-    pub fn take(gave_up: bool) -> Self {
-        let (config, crystal) = clocks();
+    pub fn take(gave_up: bool, cause: ResetCause) -> Self {
+        let (config, crystal) = clocks(cause);
         let pins = Pins::of(embassy_stm32::init(config));
         let clock = Clock {
             start: Instant::now(),
         };
+
+        guard_crystal(crystal);
 
         let mut watchdog = IndependentWatchdog::new(pins.watchdog, WATCHDOG);
         watchdog.unleash();

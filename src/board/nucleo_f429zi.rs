@@ -18,6 +18,7 @@
 
 #[cfg(transducer = "ratiometric")]
 use super::pins::Input;
+use crate::status::ResetCause;
 use embassy_stm32::flash::{self, Bank2Region1, Flash};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::i2c;
@@ -97,8 +98,12 @@ pub(super) const SERIAL_CLOCK: u32 = 32_000_000;
 /// nominal 32 (DS9405 table 43), so this is 136 to 376 ms.
 pub(super) const WATCHDOG: u32 = 200_000;
 
-/// The crystal is given this many looks to be ready, some 3 ms at the 16 MHz the core starts with (DS9405 table 38: 2 ms).
+/// The crystal is given this many looks to be ready, at least 3 ms at the 16 MHz the core starts with (DS9405 table 38: 2 ms).
 const LOOKS: u32 = 8_000;
+
+/// The same after power came on: the ST-LINK gives its clock only when it has started, up to 2 s later. A look takes 6 cycles of 16 MHz at the
+/// least, so this is 2.2 s or more.
+const LOOKS_AFTER_POWER: u32 = 6_000_000;
 
 /// Where the calibration lies: the first sectors of bank 2.
 pub(super) type Region = Bank2Region1<'static, flash::Async>;
@@ -124,8 +129,11 @@ pub(super) fn region(flash: Peri<'static, peripherals::FLASH>) -> Region {
 }
 
 /// The clocks, and whether the crystal runs.
-pub(super) fn clocks() -> (Config, bool) {
-    let crystal = crystal_runs();
+pub(super) fn clocks(cause: ResetCause) -> (Config, bool) {
+    let crystal = crystal_runs(match cause {
+        ResetCause::PowerOn | ResetCause::BrownOut => LOOKS_AFTER_POWER,
+        _ => LOOKS,
+    });
     let mut config = Config::default();
     config.rcc.hse = crystal.then_some(Hse {
         freq: HSE,
@@ -174,9 +182,20 @@ fn steady_bank_2() {
     }
 }
 
-/// Whether the crystal is ready in time. The clocks' set-up, later, would wait for it for ever.
-fn crystal_runs() -> bool {
+/// Whether the crystal is ready within so many looks; the watchdog is fed meanwhile. The clocks' set-up, later, would wait for it for ever.
+fn crystal_runs(looks: u32) -> bool {
     pac::RCC.cr().modify(|w| w.set_hsebyp(true));
     pac::RCC.cr().modify(|w| w.set_hseon(true));
-    (0..LOOKS).any(|_| pac::RCC.cr().read().hserdy())
+    (0..looks).any(|_| {
+        pac::IWDG.kr().write(|w| w.set_key(pac::iwdg::vals::Key::RESET));
+        pac::RCC.cr().read().hserdy()
+    })
+}
+
+/// A crystal that stops raises the non-maskable interrupt from now on (RM0090 6.2.7): a fault and a reset, after which the internal
+/// oscillator takes its place. Without it the PLL would run on at a rate that nobody knows.
+pub(super) fn guard_crystal(runs: bool) {
+    if runs {
+        pac::RCC.cr().modify(|w| w.set_csson(true));
+    }
 }

@@ -21,6 +21,7 @@
 
 #[cfg(transducer = "ratiometric")]
 use super::pins::Input;
+use crate::status::ResetCause;
 use embassy_stm32::flash::{self, Bank2Region, Flash};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::i2c;
@@ -124,7 +125,7 @@ pub(super) fn region(flash: Peri<'static, peripherals::FLASH>) -> Region {
 }
 
 /// The clocks, and whether the crystal runs.
-pub(super) fn clocks() -> (Config, bool) {
+pub(super) fn clocks(_cause: ResetCause) -> (Config, bool) {
     let crystal = crystal_runs();
     let mut config = Config::default();
     config.rcc.hsi = !crystal;
@@ -157,4 +158,12 @@ pub(super) fn clocks() -> (Config, bool) {
 fn crystal_runs() -> bool {
     pac::RCC.cr().modify(|w| w.set_hseon(true));
     (0..LOOKS).any(|_| pac::RCC.cr().read().hserdy())
+}
+
+/// A crystal that stops raises the non-maskable interrupt from now on (RM0440, clock security system): a fault and a reset, after which the
+/// internal oscillator takes its place. Without it the PLL would run on at a rate that nobody knows.
+pub(super) fn guard_crystal(runs: bool) {
+    if runs {
+        pac::RCC.cr().modify(|w| w.set_csson(true));
+    }
 }

@@ -37,7 +37,7 @@ async fn main(spawner: Spawner) {
     let start = CrashRecord::start(retained::read(), reset_cause, NAMES.hash);
     retained::write(&start.crash_record);
     let kept = retained::read_zeros().zeros(NAMES.hash);
-    let board = Board::take(start.give_up);
+    let board = Board::take(start.give_up, reset_cause);
     let firmware = version();
     let mut store = (!start.give_up).then(|| HandStore::new(board.memory, SLOT, IDENTITIES, firmware));
     if let Some(store) = &mut store {

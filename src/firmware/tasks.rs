@@ -45,7 +45,7 @@ async fn main(spawner: Spawner) {
     let start = CrashRecord::start(retained::read(), reset_cause, ImageDesign::CONSTANTS.hash);
     retained::write(&start.crash_record);
     #[cfg(not(feature = "load-tip"))]
-    let board = Board::take(start.give_up);
+    let board = Board::take(start.give_up, reset_cause);
     #[cfg(not(feature = "load-tip"))]
     let design = FirmwareDesign::start();
     #[cfg(feature = "load-tip")]
