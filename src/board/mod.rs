@@ -44,7 +44,7 @@ mod chosen;
 #[path = "ecc_stm32g4.rs"]
 pub mod ecc;
 
-pub use chosen::SLOT;
+pub use chosen::{CLOCK, SLOT};
 #[cfg(feature = "load-tip")]
 pub use chosen::{TIP_SLOT, TIPS};
 pub use common::{Board, Clock, FlashMemory, Line, Port, SerialRx, Watchdog, begin};

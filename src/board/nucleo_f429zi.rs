@@ -94,6 +94,9 @@ pub(super) const BAUD: u32 = if cfg!(hand) { 1_000_000 } else { 921_600 };
 /// The serial port's clock: APB1.
 pub(super) const SERIAL_CLOCK: u32 = 32_000_000;
 
+/// What the clock comes from, for the log.
+pub const CLOCK: &str = "HSE";
+
 /// The slowest report comes after a transducer's start, 60 ms; the oscillator of the watchdog runs at 17 to 47 kHz for a
 /// nominal 32 (DS9405 table 43), so this is 136 to 376 ms.
 pub(super) const WATCHDOG: u32 = 200_000;

@@ -95,6 +95,9 @@ pub(super) const BAUD: u32 = if cfg!(hand) { 1_000_000 } else { 921_600 };
 /// The serial port's clock: APB1.
 pub(super) const SERIAL_CLOCK: u32 = 104_000_000;
 
+/// What the clock comes from, for the log.
+pub const CLOCK: &str = "HSE";
+
 /// The slowest report comes after a transducer's start, 60 ms; the oscillator of the watchdog runs at 29.5 to 34 kHz
 /// (DS12288, LSI characteristics), so this is 188 to 217 ms.
 pub(super) const WATCHDOG: u32 = 200_000;

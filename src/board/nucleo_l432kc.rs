@@ -93,6 +93,9 @@ pub(super) const BAUD: u32 = if cfg!(hand) { 1_000_000 } else { 921_600 };
 /// The serial port's clock: APB1.
 pub(super) const SERIAL_CLOCK: u32 = 24_000_000;
 
+/// What the clock comes from, for the log.
+pub const CLOCK: &str = "HSI16, to 1 %";
+
 /// The slowest report comes after a transducer's start, 60 ms; the oscillator of the watchdog runs at 29.5 to 34 kHz
 /// (DS11451 table 52), so this is 188 to 217 ms.
 pub(super) const WATCHDOG: u32 = 200_000;
@@ -138,7 +141,5 @@ pub(super) fn clocks(_cause: ResetCause) -> (Config, bool) {
     (config, true)
 }
 
-/// No crystal is fitted. The log says so: times of this board are up to 1 % off.
-pub(super) fn guard_crystal(_runs: bool) {
-    defmt::info!("clock: the chip's own oscillator, up to 1 % off");
-}
+/// There is none.
+pub(super) fn guard_crystal(_runs: bool) {}

@@ -60,11 +60,12 @@ async fn main(spawner: Spawner) {
         }
     });
     defmt::info!(
-        "fingertip {=str}, hand {=str} ({=u64:016x}), reset by {=str}",
+        "fingertip {=str}, hand {=str} ({=u64:016x}), reset by {=str}, clock: {=str}",
         env!("CARGO_PKG_VERSION"),
         NAME,
         NAMES.hash,
-        reset_cause.word()
+        reset_cause.word(),
+        board::CLOCK
     );
     let clock = board.clock;
     let waiting = queues::outbox();

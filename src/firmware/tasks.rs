@@ -89,11 +89,12 @@ async fn main(spawner: Spawner) {
     #[cfg(feature = "load-tip")]
     let beginning = tip::beginning(beginning, known, is_refused);
     defmt::info!(
-        "fingertip {=str}, design {=str} ({=u64:016x}), reset by {=str}",
+        "fingertip {=str}, design {=str} ({=u64:016x}), reset by {=str}, clock: {=str}",
         env!("CARGO_PKG_VERSION"),
         NAME,
         constants.hash,
-        reset_cause.word()
+        reset_cause.word(),
+        board::CLOCK
     );
     let clock = board.clock;
     let waiting = queues::outbox();
