@@ -102,7 +102,12 @@ impl FingertipDesign {
             TransducerKindSection::Ratiometric {
                 output_fraction_at_range,
                 supply,
-            } => (Part::Analogue, output_fraction_at_range, supply),
+                source,
+            } => (
+                Part::Analogue,
+                output_fraction_at_range.map(|fraction| source.at_converter(fraction)),
+                supply,
+            ),
             TransducerKindSection::Dps310 { address } => on_the_bus(Part::Dps310(address)),
             TransducerKindSection::Abp2 { address, transfer } => on_the_bus(Part::Abp2(
                 address,

@@ -185,6 +185,35 @@ pub(crate) fn in_any_air([low, high]: [f64; 2]) -> [f64; 2] {
     [low - thinnest, high - densest]
 }
 
+/// What an analogue output passes on its way to the converter: its own resistance, and the pull-up to the converter's reference that tells
+/// a broken wire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Source {
+    /// Resistance of the output, or of the divider behind it (its two legs in parallel), ohms, 0 to [`Self::MAX_OHM`]; 0 if the file does
+    /// not say.
+    pub ohm: f64,
+    /// The pull-up, ohms, at least [`Self::MIN_PULL_UP_OHM`]; 1 megohm if the file does not say.
+    pub pull_up_ohm: f64,
+}
+
+impl Source {
+    /// An ideal output.
+    pub const IDEAL: Self = Self {
+        ohm: 0.0,
+        pull_up_ohm: 1e6,
+    };
+    /// From a source of more the converter's capacitor does not settle in the time that the boards sample, ohms.
+    pub const MAX_OHM: f64 = 10e3;
+    /// Below, the pull-up itself would be the load that the datasheets of these parts forbid, ohms.
+    pub const MIN_PULL_UP_OHM: f64 = 100e3;
+
+    /// What the converter sees of an output, both fractions of its reference: source and pull-up divide the voltage between the output and
+    /// the reference (Kirchhoff's current law).
+    pub fn at_converter(self, output: f64) -> f64 {
+        (output * self.pull_up_ohm + self.ohm) / (self.pull_up_ohm + self.ohm)
+    }
+}
+
 /// `kind` of `[transducer]`, with the keys that only it has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TransducerKindSection {
@@ -194,6 +223,8 @@ pub enum TransducerKindSection {
         output_fraction_at_range: [f64; 2],
         /// What the transducer is supplied with.
         supply: Supply,
+        /// What lies between its output and the converter.
+        source: Source,
     },
     /// `"abp2"`: Honeywell ABP2.
     Abp2 {

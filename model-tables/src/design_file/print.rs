@@ -1,8 +1,8 @@
 //! The canonical text of a design: the same design always gives the same bytes.
 
 use super::{
-    Axes, DEFAULT_MODEL_PERCENT, DesignFile, ModelSection, RestSection, Supply, TransducerKindSection,
-    TransducerSection, Transfer, relaxation, zero,
+    Axes, DEFAULT_MODEL_PERCENT, DesignFile, ModelSection, RestSection, Source, Supply,
+    TransducerKindSection, TransducerSection, Transfer, relaxation, zero,
 };
 use crate::constants::Quantity;
 use crate::material::Law;
@@ -115,6 +115,7 @@ fn transducer(section: &TransducerSection, out: &mut String) -> fmt::Result {
         TransducerKindSection::Ratiometric {
             output_fraction_at_range: [low, high],
             supply,
+            source,
         } => {
             writeln!(
                 out,
@@ -124,6 +125,13 @@ fn transducer(section: &TransducerSection, out: &mut String) -> fmt::Result {
             match supply {
                 Supply::Reference => {}
                 Supply::Measured => writeln!(out, "supply = \"measured\"")?,
+            }
+            if source != Source::IDEAL {
+                writeln!(
+                    out,
+                    "source_ohm = {:?}\npull_up_ohm = {:?}",
+                    source.ohm, source.pull_up_ohm
+                )?;
             }
         }
         TransducerKindSection::Abp2 { address, transfer } => {

@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::section::{KeyFault, Section};
-use super::{Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air};
+use super::{Source, Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air};
 use crate::constants::Quantity;
 
 pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, KeyFault> {
@@ -12,19 +12,7 @@ pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, 
     const WIDEST_KPA: f64 = 2_000.0;
     const FINENESS: Bounds = Bounds::above(0.0, 1e6, "Pa");
     let kind = match section.needed_text("kind", KINDS)? {
-        "ratiometric" => TransducerKindSection::Ratiometric {
-            output_fraction_at_range: section
-                .pair(
-                    "output_fraction_at_range",
-                    Bounds::within(0.0, 1.0, "of the supply"),
-                )?
-                .unwrap_or([0.1, 0.9]),
-            supply: match section.text("supply", SUPPLIES)? {
-                None | Some("reference") => Supply::Reference,
-                Some("measured") => Supply::Measured,
-                Some(_) => return Err(section.refuse("supply", SUPPLIES)),
-            },
-        },
+        "ratiometric" => ratiometric(&mut section)?,
         "abp2" => TransducerKindSection::Abp2 {
             address: address(&mut section, 0x08, 0x77)?.unwrap_or(0x28),
             transfer: match section.text("transfer", TRANSFERS)? {
@@ -59,6 +47,54 @@ pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, 
         noise_pa: noise_pa.unwrap_or(resolution_pa),
         quantity,
         kind,
+    })
+}
+
+/// The keys of an analogue part.
+fn ratiometric(section: &mut Section<'_>) -> Result<TransducerKindSection, KeyFault> {
+    const PULL_UP: Bounds = Bounds::within(Source::MIN_PULL_UP_OHM, 1e9, "ohm");
+    let output_fraction_at_range = section
+        .pair(
+            "output_fraction_at_range",
+            Bounds::within(0.0, 1.0, "of the supply"),
+        )?
+        .unwrap_or([0.1, 0.9]);
+    let supply = match section.text("supply", SUPPLIES)? {
+        None | Some("reference") => Supply::Reference,
+        Some("measured") => Supply::Measured,
+        Some(_) => return Err(section.refuse("supply", SUPPLIES)),
+    };
+    let ohm = section.number("source_ohm", Bounds::within(0.0, 1e9, "ohm"))?;
+    if ohm.is_some_and(|ohm| ohm > Source::MAX_OHM) {
+        return Err(section.refuse(
+            "source_ohm",
+            &format!(
+                "at most {} ohm, from which the converter still settles: put an amplifier behind the output, or a divider of less",
+                Source::MAX_OHM
+            ),
+        ));
+    }
+    if ohm.is_some() && supply == Supply::Measured {
+        return Err(section.refuse(
+            "source_ohm",
+            "left out where transducer.supply is \"measured\": the pull-up goes to the converter's reference, and what it adds changes \
+             with the supply; leave the pull-up away there",
+        ));
+    }
+    let pull_up = section.number("pull_up_ohm", PULL_UP)?;
+    if pull_up.is_some() && ohm.is_none() {
+        return Err(section.refuse(
+            "pull_up_ohm",
+            "given together with transducer.source_ohm, as it divides with that",
+        ));
+    }
+    Ok(TransducerKindSection::Ratiometric {
+        output_fraction_at_range,
+        supply,
+        source: Source {
+            ohm: ohm.unwrap_or(Source::IDEAL.ohm),
+            pull_up_ohm: pull_up.unwrap_or(Source::IDEAL.pull_up_ohm),
+        },
     })
 }
 

@@ -414,8 +414,10 @@ fn kind(section: TransducerKindSection) -> TransducerKind {
         TransducerKindSection::Ratiometric {
             output_fraction_at_range,
             supply,
+            source,
         } => TransducerKind::Ratiometric {
-            output: output_fraction_at_range.map(|fraction| libm::round(fraction * 65536.0) as u32),
+            output: output_fraction_at_range
+                .map(|fraction| libm::round(source.at_converter(fraction) * 65536.0) as u32),
             supply_measured: supply == Supply::Measured,
         },
         TransducerKindSection::Abp2 { address, transfer } => TransducerKind::Abp2 {
