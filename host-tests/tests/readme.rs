@@ -28,8 +28,11 @@ fn its_figures_are_the_measured_ones() {
     let flash = measured_figure("flash, bytes") / 1000.0;
     let ram = measured_figure("RAM without the stack, bytes") / 1000.0;
     let report = measured_figure("instructions from averaged counts to both results");
+    let relaxing = measured_figure("instructions from averaged counts to both results of index-fingertip");
+    let relaxing_flash = measured_figure("flash of index-fingertip without folders, bytes") / 1000.0;
     assert_readme_says(&format!(
-        "{report} instructions; {flash:.0} kB flash, {ram:.0} kB RAM in all"
+        "{relaxing} instructions, {relaxing_flash:.0} kB flash (elastic: {report} instructions; {flash:.0} kB flash, {ram:.0} kB RAM \
+         in all)"
     ));
 }
 
