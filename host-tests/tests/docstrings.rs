@@ -33,6 +33,7 @@ const UNITS: [&str; 67] = [
     "kelvin",
     "hertz",
     "volts",
+    "ohms",
     "mm",
     "pixels",
     "counts",

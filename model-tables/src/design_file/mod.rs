@@ -188,7 +188,7 @@ pub(crate) fn in_any_air([low, high]: [f64; 2]) -> [f64; 2] {
 /// What an analogue output passes on its way to the converter: its own resistance, and the pull-up to the converter's reference that tells
 /// a broken wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Source {
+pub struct SourceResistance {
     /// Resistance of the output, or of the divider behind it (its two legs in parallel), ohms, 0 to [`Self::MAX_OHM`]; 0 if the file does
     /// not say.
     pub ohm: f64,
@@ -196,7 +196,7 @@ pub struct Source {
     pub pull_up_ohm: f64,
 }
 
-impl Source {
+impl SourceResistance {
     /// An ideal output.
     pub const IDEAL: Self = Self {
         ohm: 0.0,
@@ -224,7 +224,7 @@ pub enum TransducerKindSection {
         /// What the transducer is supplied with.
         supply: Supply,
         /// What lies between its output and the converter.
-        source: Source,
+        source: SourceResistance,
     },
     /// `"abp2"`: Honeywell ABP2.
     Abp2 {

@@ -1,7 +1,7 @@
 //! The canonical text of a design: the same design always gives the same bytes.
 
 use super::{
-    Axes, DEFAULT_MODEL_PERCENT, DesignFile, ModelSection, RestSection, Source, Supply,
+    Axes, DEFAULT_MODEL_PERCENT, DesignFile, ModelSection, RestSection, SourceResistance, Supply,
     TransducerKindSection, TransducerSection, Transfer, relaxation, zero,
 };
 use crate::constants::Quantity;
@@ -126,7 +126,7 @@ fn transducer(section: &TransducerSection, out: &mut String) -> fmt::Result {
                 Supply::Reference => {}
                 Supply::Measured => writeln!(out, "supply = \"measured\"")?,
             }
-            if source != Source::IDEAL {
+            if source != SourceResistance::IDEAL {
                 writeln!(
                     out,
                     "source_ohm = {:?}\npull_up_ohm = {:?}",

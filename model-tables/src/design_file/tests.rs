@@ -63,7 +63,7 @@ fn reads_every_section_and_fills_in_the_defaults() {
         TransducerKindSection::Ratiometric {
             output_fraction_at_range: [0.1, 0.9],
             supply: Supply::Reference,
-            source: Source::IDEAL,
+            source: SourceResistance::IDEAL,
         }
     );
     assert_eq!(file.actuator, None);
@@ -132,7 +132,7 @@ fn takes_each_kind_of_transducer() {
         TransducerKindSection::Ratiometric {
             output_fraction_at_range: [0.1, 0.9],
             supply: Supply::Measured,
-            source: Source::IDEAL,
+            source: SourceResistance::IDEAL,
         }
     );
     assert_eq!(

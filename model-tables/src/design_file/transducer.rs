@@ -2,7 +2,9 @@
 
 use super::bounds::Bounds;
 use super::section::{KeyFault, Section};
-use super::{Source, Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air};
+use super::{
+    SourceResistance, Supply, TransducerKindSection, TransducerSection, Transfer, air_kpa, in_any_air,
+};
 use crate::constants::Quantity;
 
 pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, KeyFault> {
@@ -52,7 +54,7 @@ pub(super) fn transducer(mut section: Section<'_>) -> Result<TransducerSection, 
 
 /// The keys of an analogue part.
 fn ratiometric(section: &mut Section<'_>) -> Result<TransducerKindSection, KeyFault> {
-    const PULL_UP: Bounds = Bounds::within(Source::MIN_PULL_UP_OHM, 1e9, "ohm");
+    const PULL_UP: Bounds = Bounds::within(SourceResistance::MIN_PULL_UP_OHM, 1e9, "ohm");
     let output_fraction_at_range = section
         .pair(
             "output_fraction_at_range",
@@ -65,12 +67,12 @@ fn ratiometric(section: &mut Section<'_>) -> Result<TransducerKindSection, KeyFa
         Some(_) => return Err(section.refuse("supply", SUPPLIES)),
     };
     let ohm = section.number("source_ohm", Bounds::within(0.0, 1e9, "ohm"))?;
-    if ohm.is_some_and(|ohm| ohm > Source::MAX_OHM) {
+    if ohm.is_some_and(|ohm| ohm > SourceResistance::MAX_OHM) {
         return Err(section.refuse(
             "source_ohm",
             &format!(
                 "at most {} ohm, from which the converter still settles: put an amplifier behind the output, or a divider of less",
-                Source::MAX_OHM
+                SourceResistance::MAX_OHM
             ),
         ));
     }
@@ -91,9 +93,9 @@ fn ratiometric(section: &mut Section<'_>) -> Result<TransducerKindSection, KeyFa
     Ok(TransducerKindSection::Ratiometric {
         output_fraction_at_range,
         supply,
-        source: Source {
-            ohm: ohm.unwrap_or(Source::IDEAL.ohm),
-            pull_up_ohm: pull_up.unwrap_or(Source::IDEAL.pull_up_ohm),
+        source: SourceResistance {
+            ohm: ohm.unwrap_or(SourceResistance::IDEAL.ohm),
+            pull_up_ohm: pull_up.unwrap_or(SourceResistance::IDEAL.pull_up_ohm),
         },
     })
 }
