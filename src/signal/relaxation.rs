@@ -38,7 +38,7 @@ const AREA_SHIFT: u32 = 8;
 /// Bits of forces below a micronewton, and of the place between two counts.
 const FORCE_BITS: u32 = 16;
 /// One as a share.
-const WHOLE: u32 = 1 << 16;
+pub const WHOLE: u32 = 1 << 16;
 /// What a relaxing wall's pressure says.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct RelaxedReading {
@@ -277,7 +277,7 @@ fn take(step: &SeriesStep, terms: &mut [i64], change: i64) {
 
 /// A part of a whole, as a share: at least nothing and at most all of it.
 #[inline(never)]
-fn part(of: i32, whole: i32) -> u32 {
+pub fn part(of: i32, whole: i32) -> u32 {
     let (of, whole) = (of.max(0) as u32, whole.max(1) as u32);
     if of >= whole {
         return WHOLE;

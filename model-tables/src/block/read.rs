@@ -157,6 +157,9 @@ fn relaxation(mut own: Cursor<'_>) -> Result<WallSeries, BlockError> {
     if wall.weight_gain > WallSeries::LARGEST_GAIN {
         return Err(value("weight_gain"));
     }
+    if wall.temperature_gain >= 1 << 16 {
+        return Err(value("temperature_gain"));
+    }
     for (field, half) in [("fluid_half", wall.fluid_half), ("weight_half", wall.weight_half)] {
         if !(1..=i32::MAX.unsigned_abs()).contains(&half) {
             return Err(value(field));

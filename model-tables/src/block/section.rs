@@ -151,6 +151,7 @@ pub fn relaxation<V: Visit>(value: &mut WallSeries, visit: &mut V) -> Result<(),
     visit.field("fluid_half", &mut value.fluid_half)?;
     visit.field("weight_gain", &mut value.weight_gain)?;
     visit.field("weight_half", &mut value.weight_half)?;
+    visit.field("temperature_gain", &mut value.temperature_gain)?;
     visit.field("stiffness", &mut value.step.stiffness)?;
     visit.field("settled", &mut value.step.settled)
 }

@@ -108,6 +108,7 @@ fn wall(terms: usize) -> WallSeries {
         fluid_half: 5_000,
         weight_gain: 40_000,
         weight_half: 700,
+        temperature_gain: 20_000,
     }
 }
 
@@ -188,6 +189,9 @@ fn a_wall_in_time_that_cannot_be_is_refused() {
     let mut odd = wall(2);
     odd.weight_gain = 7 << 16;
     assert_eq!(refused(odd), value("weight_gain"));
+    let mut odd = wall(2);
+    odd.temperature_gain = 1 << 16;
+    assert_eq!(refused(odd), value("temperature_gain"));
     let mut odd = wall(2);
     odd.step.stiffness = (1 << SeriesStep::STIFFNESS_BITS) - 1;
     assert_eq!(refused(odd), value("stiffness"));

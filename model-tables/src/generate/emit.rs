@@ -92,6 +92,7 @@ impl Generated {
             fluid_half: counts(rules.fluid_half),
             weight_gain: sixteen_bits(rules.weight_gain).min(WallSeries::LARGEST_GAIN),
             weight_half: counts(rules.weight_half),
+            temperature_gain: sixteen_bits(rules.temperature_gain).min((1 << 16) - 1),
         })
     }
 
@@ -196,6 +197,7 @@ fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
          \x20   fluid_half: {},\n\
          \x20   weight_gain: {},\n\
          \x20   weight_half: {},\n\
+         \x20   temperature_gain: {},\n\
          \x20   step: {OF}::SeriesStep {{\n\
          \x20       count: {},\n\
          \x20       stiffness: {},",
@@ -204,6 +206,7 @@ fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
         wall.fluid_half,
         wall.weight_gain,
         wall.weight_half,
+        wall.temperature_gain,
         wall.step.count,
         wall.step.stiffness
     )?;

@@ -116,6 +116,9 @@ impl SeriesStep {
     }
 }
 
+/// What a wall is warmer or colder than its series where nothing measures it: one standard deviation, kelvin.
+pub const WALL_TEMPERATURE: f64 = 2.0;
+
 /// A wall in time, as the chip knows it.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct WallSeries {
@@ -133,6 +136,9 @@ pub struct WallSeries {
     pub weight_gain: u32,
     /// `P_2` of it, counts of the tables' pressure: 1 to `i32::MAX`.
     pub weight_half: u32,
+    /// What [`WALL_TEMPERATURE`] moves the settled pressure by, over `P_e (1 - P_e / P)`, in 1/65536: below 65536, 0 of a wall that is the same at
+    /// every temperature.
+    pub temperature_gain: u32,
 }
 
 impl WallSeries {

@@ -1,13 +1,18 @@
-//! What the chip's rules for a wall in time need of a design: four numbers, fitted to one press of the solid in time.
+//! What the chip's rules for a wall in time need of a design: five numbers, fitted to one press of the solid in time.
 //!
 //! The rules are those of the firmware's `signal::relaxation`, here in `f64`. The weight is fitted to the indentation, then the fluid's
 //! share to the force, while pressed, held and let go.
+//!
+//! A wall that is warmer by `dT` than its series goes through the same states `exp(shift dT)` times as fast. So the settled pressure of a
+//! pressure `P` put on at once, `P_e = J(t) P`, moves by `shift dT t dJ/dt P`. Where `J` rises from near 0 to 1 as `t^n / (1 + t^n)`, as of a wall
+//! of many relaxation times, that is `n shift dT P_e (1 - P_e / P)`. The gain `n shift dT` is that of the press and of the hold.
 
 use super::GenerateError;
 use crate::curve::{Contact, Curve};
 use crate::design::Design;
 use crate::design_file::{Accuracy, Axes, DesignFile, ShapeSection};
 use crate::material::relaxation::{Decay, MAX_TERMS, Relaxation};
+use crate::material::series::WALL_TEMPERATURE;
 use crate::model::{Fingertip, Kind};
 use crate::solid::history::{Drive, History, HistoryError};
 use crate::solid::mesh::Elements;
@@ -55,6 +60,8 @@ pub struct InTime {
     pub weight_gain: f64,
     /// `P_2` of it, pascals, > 0.
     pub weight_half: f64,
+    /// What [`WALL_TEMPERATURE`] moves the settled pressure by, over `P_e (1 - P_e / P)`, >= 0.
+    pub temperature_gain: f64,
 }
 
 /// What tables of a design are held to: of one that relaxes from a smaller part of full scale on. What a press of a second reads there has the
@@ -71,7 +78,10 @@ pub(super) fn accuracy(asked: Accuracy, relaxation: Option<&Relaxation>) -> Accu
 }
 
 /// An instant of the press, and what passed since the one before.
+#[derive(Clone, Copy)]
 struct Step {
+    /// Since the one before.
+    seconds: f64,
     decays: [Decay; MAX_TERMS],
     stiffness: f64,
     /// Newtons and metres.
@@ -115,7 +125,7 @@ pub(super) fn fitted(
     } else {
         press.weight(least(WEIGHT, |at| press.indentation_error(press.weight(at))))
     };
-    let elastic = press.elastic(weight);
+    let elastic = press.elastic(weight, &press.steps);
     let share = least(SHARE, |at| press.force_error(&elastic, press.share(at)));
     let [fluid_half, fluid_least] = press.share(share);
     let [weight_half, weight_gain] = weight;
@@ -124,6 +134,7 @@ pub(super) fn fitted(
         fluid_half,
         weight_gain,
         weight_half,
+        temperature_gain: press.temperature_gain(relaxation, weight, &elastic),
     })
 }
 
@@ -186,10 +197,10 @@ impl Press {
     }
 
     /// The settled pressure at each instant, within the curve: the chip's rule.
-    fn elastic(&self, [half, gain]: [f64; 2]) -> Vec<f64> {
+    fn elastic(&self, [half, gain]: [f64; 2], steps: &[Step]) -> Vec<f64> {
         let (mut weighted, mut elastic, mut before) = (0.0, 0.0, 0.0);
         let mut held = [0.0; MAX_TERMS];
-        self.steps
+        steps
             .iter()
             .map(|step| {
                 let expected = f64::max(2.0 * elastic - before, 0.0);
@@ -216,6 +227,27 @@ impl Press {
             .collect()
     }
 
+    /// Half of what a wall that is so much colder and one that is so much warmer lie apart, over `P_e (1 - P_e / P)`: the mean while pressed and held.
+    fn temperature_gain(&self, relaxation: &Relaxation, weight: [f64; 2], elastic: &[f64]) -> f64 {
+        let [colder, warmer] = [-WALL_TEMPERATURE, WALL_TEMPERATURE].map(|apart| {
+            let relaxation = relaxation.at(relaxation.temperature + apart);
+            let mut steps = self.steps.clone();
+            for step in &mut steps {
+                (step.decays, step.stiffness) = over(&relaxation, step.seconds);
+            }
+            self.elastic(weight, &steps)
+        });
+        let (mut apart, mut unsettled) = (0.0, 0.0);
+        for (k, step) in self.steps.iter().enumerate() {
+            let elastic = elastic[k];
+            if step.phase < 2 && step.truth[1] >= FROM[1] * self.depth && elastic > 0.0 {
+                apart += 0.5 * (warmer[k] - colder[k]).abs() / elastic;
+                unsettled += f64::max(1.0 - elastic / step.pressure, 0.0);
+            }
+        }
+        if unsettled > 0.0 { apart / unsettled } else { 0.0 }
+    }
+
     /// What a settled pressure has on the curve.
     fn at(&self, elastic: f64) -> Contact {
         if elastic <= 0.0 {
@@ -230,7 +262,7 @@ impl Press {
 
     fn indentation_error(&self, weight: [f64; 2]) -> f64 {
         let read = self
-            .elastic(weight)
+            .elastic(weight, &self.steps)
             .into_iter()
             .map(|elastic| self.at(elastic).indentation);
         self.error(1, self.height, read)
@@ -286,14 +318,9 @@ fn history(design: &Design, relaxation: &Relaxation, depth: f64) -> Result<Vec<S
             let part = part * libm::sqrt(part);
             let time = begin + part * seconds;
             let now = history.advance(time, Drive::Indentation(from + part * (to - from)))?;
-            let mut decays = [Decay::default(); MAX_TERMS];
-            let mut stiffness = 1.0;
-            for (decay, term) in decays.iter_mut().zip(relaxation.terms()) {
-                *decay = term.over(time - before);
-                stiffness += decay.taken;
-            }
-            before = time;
+            let (decays, stiffness) = over(relaxation, time - before);
             steps.push(Step {
+                seconds: time - before,
                 decays,
                 stiffness,
                 truth: [now.force, now.indentation],
@@ -301,10 +328,22 @@ fn history(design: &Design, relaxation: &Relaxation, depth: f64) -> Result<Vec<S
                 phase,
                 touches: now.in_contact(),
             });
+            before = time;
         }
         begin += seconds;
     }
     Ok(steps)
+}
+
+/// What each term does in so many seconds, and how many times as stiff as settled the wall is.
+fn over(relaxation: &Relaxation, seconds: f64) -> ([Decay; MAX_TERMS], f64) {
+    let mut decays = [Decay::default(); MAX_TERMS];
+    let mut stiffness = 1.0;
+    for (decay, term) in decays.iter_mut().zip(relaxation.terms()) {
+        *decay = term.over(seconds);
+        stiffness += decay.taken;
+    }
+    (decays, stiffness)
 }
 
 /// Where a function of two places is least within bounds: a look at a grid, then a compass (Kolda, Lewis and Torczon, "Optimization by direct
