@@ -28,7 +28,7 @@ pub struct Measurement {
     /// Indentation of its pole.
     pub indentation: Nanometres,
     /// One standard deviation of the three: the transducer's noise and resolution, and what drift may have done
-    /// since the zero was last known. What the model leaves out is not in it.
+    /// since the zero was last known, and 2 K that a relaxing wall may be off its series. What the model leaves out is not in it.
     pub sigma: Sigma,
     /// Whether something presses.
     pub touch: Touch,

@@ -6,8 +6,8 @@ pub const NAME: &str = "haptic-loop";
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x547036dece5f5511,
-    table_version: 5,
-    certificate: 0x5b60d8af48444bdf,
+    table_version: 6,
+    certificate: 0x269e7aac58c3dac2,
     rest_pressure: 0,
     maximum_pressure: 60440,
     transducer: model_tables::constants::Transducer {

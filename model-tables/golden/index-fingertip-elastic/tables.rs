@@ -6,8 +6,8 @@ pub const NAME: &str = "index-fingertip-elastic";
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0xe2df7fbb5c5fdaa7,
-    table_version: 5,
-    certificate: 0x5a5f54a7cfe4ed93,
+    table_version: 6,
+    certificate: 0x32b43230c4274da1,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {

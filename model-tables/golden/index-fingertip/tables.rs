@@ -6,8 +6,8 @@ pub const NAME: &str = "index-fingertip";
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x2a86bd08600d07db,
-    table_version: 5,
-    certificate: 0xce0d4a1e66c37057,
+    table_version: 6,
+    certificate: 0xe6536fcff1b75a00,
     rest_pressure: 0,
     maximum_pressure: 82911,
     transducer: model_tables::constants::Transducer {
@@ -58,6 +58,7 @@ pub const RELAXATION: model_tables::material::series::WallSeries = model_tables:
     fluid_half: 925880,
     weight_gain: 20722,
     weight_half: 67294,
+    temperature_gain: 25493,
     step: model_tables::material::series::SeriesStep {
         count: 7,
         stiffness: 26814138,

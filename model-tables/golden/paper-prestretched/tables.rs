@@ -6,8 +6,8 @@ pub const NAME: &str = "paper-prestretched";
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x0b0805c0f73222b7,
-    table_version: 5,
-    certificate: 0xb2acdbb3b37c5451,
+    table_version: 6,
+    certificate: 0x56953ec9b104b038,
     rest_pressure: 179062,
     maximum_pressure: 278482,
     transducer: model_tables::constants::Transducer {

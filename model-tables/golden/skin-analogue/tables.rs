@@ -6,8 +6,8 @@ pub const NAME: &str = "skin-analogue";
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x390d166db74fda12,
-    table_version: 5,
-    certificate: 0x54baeee43d94c088,
+    table_version: 6,
+    certificate: 0x68ec0d1f164f222b,
     rest_pressure: 8312,
     maximum_pressure: 16418,
     transducer: model_tables::constants::Transducer {

@@ -6,8 +6,8 @@ pub const NAME: &str = "skin-light-touch";
 /// What the firmware needs to know of the design beside its tables.
 pub const DESIGN: model_tables::constants::DesignConstants = model_tables::constants::DesignConstants {
     hash: 0x8e7fbb454372d43d,
-    table_version: 5,
-    certificate: 0x997e360468cd2df9,
+    table_version: 6,
+    certificate: 0x8f0eaa43d4494c9f,
     rest_pressure: 1825,
     maximum_pressure: 4483,
     transducer: model_tables::constants::Transducer {
