@@ -126,8 +126,8 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         let pressure = pressure(design, rise);
         let expected = self.elastic + ((self.elastic - self.before) >> 1);
         let weight = Weight::at(design, wall, expected);
-        let stress = weight.over(pressure) - self.weighted - decay(step, &mut self.held);
-        take(step, &mut self.held, stress);
+        let stress = weight.over(pressure) - self.weighted - step.decay(&mut self.held);
+        step.take(&mut self.held, stress);
         self.weighted += scaled(step.settled, stress);
         self.before = self.elastic;
         let off = self.weighted - weight.over(expected);
@@ -167,9 +167,9 @@ impl<const TERMS: usize> Relaxing<TERMS> {
     /// `g * F_e` where the settled force becomes another one. A force has 44 bits, and 60 stiffened.
     fn convolved(&mut self, step: &SeriesStep, settled: i64) -> i64 {
         let change = settled - core::mem::replace(&mut self.settled, settled);
-        let left = decay(step, &mut self.forces);
+        let left = step.decay(&mut self.forces);
         let stress = step.stiffened(change);
-        take(step, &mut self.forces, stress);
+        step.take(&mut self.forces, stress);
         // The terms took all but the settled wall's share.
         settled + left + stress - change
     }
@@ -254,25 +254,6 @@ fn by_area(design: &impl Design, elastic: i64, at: &Lookup, rise: PressureRise) 
 #[inline(never)]
 fn scaled(factor: Factor, x: i64) -> i64 {
     factor.of(x)
-}
-
-/// What is left of the terms after a step, and their sum.
-#[inline(never)]
-fn decay(step: &SeriesStep, terms: &mut [i64]) -> i64 {
-    let mut sum = 0;
-    for (state, term) in terms.iter_mut().zip(step.terms()) {
-        *state -= term.lost.of(*state);
-        sum += *state;
-    }
-    sum
-}
-
-/// The terms take their shares of a change.
-#[inline(never)]
-fn take(step: &SeriesStep, terms: &mut [i64], change: i64) {
-    for (state, term) in terms.iter_mut().zip(step.terms()) {
-        *state += term.share.of(change);
-    }
 }
 
 /// A part of a whole, as a share: at least nothing and at most all of it.
