@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Where public fields are looked for.
 const PLACES: [&str; 3] = ["src", "host-tests", "model-tables"];
 /// Units, and words of a number without one.
-const UNITS: [&str; 67] = [
+const UNITS: [&str; 68] = [
     "metre",
     "metres",
     "millimetres",
