@@ -22,10 +22,10 @@ use std::time::{Duration, Instant, SystemTime};
 /// From one picture to the next.
 const PICTURE: Duration = Duration::from_millis(50);
 
-/// Shows what a board says, from its serial port or the emulated board's socket.
+/// Shows the readings of a board, from its serial port or the emulated board's socket.
 ///
-/// A force is shown only while its report is `ok`; otherwise the reason is. On a terminal it is a view with keys: ? lists them. In a
-/// pipe, or with --format csv or json, it is a row a report.
+/// A force is shown only while its report is `ok`; otherwise the reason is shown. A terminal shows a view with keys; press ? to list
+/// them. In a pipe, or with --format csv or json, each report is one row.
 #[derive(Debug, Parser)]
 #[command(
     name = "designer monitor",
@@ -43,10 +43,10 @@ struct Arguments {
     /// Speed of the serial port, bits a second
     #[arg(long, value_name = "BAUD", default_value_t = BAUD)]
     baud: u32,
-    /// Of a hand: the number or name of the tip that is shown and logged
+    /// For a hand: number or name of the tip to show and log
     #[arg(long, value_name = "TIP", default_value = "0")]
     tip: String,
-    /// Also write every report to this CSV file, which must not be there yet
+    /// Also write every report to this CSV file; it must not exist yet
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     // The help says "PlotJuggler" as its makers do, without the marks of code.
@@ -56,16 +56,16 @@ struct Arguments {
         help = "Also write every report to this MCAP file, for Foxglove and PlotJuggler; it must not be there yet"
     )]
     mcap: Option<PathBuf>,
-    /// Play a file of --csv again instead of a board
+    /// Replay a file written with --csv, without a board
     #[arg(long, value_name = "FILE", conflicts_with = "address")]
     replay: Option<PathBuf>,
-    /// How many times as fast as it was written a file is played
+    /// Speed of the replay: 1 is the speed of the recording
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, requires = "replay", value_parser = factor)]
     speed: f64,
-    /// End after so many seconds
+    /// End after this many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     for_s: Option<Duration>,
-    /// table: the view; csv, json: a row a report [default: table on a terminal, csv otherwise]
+    /// table: the view; csv, json: one row per report [default: table on a terminal, csv otherwise]
     #[arg(long)]
     format: Option<Format>,
 }

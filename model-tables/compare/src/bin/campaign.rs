@@ -27,19 +27,19 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Campaign {
-    /// Judges the states of random membranes by virtual work and a second discretisation
+    /// Checks the states of random membranes by virtual work and a second discretisation
     #[command(after_help = "Example:\n  cargo campaign designs --designs 10000 --seed 2026")]
     Designs(MembraneArguments),
-    /// Holds the model that `kind = "auto"` takes for random walls to the refined solid
+    /// Compares the model that `kind = "auto"` chooses for random walls with the refined solid
     #[command(after_help = "Example:\n  cargo campaign walls --designs 200 --seed 0")]
     Walls(DrawArguments),
-    /// Asks random solids alone, in lists, by half steps and on finer meshes
+    /// Solves random solids alone, in lists, by half steps and on finer meshes
     #[command(after_help = "Example:\n  cargo campaign solids --designs 2000 --seed 0")]
     Solids(DrawArguments),
-    /// Lets fingertips live through the signal path, with all that moves a zero
+    /// Runs random lives of fingertips through the signal path, with all effects that move a zero
     #[command(after_help = "Example:\n  cargo campaign lives --lives 5000 --days 50 --seed 2026")]
     Lives(LivesArguments),
-    /// Presses random objects that the chip is not told, against the band that a design states
+    /// Presses random objects unknown to the chip, and checks the band that a design states
     #[command(after_help = "Example:\n  cargo campaign objects --objects 2000 --seed 2026")]
     Objects(ObjectArguments),
     /// Grasps random objects in time, through the firmware's own signal path
@@ -111,7 +111,7 @@ struct DrawArguments {
     /// Designs to draw
     #[arg(long, default_value_t = 200)]
     designs: u64,
-    /// The number of the first design, which is all that a draw depends on
+    /// Number of the first design; the draw depends only on it
     #[arg(long, default_value_t = 0)]
     seed: u64,
 }
@@ -127,7 +127,7 @@ struct MembraneArguments {
     /// Only this design of the draw, with a line for each of its states; repeatable
     #[arg(long, value_name = "N")]
     design: Vec<u64>,
-    /// A row a state
+    /// Print one row per state
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 }

@@ -23,10 +23,10 @@ pub struct ChartArguments {
     /// The designs: paper, finger, skin [default: all three]
     #[arg(value_parser = ["paper", "finger", "skin"])]
     designs: Vec<String>,
-    /// What the tables cost over designs and accuracies instead: a page and CSV
+    /// Write the cost of tables over designs and accuracies instead: a page and CSV
     #[arg(long, conflicts_with = "designs")]
     tables: bool,
-    /// The folder to write to; made if it is not there
+    /// Folder for the files; created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "target/chart")]
     out: PathBuf,
 }

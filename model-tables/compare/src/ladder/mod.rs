@@ -41,7 +41,7 @@ pub struct LadderArguments {
     /// Number of random walls
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     designs: u64,
-    /// The folder to write to; made if it is not there
+    /// Folder for the files; created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "target/ladder")]
     out: PathBuf,
 }

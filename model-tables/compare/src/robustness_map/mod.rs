@@ -16,10 +16,10 @@ const COLUMNS: &[&str] = &["map", "method", "verdict", "cells"];
 /// What is asked.
 #[derive(Debug, clap::Args)]
 pub struct RobustnessMapArguments {
-    /// The folder to write to; made if it is not there
+    /// Folder for the files; created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "target/atlas")]
     out: PathBuf,
-    /// Every how many of the cells of a map are taken, each way
+    /// Take every n-th cell of a map in each direction
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     stride: u32,
 }

@@ -19,7 +19,7 @@ const COLUMNS: &[&str] = &[
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// The design file; its `[actuator] diameter_mm` is the free diameter, 9 mm if it has none; with `thickness_mm` the disc as a solid
+    /// The design file; `[actuator] diameter_mm` is the free diameter (default 9 mm); with `thickness_mm` the disc is solved as a solid
     design: PathBuf,
     /// Gauge pressures in kilopascals, separated by commas; or a range start:step:end
     #[arg(long, value_name = "LIST", required = true, value_parser = numbers::list, allow_hyphen_values = true)]

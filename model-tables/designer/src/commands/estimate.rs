@@ -27,14 +27,14 @@ const WITH_FEEDBACK: &[&str] = &[
 pub(super) struct Arguments {
     /// The design file, or a tip file of `designer tip`
     design: PathBuf,
-    /// Pressure rises over the rest pressure in pascals, separated by commas; or a range start:step:end
+    /// Pressure rises above the rest pressure in pascals, separated by commas; or a range start:step:end
     #[arg(long, value_name = "LIST", required_unless_present = "history", value_parser = numbers::list, allow_hyphen_values = true)]
     pressure_rise_pa: Vec<Numbers>,
     /// CSV with columns `time_s` and `pressure_rise_kpa` or `pressure_rise_pa`, and `temperature_c` where the wall's is known; the first row is
     /// the untouched, recovered fingertip
     #[arg(long, value_name = "FILE", conflicts_with = "pressure_rise_pa")]
     history: Option<PathBuf>,
-    /// Answer also where the tables do not reach the accuracy that the design asks
+    /// Answer even if the tables do not reach the accuracy that the design requires
     #[arg(long)]
     allow_worse: bool,
 }

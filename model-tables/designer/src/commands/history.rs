@@ -27,8 +27,7 @@ pub(super) const FORCE: &str = "force_n";
 pub(super) struct Arguments {
     /// The design file
     design: PathBuf,
-    /// CSV with columns `time_s` and `indentation_mm` or `force_n`, which changes evenly from row to row; the first row is the untouched
-    /// fingertip
+    /// CSV with columns `time_s` and `indentation_mm` or `force_n`, linear between two rows; the first row is the untouched fingertip
     #[arg(long, value_name = "FILE")]
     history: PathBuf,
 }

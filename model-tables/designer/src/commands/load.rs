@@ -24,10 +24,10 @@ const LOOK: Duration = Duration::from_millis(2);
 
 /// What `--help` says after the options.
 pub(super) const HELP: &str = "\
-The firmware has to be built with the feature load-tip. The new tip is in use, with a new zero, after the board's restart, which the
-load ends with; a line that breaks on the way is waited for, and the load goes on.
+The firmware must be built with the feature load-tip. The load ends with a restart of the board. After it, the new tip is in use, with a
+new zero. If the line breaks during a load, the command waits until it is back and continues.
 
---tip is the tip's number on the board, 0 on a board with one, or the name of the design in the file: another name is refused.
+--tip is the number of the tip on the board (0 on a board with one tip), or the name of the design in the file. Another name is refused.
 
 Examples:
   cargo designer load /dev/ttyACM0 tip.bin --tip 0
@@ -42,13 +42,13 @@ pub(super) struct Arguments {
     /// The tip file that `designer tip` wrote
     #[arg(required_unless_present_any = ["roll_back", "read_back"], conflicts_with_all = ["roll_back", "read_back"])]
     file: Option<PathBuf>,
-    /// Which tip of the board: its number, or the name of the design in the file
+    /// Tip of the board: its number, or the name of the design in the file
     #[arg(long = "tip", value_name = "NAME", requires = "file")]
     name: Option<String>,
-    /// Use what was in use before the last load
+    /// Return to the tip that was in use before the last load
     #[arg(long, conflicts_with = "read_back")]
     roll_back: bool,
-    /// Write the tip that is in use to this file
+    /// Write the tip in use to this file
     #[arg(long, value_name = "FILE")]
     read_back: Option<PathBuf>,
     /// Speed of the serial port, bits a second

@@ -56,96 +56,96 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// The rest state and the limits of a design
+    /// Computes the rest state and the limits of a design
     #[command(after_help = "Example:\n  cargo designer rest model-tables/designs/index-fingertip.toml")]
     Rest {
         /// The design file
         design: PathBuf,
     },
-    /// Pressed states of a design, one row each, in the order asked
+    /// Solves pressed states of a design, one row each, in the order given
     #[command(
         after_help = "Example:\n  cargo designer solve model-tables/designs/index-fingertip.toml --indentation-mm 0.2,0.5,1.0 --format csv"
     )]
     Solve(solve::Arguments),
-    /// A press in time, of a wall that relaxes: pressure, force and shape at given times
+    /// Solves a press in time of a wall that relaxes: pressure, force and shape at given times
     #[command(after_help = "Example:\n  cargo designer history my.toml --history grasp.csv --format csv")]
     History(history::Arguments),
-    /// Shape, stretches and tensions along the meridian of one state, sorted from the pole to the equator
+    /// Prints shape, stretches and tensions of one state along the meridian, from the pole to the equator
     #[command(after_long_help = profile::COLUMN_HELP)]
     Profile(profile::Arguments),
-    /// The tables of a design: Rust source, binary, CSV, and the certificate
+    /// Writes the tables of a design: Rust source, binary, CSV, and the certificate
     #[command(
         after_help = "Example:\n  cargo designer table model-tables/designs/index-fingertip.toml --out target/tables"
     )]
     Table(table::Arguments),
-    /// A tip file: everything that a hand needs of one fingertip, to be loaded without a compiler
+    /// Writes or shows a tip file: all data of one fingertip, to be loaded without a compiler
     #[command(after_help = tip::HELP)]
     Tip(tip::Arguments),
-    /// A tip file onto a board over its serial port; back to the tip before; the tip in use as a file
+    /// Loads a tip file onto a board over its serial port, returns to the previous tip, or reads the tip in use back
     #[command(after_help = load::HELP)]
     Load(load::Arguments),
-    /// Everything about a design on one page: HTML that needs no network
+    /// Writes one page with everything about a design: HTML that needs no network
     #[command(
         after_help = "Example:\n  cargo designer report model-tables/designs/index-fingertip.toml --out target/report"
     )]
     Report(report::Arguments),
-    /// Speed against accuracy of every method, and the ladder of models: SVG and CSV
+    /// Charts speed against accuracy of every method and of the models: SVG and CSV
     #[command(after_help = "Example:\n  cargo designer chart paper --out target/chart")]
     Chart(compare::chart::ChartArguments),
-    /// Where each method answers, refuses or is silently wrong, over designs; and what a state costs
+    /// Maps over designs where each method answers, refuses or is silently wrong, and the time for a state
     #[command(after_help = "Example:\n  cargo designer atlas --stride 4 --out target/atlas")]
     Atlas(compare::robustness_map::RobustnessMapArguments),
-    /// The models over random walls: error against time, and what `model.kind = "auto"` takes: SVG and CSV
+    /// Compares the models over random walls: error against time, and the choice of `model.kind = "auto"`
     #[command(after_help = "Example:\n  cargo designer ladder --designs 50 --out target/ladder")]
     Ladder(compare::ladder::LadderArguments),
-    /// What the chip would say at pressure rises, bit for bit
+    /// Computes the readings of the chip at given pressure rises, bit for bit
     #[command(
         after_help = "Example:\n  cargo designer estimate model-tables/designs/index-fingertip.toml --pressure-rise-pa 642,2571"
     )]
     Estimate(estimate::Arguments),
-    /// The feedback membrane: contact diameter, blocked force and volume change at gauge pressures
+    /// Solves the feedback membrane: contact diameter, blocked force and volume change at gauge pressures
     #[command(after_help = "Example:\n  cargo designer actuator my.toml --pressure-kpa 5,17.9")]
     Actuator(actuator::Arguments),
-    /// Fingertip and feedback membrane together: what the wearer feels when the tip is pressed
+    /// Solves fingertip and feedback membrane together: touch force and the feedback force on the wearer
     #[command(after_help = "Example:\n  cargo designer loop my.toml --indentation-mm 0.5,1.0,2.0")]
     Loop(feedback_loop::Arguments),
     /// Calibrates a design to bench data
     #[command(after_help = fit::HELP)]
     Fit(fit::Arguments),
-    /// What a calibration gains, on stand-ins for a device
+    /// Measures what a calibration gains, on synthetic devices
     #[command(after_help = "Example:\n  cargo designer calibration --out model-tables/CALIBRATION.md")]
     Calibration(calibration::Arguments),
-    /// Finds membranes for a wanted force over the indentation
+    /// Finds designs for a wanted force over the indentation, or for a job
     #[command(after_help = size::HELP)]
     Size(size::Arguments),
-    /// Many designs at once, to Parquet: grids, Latin hypercubes, Sobol sequences; resumable, in shards
+    /// Solves many designs to Parquet: grids, Latin hypercubes, Sobol sequences; resumable, in shards
     #[command(after_help = sweep::HELP)]
     Sweep(sweep::Arguments),
-    /// The materials that a design can name, with where their constants come from
+    /// Lists the materials that a design can name, with the sources of their constants
     #[command(
         after_help = "Example:\n  cargo designer materials --format json\n\nIn a design: [material] preset = \"ecoflex-00-30\""
     )]
     Materials,
-    /// Completions for a shell, on standard output
+    /// Prints completions for a shell
     ///
     /// For example: cargo designer completions bash > ~/.local/share/bash-completion/completions/designer
     Completions {
         /// The shell
         shell: clap_complete::Shell,
     },
-    /// Live readings of a board, from its serial port or the emulated board's socket
+    /// Shows live readings of a board, from its serial port or the emulated board's socket
     Monitor(monitor::Arguments),
-    /// The source paper's numbers beside what its stated inputs give
+    /// Compares the source paper's numbers with the results from its stated inputs
     #[command(after_help = "Example:\n  cargo designer published --out model-tables/PUBLISHED.md")]
     Published(published::Arguments),
 }
 
-/// What the membrane does where it would have to push.
+/// Behaviour of the membrane under compression.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Field {
     /// It wrinkles or goes slack
     Relaxed,
-    /// It pushes, as in the paper
+    /// It carries compression, as in the paper
     Plain,
 }
 

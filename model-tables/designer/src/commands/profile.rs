@@ -43,8 +43,8 @@ Columns:
 Points are equally spaced in the parameter within the contact and within the free zone; one is on the
 contact edge.
 
-Of a solid: the middle of its wall, forces across the whole wall for tensions, nothing under `wrinkled`;
-points are equally spaced throughout.
+For a solid, the points are in the middle of the wall and equally spaced throughout. Tensions are the forces
+across the whole wall, and `wrinkled` is empty.
 
 Example:
   cargo designer profile model-tables/designs/index-fingertip.toml --indentation-mm 0.5 --points 41";

@@ -36,15 +36,15 @@ const COLUMNS: &[&str] = &[
 pub(super) struct Arguments {
     /// The design file
     design: PathBuf,
-    /// Indentations in millimetres, separated by commas, or a range start:step:end; of a calibrated design, as its bench reads them
+    /// Indentations in millimetres, separated by commas, or a range start:step:end; for a calibrated design, as its bench reads them
     #[arg(long, value_name = "LIST", required_unless_present = "force_n",
           value_parser = numbers::list, allow_hyphen_values = true)]
     indentation_mm: Vec<Numbers>,
-    /// Forces in newtons in the place of indentations
+    /// Forces in newtons, in place of indentations
     #[arg(long, value_name = "LIST", conflicts_with = "indentation_mm",
           value_parser = numbers::list, allow_hyphen_values = true)]
     force_n: Vec<Numbers>,
-    /// What the membrane does where it would have to push
+    /// Behaviour of the membrane under compression
     #[arg(long, value_name = "FIELD", value_enum, default_value_t = Field::Relaxed)]
     tension_field: Field,
 }

@@ -10,16 +10,16 @@ use std::path::PathBuf;
 const COLUMNS: &[&str] = &["designs", "ready_before", "computed", "refused", "parts"];
 
 pub(super) const HELP: &str = "Example:\n  cargo designer sweep model-tables/spaces/domes.toml --out target/domes\n\n\
-                               Killed or stopped, the same command goes on where it was. model-tables/SWEEP.md has the format.";
+                               After an interruption, run the same command again to continue. model-tables/SWEEP.md has the format.";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// The file of the sweep: base design, what varies, what is computed
+    /// The file of the sweep: base design, varied keys, and computed columns
     space: PathBuf,
-    /// The folder of the parts; made if it is not there, continued if it is this sweep's
+    /// Folder for the parts; created if it does not exist, continued if it belongs to this sweep
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Compute every N-th part only, from the I-th on (1 ..= N): shards may share a folder
+    /// Compute only every N-th part, from the I-th on (1 ..= N); shards may share a folder
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<Shard>,
 }

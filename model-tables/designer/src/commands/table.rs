@@ -15,10 +15,10 @@ const FILES: [&str; 4] = ["tables.rs", "tables.bin", "tables.csv", "certificate.
 pub(super) struct Arguments {
     /// The design file
     design: PathBuf,
-    /// The folder to write to; made if it is not there
+    /// Folder for the files; created if it does not exist
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Write the tables also where they do not reach the accuracy that the design asks
+    /// Write the tables even if they do not reach the accuracy that the design requires
     #[arg(long)]
     allow_worse: bool,
 }

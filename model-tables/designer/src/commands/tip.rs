@@ -30,8 +30,8 @@ const LONGEST: u64 = 1 << 20;
 
 /// What `--help` says after the options.
 pub(super) const HELP: &str = "\
---calibration takes what `designer fit --out` wrote: the calibrated design, or a file with its [calibration] alone. The tip then
-has the tables, and the hash, of the calibrated design.
+--calibration reads a file that `designer fit --out` wrote: the calibrated design, or a file with only its [calibration]. The tip
+then has the tables and the hash of the calibrated design.
 
 Examples:
   cargo designer tip model-tables/designs/index-fingertip.toml --out target/tip.bin
@@ -41,18 +41,18 @@ Examples:
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// The design file; a tip file, without --out, is read and shown
+    /// The design file; or, without --out, a tip file to show
     design: PathBuf,
-    /// A calibration of this fingertip: what `designer fit --out` wrote
+    /// Calibration of this fingertip, written by `designer fit --out`
     #[arg(long, value_name = "FILE")]
     calibration: Option<PathBuf>,
-    /// Gain trim of this fingertip, parts in a million added to the pressure rise, up to 100000 either way
+    /// Gain trim of this fingertip, parts in a million added to the pressure rise, -100000 to 100000
     #[arg(long, value_name = "PPM", allow_hyphen_values = true, value_parser = gain)]
     gain_ppm: Option<i32>,
     /// The tip file to write
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Write the tip also where its tables do not reach the accuracy that the design asks
+    /// Write the tip even if its tables do not reach the accuracy that the design requires
     #[arg(long)]
     allow_worse: bool,
 }

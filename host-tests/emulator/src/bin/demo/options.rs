@@ -25,10 +25,10 @@ struct Arguments {
     /// Folder for the chart and the CSV file [default: target/demo]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Where the CSV file goes [default: in the folder of --out]
+    /// CSV file [default: in the folder of --out]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Serve the board's serial wire at this address instead, the scenario again and again, until Ctrl-C
+    /// Serve the board's serial line at this address instead; the scenario repeats until Ctrl-C
     #[arg(long, value_name = "HOST:PORT", conflicts_with_all = ["out", "csv"])]
     serve: Option<String>,
 }

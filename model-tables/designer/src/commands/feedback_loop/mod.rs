@@ -34,8 +34,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "LIST", conflicts_with = "history", value_parser = numbers::list,
           allow_hyphen_values = true)]
     diameter_mm: Vec<Numbers>,
-    /// The loop in time: CSV with columns `time_s` and `indentation_mm` or `force_n` (of the touch), which changes evenly from row to row; the first
-    /// row is the untouched fingertip
+    /// Solve the loop in time: CSV with columns `time_s` and `indentation_mm` or `force_n` (of the touch), linear between two rows; the
+    /// first row is the untouched fingertip
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
 }

@@ -29,19 +29,19 @@ const FILES: [&str; 3] = ["fit.md", "fit.svg", "residuals.csv"];
 
 /// What `--help` says after the options.
 pub(super) const HELP: &str = "\
-DATA.csv has the columns indentation_mm, force_n and pressure_rise_kpa, of which any two suffice, and may have
-trial and direction (loading, unloading). Headings like `Force (kN)` or `Pressure (in bar)`, separators `;` and tab,
-decimal commas, a row of units, UTF-16 and Latin-1 are recognised, and reported; --columns names what is not. Lines that
-begin with # are comments. Indentation is taken as exact.
+DATA.csv has the columns indentation_mm, force_n and pressure_rise_kpa. Any two of them are enough. The columns trial and
+direction (loading, unloading) are optional. The command recognises and reports headings like `Force (kN)` or
+`Pressure (in bar)`, separators `;` and tab, decimal commas, a row of units, UTF-16 and Latin-1. Use --columns to name other
+columns. Lines that begin with # are comments. The indentation is assumed to be exact.
 
 Parameters: material and thickness (factors), pole-stretch, compliance, pressure-gain, pressure-offset,
-indentation-offset, force-offset. What the data cannot tell apart is held at the design's value, and reported.
-With --per-trial each trial has zeros of its own, found with the parameters; first touch is found in the rows before it.
+indentation-offset, force-offset. A parameter that the data cannot determine is held at the design's value, and reported.
+With --per-trial each trial has its own zeros, fitted with the parameters. First touch is found from the rows before it.
 
-With --relaxation DATA.csv is a record in time of one or more trials, each from the untouched tip to the end of a hold: time_s,
-indentation_mm, pressure_rise_kpa or force_n or both, and trial and temperature_c where there are several. Press in a second or
-less and hold for a minute or more, to two depths. The answer is [material.relaxation] with the interval of each term, and what
-the record does not tell.
+With --relaxation DATA.csv is a record in time of one or more trials, each from the untouched tip to the end of a hold. Its
+columns are time_s, indentation_mm, pressure_rise_kpa or force_n or both, and, for several of them, trial and temperature_c.
+Press in a second or less and hold for a minute or more, to two depths. The result is [material.relaxation] with the interval
+of each term, and a list of what the record cannot determine.
 
 Examples:
   cargo designer fit index-fingertip.toml bench.csv --out calibrated/
@@ -62,38 +62,38 @@ pub(super) struct Arguments {
     #[arg(long = "fit", value_name = "LIST", value_delimiter = ',', value_parser = parameter,
           default_values_t = Parameter::USUAL)]
     parameters: Vec<Parameter>,
-    /// Zeros that each trial has of its own, separated by commas: indentation-offset, force-offset, pressure-offset
+    /// Zeros to fit for each trial, separated by commas: indentation-offset, force-offset, pressure-offset
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = zero,
           conflicts_with_all = ["from_data", "relaxation"])]
     per_trial: Vec<Measured>,
-    /// Folder to write the calibrated design, the report, a chart and the residuals to; made if it is not there
+    /// Folder for the calibrated design, the report, a chart and the residuals; created if it does not exist
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Leave the model out: tables from a monotone curve through the data alone
+    /// Make the tables without the model, from a monotone curve through the data
     #[arg(long, conflicts_with = "parameters")]
     from_data: bool,
-    /// The wall in time from press-and-hold records: `time_s`, `indentation_mm`, `pressure_rise_kpa` or `force_n`
+    /// Fit the relaxation series to press-and-hold records: `time_s`, `indentation_mm`, `pressure_rise_kpa` or `force_n`
     #[arg(long, conflicts_with_all = ["parameters", "from_data", "direction"])]
     relaxation: bool,
-    /// Fit the relaxed modulus beside the series of --relaxation
+    /// With --relaxation, also fit the relaxed modulus
     #[arg(long, requires = "relaxation")]
     free_modulus: bool,
-    /// Let the curve of --from-data run to the origin even if the data begin late
+    /// With --from-data, extend the curve to the origin even if the data begin at a larger indentation
     #[arg(long, requires = "from_data")]
     to_zero: bool,
-    /// What the transducer reads at rest, kilopascals, for --from-data [default: the model's]
+    /// Rest pressure, kilopascals, for --from-data [default: the model's]
     #[arg(long, value_name = "P", requires = "from_data", value_parser = finite, allow_hyphen_values = true)]
     rest_pressure_kpa: Option<f64>,
-    /// Which column of the file holds what, by its name or number, as in `force_n=Fz,pressure_rise_kpa=3`
+    /// Columns of the file by name or number, as in `force_n=Fz,pressure_rise_kpa=3`
     #[arg(long, value_name = "NAME=COLUMN", value_delimiter = ',', value_parser = pair)]
     columns: Vec<(String, String)>,
     /// Column with the pressure rise, in kilopascals: `--columns pressure_rise_kpa=NAME`
     #[arg(long, value_name = "NAME")]
     pressure_column: Option<String>,
-    /// Only rows whose column has this value; may be given several times
+    /// Use only rows whose column has this value; may be given several times
     #[arg(long, value_name = "COLUMN=VALUE", value_parser = pair)]
     only: Vec<(String, String)>,
-    /// Only rows of this direction
+    /// Use only rows of this direction
     #[arg(long, value_enum)]
     direction: Option<Way>,
 }

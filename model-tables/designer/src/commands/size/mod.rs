@@ -41,23 +41,23 @@ const COLUMNS: &[&str] = &[
 
 /// What `--help` says after the options.
 pub(super) const HELP: &str = "\
-With --lightest-touch-n and --greatest-force-n, or a file with [wanted]: finds tips with a transducer of the catalogue that tell the
-one and read the other, so many times a second, in the space given (see targets/egg.toml). `lightest_touch_n` is the least force that is
-a touch at the end of a grasp: six noise floors and what the weather adds, as the chip reads its tables; of a wall that relaxes, relaxed or
-pressed within the grasp, whichever is more. `transducer_step_n` and `weather_n` are one step of the transducer and the weather within a
-grasp there. The tolerance column says by how much the force at one pressure changes for a thicker wall. Designs are ranked by the
-lightest touch.
+For a job, give --lightest-touch-n and --greatest-force-n, or a file with [wanted] (see targets/egg.toml). The command finds tips with a
+transducer of the catalogue that detect the lightest touch and measure the greatest force, at the given rate, in the given space.
+`lightest_touch_n` is the smallest force that is a touch at the end of a grasp: six noise floors and the weather, read through the chip's
+tables. For a wall that relaxes, it is the larger value of the relaxed wall and of a press within the grasp. `transducer_step_n` and
+`weather_n` are one step of the transducer and the weather within a grasp at that force. The tolerance column is the change of the force at
+one pressure for a thicker wall. Designs are ranked by the lightest touch.
 
-TARGET.toml names the force wanted at indentations, bounds for the dimensions and the stretch at rest, materials to
-choose from, the transducer's range, and how exactly a dimension is made (see targets/human-fingertip.toml).
-Designs that wrinkle, leave the strain their material was tested in, or leave the transducer's range are left out.
+TARGET.toml states the wanted force at indentations, bounds for the dimensions and the stretch at rest, the materials to
+choose from, the transducer's range, and the manufacturing tolerances (see targets/human-fingertip.toml). Designs that
+wrinkle, or exceed the tested strain of their material or the transducer's range, are left out.
 
-Designs are ranked by misfit (misfits under a percent count alike), then by what making them does to the force.
-`force_n` has the force at each indentation of the target. The tolerance columns say by how much the force changes, at the
-worst of those indentations, when that dimension alone is off by the tolerance and the stretch at rest is kept.
+Designs are ranked by misfit (misfits below one percent count as equal), then by the effect of the tolerances on the force.
+`force_n` has the force at each indentation of the target. Each tolerance column is the change of the force, at the worst of
+those indentations, if only that dimension is off by its tolerance and the stretch at rest is kept.
 
-A target with [transmission] is one of a haptic loop: fingertip and feedback actuator for a wanted feedback force over touch force, with what tolerances,
-air, tube and temperature do to that (see targets/feedback.toml).
+A target with [transmission] is for a haptic loop: fingertip and feedback actuator for a wanted ratio of feedback force to touch force. The
+columns give the effect of tolerances, air, tube and temperature on this ratio (see targets/feedback.toml).
 
 Examples:
   cargo designer size --lightest-touch-n 0.05 --greatest-force-n 20 --readings-per-second 200
@@ -68,18 +68,18 @@ Examples:
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// The target file, or a file of the question
+    /// The target file, or a file with the job in `[wanted]`
     #[arg(required_unless_present = "lightest_touch_n")]
     target: Option<PathBuf>,
     #[command(flatten)]
     words: question::Words,
-    /// A catalogue of transducers in the place of model-tables/transducers.toml, for a question
+    /// Catalogue of transducers for a job [default: model-tables/transducers.toml]
     #[arg(long, value_name = "FILE")]
     transducers: Option<PathBuf>,
-    /// Designs to give [default: 8 of a target, 3 of a question]
+    /// Number of designs [default: 8 for a target, 3 for a job]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
     best: Option<u16>,
-    /// Folder to write the chart (of a target) and the designs to; made if it is not there
+    /// Folder for the chart (of a target) and the designs; created if it does not exist
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
