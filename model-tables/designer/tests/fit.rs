@@ -95,7 +95,7 @@ fn standard_errors_cover_the_truth_as_often_as_they_should() {
     let repeats: u64 = std::env::var("FIT_REPEATS")
         .ok()
         .and_then(|text| text.parse().ok())
-        .unwrap_or(24);
+        .unwrap_or(60);
     let rows = press(&design(TRUTH), &depths(25));
     let file = design("");
     let (mut within, mut within_two, mut squares) = ([0.0; 3], [0.0; 3], [0.0; 3]);
@@ -113,7 +113,7 @@ fn standard_errors_cover_the_truth_as_often_as_they_should() {
     println!("within one standard error (0.683 expected) over {repeats} repeats: {within:.3?}");
     println!("within two (0.954 expected): {within_two:.3?}");
     println!("mean square in standard errors (1 expected): {squares:.3?}");
-    // Three standard deviations of a binomial share, and of a mean square.
+    // Three standard deviations of a binomial share, and of a mean square: standard errors half as large again, or a fifth too small, fail.
     let chance = |variance: f64| 3.0 * (variance / repeats as f64).sqrt();
     for k in 0..3 {
         assert!((within[k] - 0.683).abs() < chance(0.683 * 0.317), "{within:?}");
@@ -121,7 +121,7 @@ fn standard_errors_cover_the_truth_as_often_as_they_should() {
             (within_two[k] - 0.954).abs() < chance(0.954 * 0.046),
             "{within_two:?}"
         );
-        assert!((squares[k] - 1.02).abs() < chance(2.2), "{squares:?}");
+        assert!((squares[k] - 1.04).abs() < chance(2.2), "{squares:?}");
     }
 }
 
