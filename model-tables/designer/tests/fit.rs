@@ -113,7 +113,7 @@ fn standard_errors_cover_the_truth_as_often_as_they_should() {
     println!("within one standard error (0.683 expected) over {repeats} repeats: {within:.3?}");
     println!("within two (0.954 expected): {within_two:.3?}");
     println!("mean square in standard errors (1 expected): {squares:.3?}");
-    // Three standard deviations of a binomial share, and of a mean square: standard errors half as large again, or a fifth too small, fail.
+    // Three standard deviations of a binomial share, and of a mean square: standard errors twice too large, or a quarter too small, fail.
     let chance = |variance: f64| 3.0 * (variance / repeats as f64).sqrt();
     for k in 0..3 {
         assert!((within[k] - 0.683).abs() < chance(0.683 * 0.317), "{within:?}");
