@@ -1,4 +1,4 @@
-//! What the firmware needs to know of a design beside its tables: integers in stated units.
+//! The constants of a design that the firmware needs besides the tables: integers in stated units.
 
 use crate::units::PressureRise;
 

@@ -1,4 +1,4 @@
-//! The curve of a press: pressure rise, force and indentation, each a function of any other.
+//! The curve of a press: pressure rise, force and indentation, each as a function of any of the others.
 
 /// One point of a press.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,4 +1,4 @@
-//! What a fingertip is, in SI units: the part of a design that the mathematical model needs.
+//! The part of a design that the mathematical model needs, in SI units.
 
 use crate::material::Law;
 use crate::object::Object;

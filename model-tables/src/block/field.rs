@@ -1,5 +1,5 @@
-//! The values of a section: each has a fixed length in bytes and a spelling in Rust source. A section describes its fields
-//! once, in order, to a [`Visit`]: the reader, the writer, and whoever prints them.
+//! The values of a section: each has a fixed length in bytes and a spelling in Rust source. A section describes its fields once, in
+//! order, to a [`Visit`]: the reader, the writer or a printer.
 
 use crate::constants::{AirReference, Quantity, TransducerKind};
 use crate::material::series::{Factor, TermStep};

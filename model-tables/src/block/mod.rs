@@ -1,8 +1,8 @@
-//! A tip's data as one block of bytes: what a flash or a file holds of one fingertip, beside the code. `LAYOUT.md` beside this
-//! file gives every byte.
+//! A tip's data as one block of bytes: the data of one fingertip in flash or in a file, separate from the code. `LAYOUT.md` beside
+//! this file gives every byte.
 //!
-//! [`read`](read::TipBlock::read) believes a block only as a whole: of this layout, complete, unchanged since it was written,
-//! every value in its range, and tables that never fall. Everything else is a [`BlockError`].
+//! [`read`](read::TipBlock::read) accepts a block only as a whole. The block must have this layout, be complete and unchanged since
+//! it was written, have every value in its range, and have tables that never fall. Otherwise the result is a [`BlockError`].
 
 pub mod field;
 pub mod read;

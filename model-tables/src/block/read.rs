@@ -1,5 +1,5 @@
-//! A block of bytes -> the data of a tip, or the reason why not. Work and memory are bounded, nothing is copied, and no byte
-//! sequence panics or reads outside the block.
+//! Reads a block of bytes into the data of a tip, or gives the reason for a refusal. Work and memory are bounded, nothing is
+//! copied, and no byte sequence causes a panic or a read outside the block.
 
 use super::field::{Field, Visit};
 use super::section::{self, SectionKind};

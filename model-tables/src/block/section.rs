@@ -1,4 +1,4 @@
-//! What a block holds: its head and its sections, each described once. Units and ranges are those of the types.
+//! Head and sections of a block, each described once. Units and ranges are those of the types.
 
 use super::StoredCalibration;
 use super::field::Visit;

@@ -1,4 +1,4 @@
-//! Numbers that a key may take, and what slips of its unit leave them.
+//! The range of numbers that a key accepts, and the hints for numbers in a wrong unit.
 
 use std::fmt::Write as _;
 

@@ -1,12 +1,12 @@
-//! `[calibration]`: what a bench found of a device, beside the design it was built to.
+//! `[calibration]`: values of one device, measured on a bench, beside the design it was built from.
 //!
-//! The design itself stays as it was drawn. `fit` writes this section; whoever removes it has the design back.
+//! The design itself stays as drawn. `fit` writes this section; without it, the design is the nominal one again.
 //!
-//! Three frames meet here. The *model* has the true gauge pressure and counts the indentation from first touch. The
-//! *bench* reads `pressure_gain` times the pressure, its rises by `pressure_offset_kpa` too high, and its stage stands
-//! at `indentation_offset_mm` at first touch: `rest` and `solve` answer in that frame, whose columns are those of the
-//! data. The *chip* reads through the same transducer but takes its own zero, which takes the offset away, and counts the
-//! indentation from first touch: tables carry the gain, and the stored rest pressure gain and offset.
+//! Three frames meet here. The *model* has the true gauge pressure and counts the indentation from first touch. The *bench* reads
+//! `pressure_gain` times the pressure, with rises that are `pressure_offset_kpa` too high. Its stage is at `indentation_offset_mm`
+//! at first touch. `rest` and `solve` answer in this frame, as the columns of the data. The *chip* reads through the same
+//! transducer, but takes its own zero, which removes the offset, and counts the indentation from first touch. Therefore the tables
+//! include the gain, and the stored rest pressure includes gain and offset.
 
 use super::bounds::Bounds;
 use super::section::{KeyFault, Section};

@@ -1,4 +1,4 @@
-//! A file of TOML as every reader of this project takes it: its text, its tables, the name in it.
+//! A TOML file as every reader of this project uses it: its text, its tables and the name in it.
 
 use super::error::{DesignFileError, Problem};
 use super::section::{KeyFault, Section, line_at};

@@ -1,4 +1,4 @@
-//! The file of a hand: its tips, each with a design of its own and the place of its transducer on the board.
+//! The file of a hand: its tips, each with its own design and the input of its transducer on the board.
 
 use super::bounds::Bounds;
 use super::document;

@@ -1,4 +1,4 @@
-//! `[material]`: the law of a wall and its constants, or a preset, and the wall in time.
+//! `[material]`: the law of a wall and its constants, or a preset, and its relaxation.
 
 use super::bounds::Bounds;
 use super::relaxation;

@@ -1,4 +1,4 @@
-//! `[object]`: what touches.
+//! `[object]`: the object that touches the fingertip.
 
 use super::bounds::Bounds;
 use super::section::{KeyFault, Section};

@@ -1,4 +1,4 @@
-//! `[material.relaxation]`: the wall in time.
+//! `[material.relaxation]`: the relaxation series of the wall.
 
 use super::bounds::Bounds;
 use super::section::{KeyFault, Section};

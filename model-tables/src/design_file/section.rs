@@ -1,4 +1,4 @@
-//! Reading one table of a design file: typed values, and the keys that nobody asked for.
+//! Reads one table of a design file: typed values, and the unknown keys.
 
 mod sub;
 

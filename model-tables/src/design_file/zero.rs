@@ -1,4 +1,4 @@
-//! `[zero]` and `[air]`: what may move the zero beside a press, and who measures the air.
+//! `[zero]` and `[air]`: effects other than a press that move the zero, and the source of the air pressure.
 
 use super::bounds::Bounds;
 use super::section::{KeyFault, Section};

@@ -1,4 +1,4 @@
-//! From one segmentation to integers: each segment's sums rounded, near enough to the curve to rise with it.
+//! Makes the integers of one segmentation: the sums of each segment are rounded, close enough to the curve to rise with it.
 
 use super::bounds::{Range, Sum};
 use super::minimax::{FitSample, MAX_COEFFICIENTS, fit};

@@ -1,4 +1,4 @@
-//! Tables of the feedback actuator's force, in the layout of the tables that they stand beside.
+//! Tables of the feedback actuator's force, in the same layout as the tables of force and indentation.
 
 use super::candidate::{Candidate, Work, with_force};
 use super::certify::force_errors;

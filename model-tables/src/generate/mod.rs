@@ -1,7 +1,7 @@
 //! The generator: a press curve and the accuracy wanted of it -> integer tables and their certificate.
 //!
-//! [`from_design_file`] goes the whole way: design file -> full model -> tables, every input checked. Tables
-//! that do not meet the design's accuracy are never returned.
+//! [`from_design_file`] does every step: design file -> full model -> tables, with every input checked. Tables that do not meet the
+//! design's accuracy are never returned.
 
 mod bounds;
 mod candidate;

@@ -1,5 +1,6 @@
-//! Tables of other objects than a plate: those of a reference object, and the law of how much of it an object has. The reference is a
-//! ball, and where a design states a cup, that cup: a weight takes one ball to another within a percent, and a ball to a cup within 5 or 10.
+//! Tables of objects other than a plate: the tables of a reference object, and the law of its weight for other objects. The
+//! reference is a ball, or the cup that a design states. A weight converts one ball to another within one percent, but a ball to a
+//! cup only within 5 or 10 percent.
 
 use super::candidate::{Candidate, Work};
 use super::owned::OwnedTables;

@@ -1,4 +1,4 @@
-//! Tables whose size is known only when they are made: what the generator makes and the command line reads.
+//! Tables whose size is known only when they are made. The generator makes them, and the command line reads them.
 
 use crate::table::{Layout, Reading};
 use crate::units::PressureRise;

@@ -1,7 +1,7 @@
 //! From a sum of least largest error to 16-bit coefficients that keep it.
 //!
-//! The coefficient of the highest power is rounded first, both ways; the others are fitted again to what it leaves, and so on
-//! down. Of all the roundings the one with the least largest error is kept.
+//! The coefficient of the highest power is rounded first, both up and down. For each, the other coefficients are fitted again to
+//! the remainder, and so on down. The rounding with the smallest maximum error is kept.
 
 use super::minimax::{FitSample, MAX_COEFFICIENTS, fit};
 use crate::table::Constant;

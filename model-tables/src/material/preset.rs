@@ -1,4 +1,4 @@
-//! Materials by name: constants from published tests, with what they are worth.
+//! Materials by name: constants from published tests, with their range of validity.
 //!
 //! Starting points, not properties of a part: published moduli of one and the same product differ by a factor of two,
 //! so a part is calibrated on the bench. The silicones are Yeoh laws: a Mooney-Rivlin law fitted to rubber that

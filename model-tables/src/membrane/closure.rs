@@ -1,4 +1,4 @@
-//! What selects a state of equilibrium, and how the search for it ended.
+//! The condition that selects a state of equilibrium, and the outcome of the search for it.
 
 /// What fixes a rest state.
 #[derive(Clone, Copy, Debug, PartialEq)]

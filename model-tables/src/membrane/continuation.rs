@@ -1,4 +1,4 @@
-//! The latest states of a press, and what they foretell.
+//! The latest states of a press, and the prediction of the next one from them.
 
 use crate::membrane::adapt::Graded;
 use crate::membrane::equations::{CONTACT_PARAMETER, CONTACT_RADIUS, POLE, PRESSURE};

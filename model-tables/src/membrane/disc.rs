@@ -1,7 +1,8 @@
 //! A flat round membrane clamped at its rim, inflated: the dome whose axial semi-axis is zero.
 //!
-//! Without pressure it has no stiffness: its deflection begins with the cube root of the pressure (Hencky, Z. Math. Phys. 63 (1915) 311). That
-//! solution begins the way to an asked pressure, which goes up in the pole stretch, as the pressure has a maximum where the law softens.
+//! Without pressure it has no stiffness: its deflection begins with the cube root of the pressure (Hencky, Z. Math. Phys. 63 (1915)
+//! 311). The path to a given pressure begins with that solution. It continues in the pole stretch, because the pressure has a
+//! maximum if the law softens.
 
 use crate::design::Membrane as Dimensions;
 use crate::material::{Hyperelastic, Law, Scaled};

@@ -1,4 +1,4 @@
-//! The local equations of the membrane: what equilibrium demands at one point of the meridian.
+//! The local equations of the membrane: equilibrium at one point of the meridian.
 //!
 //! Everything here is dimensionless: lengths over the radial semi-axis `a0`, stresses over the law's shear
 //! modulus `mu`, pressures over `mu h0 / a0`.

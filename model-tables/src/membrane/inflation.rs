@@ -1,9 +1,8 @@
-//! The slow way to a rest state, which ends at the state or at the reason why there is none.
+//! The slow path to a rest state. It ends at the state, or at the reason why there is none.
 //!
-//! A law that softens may lose its stability on the way, or let the equator of a long membrane bulge while the pole
-//! recedes: then the pole stretch has a greatest value, and no state beyond it belongs to
-//! that first rise. The way goes up in the pole stretch, and on in the
-//! equator's where that no longer works.
+//! A law that softens may lose its stability on the path, or the equator of a long membrane may bulge while the pole recedes. The
+//! pole stretch then has a maximum, and no state beyond it belongs to that first rise. The path increases the pole stretch, and
+//! then the equator's stretch where the pole stretch no longer works.
 
 use crate::material::Hyperelastic;
 use crate::material::stability::{self, Margin};

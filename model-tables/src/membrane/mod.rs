@@ -1,9 +1,9 @@
 //! The membrane model: a wall so thin that it carries tension alone.
 //!
 //! [`equations`] (the local equations along the meridian) -> [`equilibrium`] (with a [`closure`], Newton's method over the
-//! [`solver`](crate::solver)) -> [`adapt`] (on a [`mesh`] that fits the [`solution`]) -> [`inflation`] and [`rest`] (the
-//! rest state) -> [`press`] (states at asked indentations, started from the [`continuation`] of earlier ones, and the end of
-//! the press) -> [`state`] (what is read off). [`disc`] is the dome without height: a flat membrane, clamped at its rim.
+//! [`solver`](crate::solver)) -> [`adapt`] (on a [`mesh`] that fits the [`solution`]) -> [`inflation`] and [`rest`] (the rest
+//! state) -> [`press`] (states at given indentations, started from the [`continuation`] of earlier ones, and the end of the press)
+//! -> [`state`] (quantities in SI units). [`disc`] is the dome without height: a flat membrane, clamped at its rim.
 
 pub mod adapt;
 pub mod closure;

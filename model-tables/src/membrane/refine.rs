@@ -1,10 +1,10 @@
-//! How well a mesh resolves what is on it, and a finer one where it does not.
+//! Estimates how well a mesh resolves the solution, and makes a finer mesh where it does not.
 //!
-//! The graded mesh knows the pole and the contact edge. What it cannot know is a law that has nearly lost its stability,
-//! whose stretches change within a few hundredths of the meridian, or the layer in which a plain membrane goes over
-//! into compression. There the last term of the collocation polynomial of an element is not small, and says by itself
-//! how many elements are wanted: it falls with the power `S` of their length. Gauss collocation is superconvergent, so
-//! that a last term of `e` leaves an error of the order of `e^2` at the nodes and in the integrals.
+//! The graded mesh knows the pole and the contact edge. It does not know two other cases: a law close to losing its stability, with
+//! stretches that change within a few hundredths of the meridian, and the layer in which a plain membrane changes to compression.
+//! There the last term of the collocation polynomial of an element is not small. It determines how many elements are needed,
+//! because it falls with the power `S` of their length. Gauss collocation is superconvergent, so that a last term of `e` leaves an
+//! error of the order of `e^2` at the nodes and in the integrals.
 
 use crate::material::Hyperelastic;
 use crate::membrane::adapt::Adaptive;

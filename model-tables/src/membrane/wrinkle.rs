@@ -1,9 +1,8 @@
 //! Where hoop wrinkles begin and end: the kinks of a relaxed membrane, at which the mesh needs a node.
 //!
 //! The margin `u^2 l1 - 1`, with `l1` the stretch of uniaxial tension, is positive where the membrane is taut both ways and
-//! negative where hoop wrinkles stand. It is sampled at nodes and Gauss points, and looked at more closely where its
-//! curve turns next to zero: a zone that begins between two samples would otherwise be left out, and with it some 1e-6
-//! of the force.
+//! negative where hoop wrinkles stand. It is sampled at nodes and Gauss points, and more densely where its curve turns close to
+//! zero. Otherwise a zone that begins between two samples would be missed, and with it about 1e-6 of the force.
 
 use crate::material::Hyperelastic;
 use crate::membrane::adapt::Adaptive;

@@ -1,4 +1,4 @@
-//! The press of a fingertip that shares its fluid with a feedback actuator: what its tables are made from.
+//! The press of a fingertip that shares its fluid with a feedback actuator; its tables are made from this press.
 
 use super::press::{BEYOND, ReadPress, read_by};
 use super::{DesignState, GenerateError, in_range};

@@ -1,11 +1,12 @@
-//! What the chip's rules for a wall in time need of a design: five numbers, fitted to one press of the solid in time.
+//! The five numbers of a design that the chip's rules for a relaxing wall need, fitted to one press of the solid in time.
 //!
-//! The rules are those of the firmware's `signal::relaxation`, here in `f64`. The weight is fitted to the indentation, then the fluid's
-//! share to the force, while pressed, held and let go.
+//! The rules are those of the firmware's `signal::relaxation`, here in `f64`. First the weight is fitted to the indentation, then
+//! the fluid's share to the force, during press, hold and release.
 //!
-//! A wall that is warmer by `dT` than its series goes through the same states `exp(shift dT)` times as fast. So the settled pressure of a
-//! pressure `P` put on at once, `P_e = J(t) P`, moves by `shift dT t dJ/dt P`. Where `J` rises from near 0 to 1 as `t^n / (1 + t^n)`, as of a wall
-//! of many relaxation times, that is `n shift dT P_e (1 - P_e / P)`. The gain `n shift dT` is that of the press and of the hold.
+//! A wall that is warmer by `dT` than its series passes through the same states `exp(shift dT)` times as fast. The settled pressure
+//! for a pressure `P` applied at once, `P_e = J(t) P`, therefore moves by `shift dT t dJ/dt P`. If `J` rises from near 0 to 1 as
+//! `t^n / (1 + t^n)`, as for a wall of many relaxation times, this is `n shift dT P_e (1 - P_e / P)`. The gain `n shift dT` is that
+//! of the press and of the hold.
 
 use super::GenerateError;
 use crate::curve::{Contact, Curve};

@@ -1,4 +1,4 @@
-//! What tables are held to: the accuracy asked for, or what keeps them from it.
+//! The accuracy limit of tables: the required one, or the limit that prevents it.
 
 use super::Generated;
 

@@ -1,4 +1,4 @@
-//! What an object that the chip is not told leaves open, of the tables that a design has.
+//! The band of force and indentation for an unknown object, for the tables of a design.
 
 use super::super::object::{Band, TableError, Unknown};
 use super::super::{Certificate, Certified};

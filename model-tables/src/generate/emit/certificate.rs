@@ -1,4 +1,4 @@
-//! The certificate of tables: what holds of them, as TOML.
+//! The certificate of tables, as TOML: their proven errors and properties.
 
 use super::NEVER;
 use crate::block::field::{Field, Visit};

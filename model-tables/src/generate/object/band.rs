@@ -1,8 +1,8 @@
-//! What an object that the chip is not told leaves open: how far force and indentation may lie from what is read.
+//! The band of an unknown object: the largest deviations of force and indentation from the reading.
 //!
-//! The set of objects: balls of 5 mm radius or more on the axis, plates tilted by up to 20 degrees, plates with friction; a cup where the
-//! design states one. One effect at a time. Balls and cups are solved by the design's own model, and pressed as deep as the design
-//! is; tilts and friction are [quoted].
+//! The set of objects is: balls of 5 mm radius or more on the axis, plates tilted by up to 20 degrees, plates with friction, and
+//! the cup that a design states. Effects are not combined. Balls and cups are solved by the design's own model, and pressed as deep
+//! as the design is; tilts and friction are [quoted].
 
 use super::ObjectTables;
 use super::press::{Depths, Presses, micrometres};

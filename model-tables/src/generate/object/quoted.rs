@@ -1,7 +1,8 @@
-//! What is quoted of objects and not solved here: tilted plates, and friction.
+//! Quoted results of objects that are not solved here: tilted plates, and friction.
 //!
-//! Finite elements of a dome of 9 x 7 mm with a wall of 1 mm of Agilus30, unstretched, full of incompressible fluid: 27-node elements
-//! for tilts, axisymmetric ones for friction. Other domes take the same figures, friction at the same depth over their height.
+//! Finite elements of a dome of 9 x 7 mm with a wall of 1 mm of Agilus30, unstretched, full of incompressible fluid: 27-node
+//! elements for tilts, axisymmetric ones for friction. The same figures are used for other domes; for friction, at the same ratio
+//! of depth to height.
 
 /// Largest tilt of a band, degrees.
 pub const MAX_TILT: f64 = 20.0;

@@ -1,7 +1,8 @@
-//! When a step of Newton's method is the last.
+//! Decides whether a step of Newton's method is the last.
 //!
-//! Convergence is quadratic: a step is at most a constant times the square of the one before. Two steps to a state give the constant; along a
-//! press it changes little, so that the first step to a state can be the last where the states before it foretold the state well enough.
+//! Convergence is quadratic: a step is at most a constant times the square of the one before. Two steps to a state give the
+//! constant, which changes little along a press. If the previous states predicted a state well enough, its first step can therefore
+//! be the last.
 
 /// A step this small is rounding.
 const NEGLIGIBLE_STEP: f64 = 3e-13;

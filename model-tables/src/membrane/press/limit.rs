@@ -1,4 +1,4 @@
-//! Where a press ends, and by what.
+//! The end of a press, and its cause.
 
 use super::load_stepping::Stop;
 use super::{LARGEST_STEP, MembraneError, Press, SMALLEST_STEP};

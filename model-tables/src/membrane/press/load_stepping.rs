@@ -1,4 +1,4 @@
-//! The way from state to state: first contact from the asymptotics, then steps as long as Newton's method can take.
+//! Load stepping: first contact from the asymptotics, then steps as long as Newton's method allows.
 
 use super::{LARGEST_STEP, Press, SMALLEST_STEP};
 use crate::material::Hyperelastic;

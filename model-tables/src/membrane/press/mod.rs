@@ -1,4 +1,4 @@
-//! Pressing the fingertip: states at asked indentations, the limit, and the curve between.
+//! Presses the fingertip: states at given indentations, the limit of the press, and the curve between states.
 
 mod error;
 mod limit;

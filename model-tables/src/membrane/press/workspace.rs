@@ -1,7 +1,7 @@
-//! Memory for a press, where it stays.
+//! Static memory for a press.
 //!
-//! A [`Press`] is larger than the stack of most chips. A workspace is made at compile time, so that it can be a static,
-//! and inflates and presses in place.
+//! A [`Press`] is larger than the stack of most chips. A workspace is made at compile time, so it can be a static. It inflates and
+//! presses in place.
 
 use crate::design::{Membrane as Dimensions, RestBy};
 use crate::material::{Hyperelastic, Law, Scaled};
