@@ -1,8 +1,8 @@
-//! A monotone cubic through points: never rises or falls where they do not.
+//! A monotone cubic through points: it rises or falls only where the points do.
 //!
-//! The slopes are those of the cubic spline (twice differentiable, so that what is fitted to it converges), held back
-//! after Hyman (1983) where it would overshoot: to three times the lesser slope beside a point, to zero at an extreme. At
-//! the ends a parabola through three points.
+//! The slopes are those of the cubic spline, which is twice differentiable, so that fits to it converge. Where the spline would
+//! overshoot, they are limited after Hyman (1983): to three times the smaller slope beside a point, and to zero at an extreme. At
+//! the ends, the slope is that of a parabola through three points.
 
 /// The interpolant of strictly increasing places.
 #[derive(Clone, Debug)]

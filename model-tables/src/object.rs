@@ -1,4 +1,4 @@
-//! What a fingertip touches: a rigid body of revolution on its axis, in SI units.
+//! The object that a fingertip touches: a rigid body of revolution on its axis, in SI units.
 
 /// A rigid object and its friction.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! The quantities that cross the chip's stages: one integer newtype each.
+//! The quantities between the chip's stages: one integer newtype each.
 
 /// Pressure over the rest pressure, in counts of `1 / 2^k` pascal.
 ///

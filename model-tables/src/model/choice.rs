@@ -1,12 +1,13 @@
 //! Which model a design needs.
 //!
-//! `kind = "auto"` solves every fidelity of a ladder up to the solid of 2 x 60 elements, at eight indentations up to the deepest. **The rule:**
-//! the first fidelity, from the cheapest, is taken whose force and pressure rise differ from that solid's by no more than 1 % of the
-//! reading, or [`model_percent`](crate::design_file::Accuracy::model_percent) where a design states less, less the solid's own error
-//! ([`Wanted::own_error`]). Where that error takes most of what is allowed, or no fidelity is that near, a refined solid judges them all.
-//! Coarse solids judge nobody, because their errors are of one kind: two of them agreed with each other where both were wrong. Nor are they taken:
-//! under them the contact edge moves from element to element, which puts the indentation of a light touch 2 % off between the
-//! indentations compared, and the ripple costs tables 12 to 112 bytes more. `designer ladder` holds the rule to the refined solid over
+//! `kind = "auto"` solves every fidelity of a ladder up to the solid of 2 x 60 elements, at eight indentations up to the deepest.
+//! **The rule:** the cheapest fidelity is chosen whose force and pressure rise differ from those of that solid by at most the
+//! allowed error, less the solid's own error ([`Wanted::own_error`]). The allowed error is 1 % of the reading, or
+//! [`model_percent`](crate::design_file::Accuracy::model_percent) if a design states less. If the own error is most of the allowed
+//! one, or no fidelity is close enough, all of them are compared with a refined solid. Coarse solids are never the reference,
+//! because their errors are of one kind: two of them agreed with each other where both were wrong. They are not chosen either.
+//! Their contact edge moves from element to element, so the indentation of a light touch is 2 % off between the compared
+//! indentations, and the ripple costs tables 12 to 112 bytes more. `designer ladder` checks the rule against the refined solid over
 //! random walls.
 
 use super::{Fingertip, Kind, ModelError};

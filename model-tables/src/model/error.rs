@@ -1,4 +1,4 @@
-//! Why no model answers.
+//! The reasons why no model gives an answer.
 
 use crate::limit::Limit;
 use crate::membrane::press::MembraneError;

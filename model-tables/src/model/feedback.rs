@@ -1,8 +1,8 @@
 //! The haptic loop: fingertip and feedback actuator share one fluid, `V_tip(P, H) + V_actuator(P) + V_gas(P) + c P = const`.
 //!
-//! At one indentation the actuator is to the fingertip a compliance, its volume over its pressure since rest, and so is trapped gas: the state of the loop is that of a
-//! fingertip with the compliance for which both have one pressure. What is looked for is this compliance. States of neighbouring compliances are
-//! solved from one another.
+//! At one indentation, the actuator acts on the fingertip as a compliance: its volume over its pressure since rest. Trapped gas
+//! does the same. The state of the loop is the state of a fingertip with the compliance for which both pressures are equal. The
+//! solver searches for this compliance, and solves states of neighbouring compliances from one another.
 
 mod curve;
 

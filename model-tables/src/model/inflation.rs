@@ -1,4 +1,4 @@
-//! The rest state of a solid that is given by the stretch of its pole: where the membrane in the middle of its wall goes.
+//! The rest state of a solid that is given by its pole stretch: the one that the membrane in the middle of its wall reaches.
 
 use super::ModelError;
 use crate::design::{Design, RestBy};

@@ -1,4 +1,4 @@
-//! What the mesh of a solid costs in accuracy: its states against those of finer meshes.
+//! The discretisation error of a solid: its states compared with those of finer meshes.
 //!
 //! A mesh is refined through the wall and along the meridian, each alone, and the differences are added. A mesh refined both
 //! ways at once can agree by chance: near the end of the press of a shallow dome an element more through the wall lowers the

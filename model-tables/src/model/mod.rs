@@ -1,6 +1,6 @@
-//! Either model behind one interface, and which of them a design needs.
+//! One interface for both models, and the choice of the model that a design needs.
 //!
-//! [`choice`] is what `kind = "auto"` does; [`state`] is what is read off a state of either.
+//! [`choice`] implements `kind = "auto"`; [`state`] has the quantities of a state of either model.
 
 use crate::curve::{Contact, Curve, CurveFailure};
 use crate::design::{Design, RestBy};

@@ -1,4 +1,4 @@
-//! What either model says of a state, in the same words.
+//! The quantities of a state, the same for both models.
 
 use super::{Fingertip, ModelError};
 use crate::membrane::Zone;

@@ -1,10 +1,10 @@
 //! Several elements side by side: their forces and their stiffness.
 //!
-//! An element's pressure is its own, so it is eliminated before the elements meet. Its rows `B u = -g` have no diagonal; for the step
-//! of Newton's method they get a small one, `-m / c` with `m` the volume that a term of the pressure stands for and `BULK` `c`, as if the
-//! wall gave way to pressure by as little. The residual knows nothing of that: what is solved is exactly incompressible, and the steps leave
-//! about `1 / c` of an excess of volume to the next. In return the equations that remain are symmetric, and positive
-//! definite where the state is stable.
+//! The pressure of an element belongs to this element only, so it is eliminated before assembly. Its rows `B u = -g` have no
+//! diagonal. For the step of Newton's method they get a small one, `-m / c`, with `m` the volume of a term of the pressure and `c`
+//! the constant `BULK`, as if the wall were slightly compressible. The residual does not have this term, so the solution is exactly
+//! incompressible; a step leaves about `1 / c` of an excess of volume to the next one. As a benefit, the remaining equations are
+//! symmetric, and positive definite where the state is stable.
 
 use super::element::{self, Deformation, Material};
 use super::lanes::{LANES, Lanes};

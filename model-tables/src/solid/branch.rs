@@ -1,6 +1,6 @@
 //! States in balance beside the path of a press: those of a thin dome that buckles inwards, see [`super::path`].
 //!
-//! A search from a few guesses: what it finds is a state; where it finds none there may be one.
+//! The search starts from a few guesses. Everything that it finds is a state; if it finds none, there may still be one.
 
 use super::equilibrium::SolidWall;
 use super::section;

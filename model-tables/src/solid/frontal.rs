@@ -1,7 +1,7 @@
 //! Linear equations of a wall, column of elements by column: `K = L D L'`.
 //!
-//! A column of elements couples its left, its middle and its right station. The equations are symmetric: of each row only what stands from
-//! the diagonal on is kept. Left and middle station of a column are eliminated, in order and without pivoting, what is left on the right
+//! A column of elements couples its left, its middle and its right station. The equations are symmetric, so each row is stored from
+//! the diagonal on. Left and middle station of a column are eliminated, in order and without pivoting; the remainder on the right
 //! station goes into the next column. The last right station is the rim, which does not move. As many entries of `D` are negative
 //! as `K` has negative eigenvalues (Sylvester's law of inertia).
 

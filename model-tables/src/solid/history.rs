@@ -1,10 +1,9 @@
-//! A press in time: a wall that relaxes, under a plate that comes, stays and leaves.
+//! A press in time: a wall that relaxes, under a plate that presses, holds and retracts.
 //!
-//! The plate's travel, or its force, is given at instants and changes evenly between them. Each interval is cut into steps short enough that
-//! every point of the wall moves nearly evenly in each, as `memory` takes it to; nothing else is approximated in time.
-//! With an actuator the fluid goes from one to the other, and both are solved in each step.
-//! A plate does not pull: where the wall recovers more slowly than the plate leaves, contact is lost, and the wall goes on alone around its fluid
-//! until the plate is back.
+//! The plate's travel, or its force, is given at instants and is linear between them. Each interval is divided into steps short
+//! enough that every point of the wall moves nearly linearly in each, as `memory` assumes; there is no other approximation in time.
+//! With an actuator, fluid moves between the two, and both are solved in each step. A plate cannot pull. If the wall recovers more
+//! slowly than the plate retracts, contact is lost, and the wall moves alone around its fluid until the plate touches it again.
 
 mod error;
 mod outlet;

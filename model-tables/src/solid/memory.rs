@@ -1,11 +1,12 @@
-//! What the wall remembers: quasi-linear viscoelasticity at the Gauss points.
+//! The memory of the wall: quasi-linear viscoelasticity at the Gauss points.
 //!
-//! Beside the relaxed law's stress the wall has one for each term of its [`Relaxation`], `h_i = g_i integral exp(-(t - s) / tau_i) dS_d(s)`,
-//! with `S_d` the relaxed second Piola-Kirchhoff stress without its part along `C^-1`: convected with the wall, and no pressure. Over a step
-//! of time in which `S_d` changes evenly
+//! Beside the relaxed law's stress the wall has one for each term of its [`Relaxation`], `h_i = g_i integral exp(-(t - s) / tau_i)
+//! dS_d(s)`, with `S_d` the relaxed second Piola-Kirchhoff stress without its part along `C^-1`: convected with the wall, and no
+//! pressure. Over a time step in which `S_d` changes linearly
 //!
-//! `h_i <- left_i h_i + taken_i (S_d - S_d')`, [`Decay`] from the term and the step, exactly. Of a step's end therefore only
-//! `taken S_d` depends on the deformation, `taken = sum taken_i`; the rest is held. Both have a potential: `taken W_d + H : C / 2`.
+//! `h_i <- left_i h_i + taken_i (S_d - S_d')`, [`Decay`] from the term and the step, exactly. At the end of a step, therefore, only
+//! `taken S_d` depends on the deformation, with `taken = sum taken_i`; the rest is constant. Both have a potential: `taken W_d + H
+//! : C / 2`.
 //!
 //! `W_d` is the law's density at `I1 J^(-2/3)` and `I2 J^(-4/3)`, the powers as parabolas that touch them at `J = 1`, where the wall is.
 

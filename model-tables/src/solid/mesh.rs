@@ -1,8 +1,8 @@
 //! The undeformed wall, cut into biquadratic elements.
 //!
-//! A single element through the wall is cubic through it: at each station it has one more function, `y - y^3` with `y` from -1 inside to
-//! 1 outside. Quadratic alone it cannot follow the parabola of shear strain across the wall, and a dome with a wall of 0.3 of its radius
-//! is 5 % too stiff.
+//! A single element through the wall is cubic through it: at each station it has one more function, `y - y^3` with `y` from -1
+//! inside to 1 outside. A quadratic element cannot follow the parabola of shear strain across the wall: a dome with a wall of 0.3
+//! of its radius would be 5 % too stiff.
 //!
 //! A dome is `X(t, s) = ((a - h + h s) sin t, (b - h + h s) cos t)`: `a` and `b` are the semi-axes of the outer surface, `h` the
 //! wall's thickness, `t` runs from the pole to the rim, `s` from inside to outside. Lengths are in units of `a`. A flat disc of radius `a` is

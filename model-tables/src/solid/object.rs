@@ -1,8 +1,8 @@
-//! What touches the outer surface: a rigid body of revolution on the axis. `friction` is apart.
+//! The object that touches the outer surface: a rigid body of revolution on the axis. `friction` is separate.
 //!
-//! The penalty of the [`plate`] with the penetration along the object's normal in place of the height. Along an edge of an element the
-//! penetration is taken as the parabola through that of its three nodes: an edge is short against every radius of curvature but a punch's rim, where
-//! it is cut in parts. So the force is as smooth as on a plate.
+//! The penalty is that of the [`plate`], with the penetration along the object's normal in place of the height. Along an edge of an
+//! element, the penetration is the parabola through those of its three nodes. This is accurate because an edge is short compared
+//! with every radius of curvature; at a punch's rim it is divided into parts. The force is therefore as smooth as on a plate.
 //!
 //! Lengths are in outer radial semi-axes; heights of the wall are taken over the object's apex.
 

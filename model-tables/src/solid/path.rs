@@ -1,17 +1,19 @@
 //! The path of a press from rest: states in balance, each from those before it.
 //!
-//! **Why there may be two states at one indentation.** A thin dome under a flat plate first lies flat against it. From an indentation of about
-//! two walls on it can also buckle: the middle of the contact lifts off, inwards, and the plate touches along a ring (Updike and Kalnins,
-//! "Axisymmetric postbuckling and nonsymmetric buckling of a spherical shell compressed between rigid plates", J. Appl. Mech. 39 (1972) 172).
-//! Both are minima of the energy, on every mesh: the dimple is no error of discretisation. A long step of Newton's method may end in either; a
-//! press from rest stays flat for as long as that state lasts.
+//! **Why there may be two states at one indentation.** A thin dome under a flat plate first lies flat against it. From an
+//! indentation of about two wall thicknesses on, it can also buckle: the middle of the contact lifts off, inwards, and the plate
+//! touches along a ring (Updike and Kalnins, "Axisymmetric postbuckling and nonsymmetric buckling of a spherical shell compressed
+//! between rigid plates", J. Appl. Mech. 39 (1972) 172). Both are minima of the energy, on every mesh, so the dimple is not a
+//! discretisation error. A long step of Newton's method may end in either. A press from rest stays flat as long as that state
+//! exists.
 //!
-//! **What a step must pass.** Its state is a minimum of the energy (no negative pivot, see [`SolidWall::is_stable`]); it lies where the states before it
-//! point to, to `LARGEST_CORRECTION`; and the energy stored grows by the work of plate and fluid, to `ENERGY_TOLERANCE`. A state
-//! of another branch, or one with the pole folded in, is in balance but fails these; then the step is halved. Steps grow while they pass easily.
+//! **Checks of a step.** The state must be a minimum of the energy (no negative pivot, see [`SolidWall::is_stable`]). It must be
+//! where the previous states predict it, to `LARGEST_CORRECTION`. The stored energy must grow by the work of plate and fluid, to
+//! `ENERGY_TOLERANCE`. A state of another branch, or one with the pole folded in, is in equilibrium but fails these checks; then
+//! the step is halved. Steps grow while they pass easily.
 //!
-//! **What an answer depends on.** The path's indentations follow from the design and the mesh alone, and an asked state is solved
-//! from the two of the path that it lies between: whatever else was asked, the same bits come out.
+//! **Reproducibility.** The path's indentations depend only on the design and the mesh, and a requested state is solved from its
+//! two neighbours on the path. The result therefore has the same bits, whatever other states are requested.
 
 use super::Failure;
 use super::equilibrium::{SolidWall, Tangent};

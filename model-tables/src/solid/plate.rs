@@ -1,8 +1,8 @@
 //! The plate: a rigid, flat, frictionless plane that the outer surface may touch and not cross.
 //!
-//! A stiff penalty: the contact pressure is `k d` at a penetration `d`, per undeformed area. An edge's height is a parabola, so
-//! where it crosses the plate is known in closed form, and the integrals run over exactly the part that touches. The force and
-//! its slope are therefore continuous in everything, and no point of a quadrature comes or goes as the contact grows.
+//! A stiff penalty: the contact pressure is `k d` at a penetration `d`, per undeformed area. An edge's height is a parabola, so its
+//! intersections with the plate are known in closed form, and the integrals run exactly over the touching part. The force and its
+//! slope are therefore continuous in all variables, and the number of quadrature points does not change as the contact grows.
 
 use super::mesh::{shape, slope};
 use core::f64::consts::PI;

@@ -1,4 +1,4 @@
-//! What is read off a state along the meridian: contact, touch of the base, stretches and section forces.
+//! Quantities of a state along the meridian: contact, touch of the base, stretches and section forces.
 
 use super::element;
 use super::element::positions;

@@ -1,4 +1,4 @@
-//! The unknowns of a state, the fluid's equation, and what a state in balance comes with.
+//! The unknowns of a state, the fluid's equation, and the results of a state in equilibrium.
 
 use super::mesh::CUBIC_PRESSURES;
 

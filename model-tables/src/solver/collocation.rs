@@ -6,7 +6,7 @@
 //! equations for the stage values are eliminated element by element, which leaves a linear map from the left
 //! end and the parameters to the right end and to two integrals.
 //!
-//! Nothing here knows what the equations mean.
+//! This module is independent of the physics.
 
 /// Components of the state at a point.
 pub const STATES: usize = 2;

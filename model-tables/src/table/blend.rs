@@ -1,10 +1,10 @@
 //! Tables of an object between a flat plate and a reference ball: their coefficients, blended once.
 //!
-//! Plate and ball have tables of one layout. For another object each output is `plate + w (ball - plate)` at every pressure, with
-//! a weight `w` of its own ([`law`](super::law)); the sum of a segment is linear in its coefficients, so they are blended and not
-//! the outputs, and a lookup costs what it costs with one table. Rounding is taken care of where it could make an output fall:
-//! a segment's constant is raised until it begins where the one below ends. The lowest segment, first contact, is the same for
-//! plate and ball, and so for every blend: zero reads zero.
+//! Plate and ball have tables of one layout. For another object each output is `plate + w (ball - plate)` at every pressure, with a
+//! weight `w` of its own ([`law`](super::law)); the sum of a segment is linear in its coefficients, so the coefficients are blended
+//! and not the outputs. A lookup then costs as much as with one table. Rounding could make an output fall between two segments. To
+//! prevent this, a segment's constant is raised until the segment begins where the one below ends. The lowest segment, first
+//! contact, is the same for plate and ball, and so for every blend: zero reads zero.
 
 use super::error::TablesError;
 use super::law::{WEIGHT_BITS, Weights};

@@ -1,4 +1,4 @@
-//! Why tables that came from outside are not used.
+//! The reasons why loaded tables are refused.
 
 use core::fmt;
 

@@ -1,8 +1,8 @@
 //! Tables of a third output: the force of the feedback actuator.
 //!
-//! They have the segments, the powers and so the pre-lookup of the tables that they stand beside, and words of their own: a segment has the
-//! constant term in its first word (with [`Constant::Half`] also the linear coefficient), then two coefficients to a word, the lower power in the
-//! upper half. What is tabled is the force gained since rest; the force at rest is added.
+//! They use the segments, the powers and therefore the pre-lookup of the tables of force and indentation, with their own words. A
+//! segment has the constant term in its first word (with [`Constant::Half`] also the linear coefficient). Then two coefficients
+//! follow per word, the lower power in the upper half. The table has the force gained since rest; the force at rest is added.
 
 use super::error::TablesError;
 use super::rising::{Output, rises_in};

@@ -1,9 +1,10 @@
-//! What a known indentation tells beside the pressure: the force without any curvature, and the curvature of what is touched.
+//! Results from pressure and a known indentation: the force without knowing the curvature, and the curvature of the object.
 //!
-//! A ball needs less force and a deeper press for a pressure than a plate does, by nearly the same factor, so that
-//! `force = F_t H_t / H` holds without knowing the object: `F_t` and `H_t` are what the tables read, `H` is what the hand measured. Of
-//! balls of 5 mm radius or more it reads 1 to 5 % low from 8 kPa on (a dome of 9 x 7 mm with a wall of 1 mm), 6 to 17 % low at a light
-//! touch. Of a plate tilted by 20 degrees it reads 23 % low, and nothing in the pair tells that from a ball.
+//! For the same pressure, a ball needs less force and a larger indentation than a plate, by nearly the same factor. Therefore
+//! `force = F_t H_t / H` holds without knowing the object: `F_t` and `H_t` are the readings of the tables, `H` is the indentation
+//! measured by the hand. On balls of 5 mm radius or more it is 1 to 5 % low from 8 kPa on (a dome of 9 x 7 mm with a wall of 1 mm),
+//! and 6 to 17 % low at a light touch. On a plate tilted by 20 degrees it is 23 % low; pressure and indentation cannot distinguish
+//! such a plate from a ball.
 
 use super::Reading;
 use super::law::{BlendLaw, Touched, WEIGHT_BITS};

@@ -1,4 +1,4 @@
-//! How much of the reference object an object has: the weights of a blend over the object's radius.
+//! The law of a blend: the weights of the reference object's tables over the radius of an object.
 
 /// Fraction bits of a weight.
 pub const WEIGHT_BITS: u32 = 10;

@@ -1,7 +1,7 @@
-//! Tables that are known at run time only: their layout is data, and their words are bytes of a file or of a flash.
+//! Tables that are known only at run time: their layout is data, and their words are bytes of a file or of flash.
 //!
-//! They are checked once, when they are loaded: the layout is one that the lookup computes, there is a segment for every
-//! input, zero reads zero, and neither output ever falls (`rising`).
+//! They are checked once, when they are loaded: the lookup supports the layout, there is a segment for every input, zero gives
+//! zero, and neither output ever falls (`rising`).
 
 use crate::table::error::TablesError;
 use crate::table::rising::rises;

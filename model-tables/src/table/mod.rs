@@ -1,11 +1,11 @@
 //! The lookup on the chip: pressure rise -> force and indentation, integers only.
 //!
-//! Segments widen geometrically. With `y = clamp(rise, 0, maximum) + bias`, one count of leading zeros names the octave of
-//! `y`, and one shift left makes its mantissa `m` of it, a fraction of `2^32`. A segment is one octave (`1/2 <= m < 1`) or
-//! two (`1/4 <= m < 1`). In it both outputs are `c0 + c1 s + c2 s^2 + ...` in the distance `s = 1 - m` from the segment's upper
-//! end, with gaps between the powers: 1, 2, 4 or 1, 2, 6 instead of 1, 2, 3. What a press does over two octaves is much
-//! like `m^p` with `p` from 0.3 to 1.3, and there a third coefficient on `s^4` leaves half the error of one on `s^3`
-//! at the same cost, since `s^4` is one squaring.
+//! Segments widen geometrically. With `y = clamp(rise, 0, maximum) + bias`, one count of leading zeros names the octave of `y`, and
+//! one shift left makes its mantissa `m` of it, a fraction of `2^32`. A segment is one octave (`1/2 <= m < 1`) or two (`1/4 <= m <
+//! 1`). In it both outputs are `c0 + c1 s + c2 s^2 + ...` in the distance `s = 1 - m` from the segment's upper end, with gaps
+//! between the powers: 1, 2, 4 or 1, 2, 6 instead of 1, 2, 3. Over two octaves, a press is close to `m^p` with `p` from 0.3 to 1.3.
+//! For such a curve, a third coefficient on `s^4` leaves half the error of one on `s^3` at the same cost, since `s^4` is one
+//! squaring.
 //!
 //! Coefficients are 16-bit numbers, two to a word, and a product with one is a single instruction. A segment's sum
 //! is scaled by the square root of the octave (the shift grows by one where `y` shrinks to a quarter), which is about how both

@@ -1,5 +1,5 @@
-//! Whether tables ever fall, shown without evaluating every input: a stretch of a segment is passed at once where its sum
-//! grows by more at each count than rounding can take away, and count by count where it does not.
+//! Proves that tables never fall, without evaluating every input. A part of a segment is accepted at once if its sum grows by more
+//! at each count than rounding can take away. Otherwise it is checked count by count.
 //!
 //! Within a segment an output is its sum `S`, shifted, and shifting keeps the order. With `s` the distance from the segment's
 //! upper end and `c` its coefficients,

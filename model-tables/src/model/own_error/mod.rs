@@ -1,7 +1,7 @@
-//! The error of a model itself: how far it is from a better one of the same fingertip.
+//! The error of a model itself: its difference from a better model of the same fingertip.
 //!
 //! A membrane is compared with the solid of the same wall, inflated to the same pole stretch; a solid with a finer mesh. Both are
-//! read as the chip reads them: the state of the same pressure rise.
+//! compared as the chip reads them, at the same pressure rise.
 
 use super::{Fingertip, Kind, ModelError};
 use crate::curve::Contact;

@@ -1,6 +1,6 @@
 //! A disc in time: a wall that may relax, under a pressure that changes step by step.
 //!
-//! Nothing here is static: a step of time begins from the state before it, is solved for one pressure or for several in turn, and is taken.
+//! A time step begins from the previous state, is solved for one pressure or for several in turn, and is then accepted.
 
 use super::path::{held, touches_frame};
 use super::{Clamped, DiscDesign, DiscEnd, DiscError, DiscState, FarSide, Found};

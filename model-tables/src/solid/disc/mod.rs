@@ -1,9 +1,10 @@
 //! The feedback actuator as a solid: a flat disc clamped at its rim, with the fluid's pressure under it.
 //!
-//! What is over it, see [`FarSide`], takes its force: nothing, a rigid plate at a gap, or a foundation whose pressure is in proportion to how far it is
-//! pushed in (Winkler), per undeformed area. The clamp holds the rim over the whole thickness; its frame is flush with the disc's outer face.
+//! Its force acts on the far side, see [`FarSide`]: nothing, a rigid plate at a gap, or a foundation whose pressure is proportional
+//! to its deflection (Winkler), per undeformed area. The clamp holds the rim over the whole thickness; its frame is flush with the
+//! disc's outer face.
 //!
-//! The path goes by pressure from zero. A held pressure has no state beyond the greatest that the disc stands.
+//! The path goes by pressure from zero. There is no state at a held pressure above the maximum pressure of the disc.
 
 mod error;
 mod in_time;

@@ -1,8 +1,8 @@
 //! States of a disc by the fluid's pressure, each from those before it.
 //!
-//! A step must pass what a step of a [press](crate::solid::path) must: its state is a minimum of the energy at a held pressure, it lies where the states
-//! before it point to, and the energy stored grows by the fluid's work. Steps are halved where they fail, and grow while they pass
-//! easily. Indentation's place is the pressure's: states follow it by their own factors.
+//! A step must pass the same checks as a step of a [press](crate::solid::path). Its state is a minimum of the energy at a held
+//! pressure, it is where the previous states predict it, and the stored energy grows by the fluid's work. Steps are halved if they
+//! fail, and grow while they pass easily. The pressure takes the place of the indentation: states follow it by their own factors.
 
 use super::error::DiscEnd;
 use crate::solid::Failure;

@@ -1,4 +1,4 @@
-//! Where a fingertip's fluid goes in time: an actuator, and the gas and the tubing of the line.
+//! The volumes that a fingertip's fluid moves into in time: an actuator, and the gas and the tubing of the line.
 //!
 //! `V_tip(P, H) + V_actuator(P) + V_gas(P) + c P = const` at the end of each step. The actuator's volume is a line, its
 //! tangent; the fingertip is solved with that as a compliance, until both have one pressure (Newton's method).

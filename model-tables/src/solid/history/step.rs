@@ -1,4 +1,4 @@
-//! One step of time: predicted, solved, judged and taken.
+//! One time step: predicted, solved, checked and accepted.
 
 use super::{
     Drive, ENERGY_TOLERANCE, FIRST_ENERGY_TOLERANCE, FIRST_TRAVEL, FORCE_ITERATIONS, FORCE_TOLERANCE,
