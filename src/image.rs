@@ -1,4 +1,4 @@
-//! The design this image is built for: what the build script solved and wrote.
+//! The design of this image, as the build script solved and wrote it.
 
 use crate::signal::design::Parameters;
 use model_tables::constants::DesignConstants;

@@ -1,17 +1,17 @@
 //! Contact force and indentation of a fluid-filled fingertip, from the pressure in its fluid.
 //!
-//! A sample's way: [`transducer`] -> [`signal`] -> [`link`], and what accompanies it: [`storage`] and [`device`].
+//! Data path: [`transducer`] -> [`signal`] -> [`link`]; beside it: [`storage`] and [`device`].
 //!
 //! | module | what | imports |
 //! |---|---|---|
 //! | [`units`] | the quantities between the stages | |
-//! | [`status`] | why there is no reading, and what qualifies one | |
-//! | [`transducer`] | a part's words -> pressure | `units`, `status` |
+//! | [`status`] | faults (reasons for no reading) and warnings | |
+//! | [`transducer`] | codes of a part -> pressure | `units`, `status` |
 //! | [`signal`] | pressure -> force and indentation with their 1-sigma | and `transducer` |
 //! | [`link`] | reports and commands as bytes | and `signal` |
 //! | [`storage`] | the calibration in flash | and `link` |
-//! | [`device`] | commands, resets, tasks that must report | all of these |
-//! | `image` | the design that this build is for (feature `design`), or the tips of a hand | and `signal`, of a hand `device` |
+//! | [`device`] | commands, resets, task monitor | all of these |
+//! | `image` | the design of this build (feature `design`), or the tips of a hand | and `signal`, of a hand `device` |
 //! | `board` | pins, clocks and interrupts, on the chip only | `units`, `status`, `transducer`, `image` |
 //!
 //! Integers only. No module but `board` knows a clock or a bus: time and samples are arguments.

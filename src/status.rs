@@ -1,5 +1,4 @@
-//! What everything else imports: why there is no reading, what qualifies one, whether something touches, and how a board
-//! came to run.
+//! Status types that all other modules import: faults (reasons for no reading), warnings, touch, and the cause of the last reset.
 
 use core::fmt;
 

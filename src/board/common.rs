@@ -1,4 +1,4 @@
-//! What every board gives the tasks, and how it is set up.
+//! The objects that every board gives to the tasks, and their set-up.
 
 use super::chosen::{
     BAUD, CALIBRATION, Interrupts, Pins, Region, SERIAL_CLOCK, WATCHDOG, clocks, guard_crystal, region,

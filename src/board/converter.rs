@@ -1,5 +1,5 @@
-//! The chip's converter, free-running, its DMA filling a ring of two blocks without an interrupt: the clock, of the same
-//! oscillator, tells when a block is there.
+//! The chip's free-running converter. Its DMA fills a ring of two blocks without an interrupt. The clock, from the same oscillator,
+//! shows when a block is complete.
 
 use super::chip;
 use crate::image::ImageDesign;

@@ -1,5 +1,5 @@
-//! The STM32F4's flash has no error correction (RM0090 3): what is half done reads as some bits or other, and the check
-//! of a record finds it.
+//! The STM32F4's flash has no error correction (RM0090 3). An interrupted write reads as arbitrary bits, and the check of a record
+//! detects it.
 
 /// Nothing to forget.
 pub fn begin() {}

@@ -1,9 +1,9 @@
 //! The error correction of the STM32G4's flash, from the manual alone: nothing here was tried on hardware.
 //!
-//! Each double word has a code beside it, as on the STM32L4. One error is corrected; at two the read gives arbitrary data, `FLASH_ECCR`
-//! keeps ECCD and the address, and the flash raises the non-maskable interrupt until ECCD is cleared (RM0440 3.3.4). The interrupt is no
-//! fault of the read: it comes some cycles later, and the code goes on behind the read. So the reader asks afterwards ([`failed`]), when
-//! the handler ([`take_failure`]) has run or is due. The address is within the bank that `BK_ECC` names.
+//! Each double word has a code beside it, as on the STM32L4. One error is corrected. With two errors the read gives arbitrary data,
+//! `FLASH_ECCR` keeps ECCD and the address, and the flash raises the non-maskable interrupt until ECCD is cleared (RM0440 3.3.4).
+//! The interrupt comes some cycles after the read, and the code continues behind the read. So the reader asks afterwards
+//! ([`failed`]), when the handler ([`take_failure`]) has run or is pending. The address is within the bank that `BK_ECC` names.
 
 use super::chosen::{CALIBRATION, SLOT};
 use core::sync::atomic::{AtomicBool, Ordering};

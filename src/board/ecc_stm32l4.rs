@@ -1,10 +1,10 @@
 //! The error correction of the STM32L4's flash, from the manuals alone: nothing here was tried on hardware.
 //!
-//! Each double word has a code beside it. One error is corrected; at two, as a double word has whose programming or
-//! erasure was cut, the read gives arbitrary data, `FLASH_ECCR` keeps ECCD and the address, and the flash raises the
-//! non-maskable interrupt until ECCD is cleared (RM0351 3.3.2; RM0394 is taken to say the same for the STM32L432). The
-//! interrupt is no fault of the read: it comes some cycles later, and the code goes on behind the read. So the reader
-//! asks afterwards ([`failed`]), when the handler ([`take_failure`]) has run or is due.
+//! Each double word has a code beside it. One error is corrected. With two errors, as after an interrupted programming or erasure,
+//! the read gives arbitrary data, `FLASH_ECCR` keeps ECCD and the address, and the flash raises the non-maskable interrupt until
+//! ECCD is cleared (RM0351 3.3.2; RM0394 is taken to say the same for the STM32L432). The interrupt comes some cycles after the
+//! read, and the code continues behind the read. So the reader asks afterwards ([`failed`]), when the handler ([`take_failure`])
+//! has run or is pending.
 
 use super::chosen::{CALIBRATION, SLOT};
 use core::sync::atomic::{AtomicBool, Ordering};

@@ -1,5 +1,5 @@
-//! The bus to a transducer: set up anew for every transaction, so that nothing a line has done leaves the chip's end
-//! stuck (an I2C of the STM32F4 that was disturbed says busy until it is reset), and broken off when it takes too long.
+//! The bus to a transducer. It is set up again for every transaction, so that a disturbed line cannot block the peripheral: an I2C
+//! of the STM32F4 that was disturbed reports busy until it is reset. A transaction that takes too long is aborted.
 
 use super::chosen::{BusInterrupts, BusPins};
 use crate::transducer::bus::{Bus, OPERATION_LIMIT};

@@ -1,5 +1,5 @@
-//! The flash of the calibration, with an end to every wait: a memory that never says that it is ready is one that
-//! failed. What cannot be read is an error, and never what the caches hold from before.
+//! The flash of the calibration. Every wait has a time limit: a memory that does not become ready in time has failed. A place that
+//! cannot be read gives an error, never old data from the caches.
 
 use super::ecc;
 use embassy_stm32::pac::FLASH;

@@ -1,4 +1,4 @@
-//! What a board's table of pins and peripherals is made of.
+//! The macro and the types of a board's table of pins and peripherals.
 
 /// A pin that the converter reads.
 #[cfg(transducer = "ratiometric")]

@@ -1,5 +1,5 @@
-//! The converter of the STM32L4 and the STM32G4, read by channel 1 of DMA1 into a ring: the two families have the same blocks, and route
-//! the one to the other in their own way.
+//! The converter of the STM32L4 and the STM32G4, read by channel 1 of DMA1 into a ring. The two families have the same peripherals,
+//! but route the converter's requests to the DMA differently.
 
 use super::chip::{route_converter, stop_conversions};
 use embassy_stm32::pac;

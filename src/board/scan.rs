@@ -1,5 +1,5 @@
-//! The chip's converter as a hand has it: free-running scans of its tips' channels and the internal reference, the DMA filling
-//! a ring of two blocks of scans.
+//! The chip's converter for a hand: free-running scans of the tips' channels and the internal reference. The DMA fills a ring of
+//! two blocks of scans.
 
 use super::chip;
 use crate::image::{CHANNELS, PERIOD, ROW, ROWS, SCANS, TIPS};

@@ -1,5 +1,5 @@
-//! The tips of a hand between their samples and the line: what [`Device`] is for one fingertip. Each tip has its own zero, faults
-//! and answers, and a calibration that is stored beside the others'; the reports of one instant share a frame and a time.
+//! The tips of a hand between their samples and the line: the counterpart of [`Device`] for several fingertips. Each tip has its
+//! own zero, faults, answers and stored calibration. The reports of one instant share a frame and a time.
 
 use crate::device::logic::{Counters, Device, ToStore};
 use crate::link::command::{Command, Request};

@@ -1,5 +1,5 @@
-//! The zeros of a hand's tips, in memory that a reset keeps: beside the [`CrashRecord`](crate::device::task_monitor::CrashRecord),
-//! which has room for one.
+//! The zeros of a hand's tips, in memory that survives a reset, beside the
+//! [`CrashRecord`](crate::device::task_monitor::CrashRecord), which has room for one.
 
 use crate::signal::zero::Zero;
 use crate::units::Pressure;

@@ -1,5 +1,5 @@
-//! Everything between a sample and the line that is no wire and no clock: reports at the rate asked for, hellos,
-//! commands and what comes of them.
+//! The logic between a sample and the line, without hardware and clock: reports at the requested rate, hellos, commands and their
+//! outcomes.
 
 use crate::device::task_monitor::Start;
 use crate::link::command::{Command, CommandKind, Outcome, Request};

@@ -1,10 +1,10 @@
-//! Who watches the tasks, what is remembered across a reset, and when resets stop.
+//! Monitors the tasks, keeps a record across a reset, and limits resets.
 //!
 //! - The watchdog is fed only while every task has reported within its time ([`TaskMonitor`]).
-//! - What ended a run is left in memory that a reset keeps ([`CrashRecord`]), with the zero in use.
-//! - Resets in a row that nobody asked for end in a board that measures nothing and says so ([`CrashRecord::start`]).
+//! - The cause of the end of a run, and the zero in use, are kept in memory that survives a reset ([`CrashRecord`]).
+//! - After too many unrequested resets in a row, the board measures nothing and reports this ([`CrashRecord::start`]).
 //!
-//! A transducer that does not answer is the matter of its [`supervisor`](crate::transducer::supervisor).
+//! The [`supervisor`](crate::transducer::supervisor) handles a transducer that does not answer.
 
 use crate::signal::zero::Zero;
 use crate::status::{LastFault, ResetCause, code_of, named_by};

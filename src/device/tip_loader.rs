@@ -1,9 +1,9 @@
-//! What a board does with the commands that load a tip's data (feature `load-tip`): policy over the two [slots](TipSlots), without
-//! a clock or a line of its own.
+//! The policy for the commands that load a tip's data (feature `load-tip`), over the two [slots](TipSlots), without a clock or a
+//! line.
 //!
-//! Arm, begin, chunks, verify, activate: each step is refused where the one before it is missing. What is activated or rolled back
-//! to is used from a restart on, which the caller makes once the answer is on the line: a signal path has one design as long as it
-//! lives.
+//! The steps are arm, begin, chunks, verify and activate. Each step is refused if the previous one is missing. An activated or
+//! rolled back tip is in use after a restart, because a signal path has one design for its whole life. The caller restarts once the
+//! answer is on the line.
 
 use crate::link::load::{CHUNK, LoadCommand, LoadOutcome, LoadReply, LoadRequest, Piece, READ_BACK, refused};
 use crate::signal::calibration::Calibration;

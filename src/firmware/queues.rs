@@ -1,4 +1,4 @@
-//! What the tasks hand to each other: frames to be sent, commands, what is to be stored; and who reported when.
+//! Queues between the tasks: frames to send, commands, and calibrations to store; and the time of each task's last report.
 
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering};

@@ -1,5 +1,6 @@
-//! Memory that a reset keeps, and the handlers that leave a crash record in it: the one file of the firmware with unsafe
-//! code. Unsafe are the section, which no start-up clears, so that any bits may lie there, and the handler's signature.
+//! Memory that survives a reset, and the handlers that leave a crash record in it. This is the only file of the firmware with
+//! unsafe code. Two items are unsafe: the section, which start-up does not clear, so that it may have any bits, and the signature
+//! of the handler.
 #![allow(unsafe_code)]
 
 use core::cell::UnsafeCell;

@@ -1,4 +1,4 @@
-//! What the signal task watches beside its samples: those that are missing, tasks that are late, and the watchdog.
+//! Monitoring by the signal task, beside its samples: missing samples, late tasks, and the watchdog.
 
 use crate::firmware::queues::TASK_MONITOR;
 use crate::firmware::retained;

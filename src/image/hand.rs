@@ -1,4 +1,4 @@
-//! The hand this image is built for: what the build script solved and wrote, a set of tables for each design, and its tips.
+//! The hand of this image, as the build script solved and wrote it: a set of tables for each design, and the tips.
 
 use crate::device::hand::{HandNames, HandTip};
 use crate::device::logic::{Beginning, Device};

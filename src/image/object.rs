@@ -1,4 +1,4 @@
-//! The design of an image with `[object]`: tables of what is touched, blended when that changes.
+//! The design of an image with `[object]`: tables of the touched object, blended when the object changes.
 
 use super::ImageDesign;
 use super::generated::{BALL, LAW, START, TABLES};

@@ -1,7 +1,7 @@
-//! What the host may ask of the board. `PROTOCOL.md` beside this file has the layout of every body.
+//! Commands from the host to the board. `PROTOCOL.md` beside this file has the layout of every body.
 //!
-//! Each command is answered once: at once, or when what it asks for has succeeded or failed. A frame that is no
-//! command is counted, and not answered: its sender cannot be known.
+//! Each command is answered once: at once, or when its action has succeeded or failed. A frame that is not a command is counted and
+//! not answered, because its sender is not known.
 
 use crate::link::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, unstuff};
 use crate::signal::calibration::LARGEST_GAIN;

@@ -1,5 +1,5 @@
-//! Frames waiting for the line. They are numbered and built where they wait, and handed over without being copied; when
-//! there is no room the oldest goes, and is counted.
+//! Frames waiting for the line. They are numbered and built in place, and handed over without a copy. If there is no room, the
+//! oldest frame is dropped and counted.
 
 use crate::link::telemetry::{self, Message};
 use crate::link::wire::Encoded;

@@ -1,5 +1,5 @@
-//! What the board says: a report each period, a hello once a second, an answer to each command. `PROTOCOL.md` beside
-//! this file has the layout of every body.
+//! Frames from the board: a report each period, a hello once a second, an answer to each command. `PROTOCOL.md` beside this file
+//! has the layout of every body.
 //!
 //! A frame of another version, an unknown kind, code or length is discarded as a whole.
 

@@ -1,7 +1,7 @@
-//! Version 3 of the protocol: what a board of several fingertips (tips) sends and takes. `PROTOCOL.md` beside this file has the
+//! Version 3 of the protocol: frames and commands of a board with several fingertips (tips). `PROTOCOL.md` beside this file has the
 //! layout of every body.
 //!
-//! The readings of one instant share one frame. What qualifies them, faults and answers are those of version 2.
+//! The readings of one instant share one frame. Warnings, faults and answers are those of version 2.
 
 mod deviation;
 mod read;

@@ -1,8 +1,8 @@
-//! Bytes on the line, both ways: a body and its CRC, stuffed with COBS so that no byte of them is zero, and one zero
-//! byte at the end. A reader that joins in the middle, or meets noise, is in step again after the next zero.
+//! Bytes on the line, in both directions: a body and its CRC, encoded with COBS so that none of their bytes is zero, and one zero
+//! byte at the end. A reader that starts in the middle, or receives noise, is synchronised again after the next zero.
 //!
-//! What bodies say is the matter of [`telemetry`](super::telemetry) and [`command`](super::command); `PROTOCOL.md`
-//! beside this file is the page to write a client from.
+//! [`telemetry`](super::telemetry) and [`command`](super::command) define the bodies; `PROTOCOL.md` beside this file is the page to
+//! write a client from.
 
 use core::fmt;
 use core::ops::Deref;

@@ -1,4 +1,4 @@
-//! What is known of this one fingertip beside its design: values that the calibration record stores.
+//! The values of one fingertip besides its design; the calibration record stores them.
 
 use crate::signal::scale::Scale;
 use crate::signal::temperature;

@@ -1,4 +1,4 @@
-//! The fingertip that a signal path is for: folded into the code of an image, or [loaded](crate::signal::loaded_design) at run time.
+//! The fingertip of a signal path: compiled into an image, or [loaded](crate::signal::loaded_design) at run time.
 
 use crate::signal::filter::StepLimits;
 use crate::signal::fluid::Fall;

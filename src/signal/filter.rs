@@ -1,13 +1,12 @@
-//! Pressure rise -> the same with less noise and without outliers, exactly one block later.
+//! Pressure rise -> pressure rise with less noise and without outliers, exactly one block later.
 //!
-//! The block average is the main filter. This one adds the shortest symmetric kernel, 1-2-1 over 4: white noise
-//! falls to sqrt(6)/4 = 0.61 of itself, a ramp passes unchanged, and the delay is one block at every
-//! frequency, so a time stamp can take it back exactly.
+//! The block average is the main filter. This one adds the shortest symmetric kernel, 1-2-1 over 4: white noise falls to sqrt(6)/4
+//! = 0.61 of itself, and a ramp passes unchanged. The delay is one block at every frequency, so the time stamp corrects it exactly.
 //!
-//! The block that is reported has one neighbour on each side, which tells an outlier (flipped bits) from a press
-//! without any further delay: a fingertip does not step off its line and back onto it within two blocks. Such a sample
-//! is replaced by what its neighbours say, and counted. Where a step may be a press or not, or is faster than any
-//! press, there is [`Fault::Jump`] and no number.
+//! The reported block has one neighbour on each side. They distinguish an outlier (flipped bits) from a press without further
+//! delay, because the pressure of a press does not step away and back within two blocks. An outlier is replaced by a value from its
+//! neighbours, and counted. If a step cannot be classified, or is faster than any press, the result is [`Fault::Jump`] and no
+//! number.
 
 use crate::status::{Fault, Warnings};
 use crate::units::Pressure;

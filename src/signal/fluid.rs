@@ -1,13 +1,12 @@
-//! Is the fluid still what the model was solved for? Suspicions, latched until someone clears them.
+//! Checks whether the fluid is still that of the model. Suspicions are latched until a command or a reset clears them.
 //!
-//! - A **leak** lowers the rest pressure. Quiet windows one after the other lie under the lowest zero to be expected by more
-//!   than drift explains, and for longer than a wall takes to creep back. To a gauge transducer that is the zero that was stored, or
-//!   the design's. To an absolute one a leak, the weather and a climb look alike: only below the rest pressure in the
-//!   thinnest air is it none of these. So it tells a leak where the fingertip rests far above the air, and is silent
-//!   where it rests near it.
-//! - A **bubble** makes the fingertip softer, most of all at a light touch, where the pressure barely rises at first.
-//!   Pressure alone cannot tell that from a lighter touch, so it is judged only when someone says how deep the
-//!   fingertip is pressed (a self-test against a stop).
+//! - A **leak** lowers the rest pressure. It is suspected if successive quiet windows are below the lowest expected zero by more
+//!   than drift explains, for longer than a wall takes to creep back. For a gauge transducer, the expected zero is the stored one,
+//!   or the design's. An absolute transducer cannot distinguish a leak from weather or altitude, except below the rest pressure in
+//!   the thinnest air. It therefore detects a leak if the rest pressure is far above the air pressure, and cannot detect it if the
+//!   two are close.
+//! - A **bubble** makes the fingertip softer, most of all at a light touch, where the pressure barely rises at first. Pressure
+//!   alone cannot distinguish this from a lighter touch, so it is checked only at a known indentation (a self-test against a stop).
 
 use crate::signal::zero::limits::Limits;
 use crate::status::Warnings;

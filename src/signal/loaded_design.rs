@@ -1,4 +1,4 @@
-//! A design that is known at run time only: that of a block of a tip's data.
+//! A design that is known only at run time, from a block of a tip's data.
 
 use crate::signal::calibration::Calibration;
 use crate::signal::design::{Design, NoSuchObject, Parameters};

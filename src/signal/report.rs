@@ -1,4 +1,4 @@
-//! What the signal path gives: values with a status, or the reason why there are none.
+//! Results of the signal path: values with a status, or the reason why there are none.
 
 use crate::status::{Fault, Status, Touch, Warnings};
 use crate::units::Microseconds;

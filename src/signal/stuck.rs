@@ -1,6 +1,6 @@
-//! The same word for too long: a transducer whose noise would move it has stopped measuring.
+//! Detects a code that does not change for too long: noise would change it if the transducer still measured.
 //!
-//! Only for words so fine that noise must move them (24 bits); an averaged converter of 12 bits may well repeat.
+//! This applies only to codes so fine that noise must change them (24 bits). An averaged converter of 12 bits can repeat a code.
 
 use crate::status::Fault;
 use crate::units::Microseconds;

@@ -1,8 +1,8 @@
-//! The transducer's temperature -> what it adds to the zero, for a transducer that measures one.
+//! Temperature of the transducer -> offset of the zero, for a transducer that measures its temperature.
 //!
-//! The coefficient comes from the calibration record, where two saved zeros at different temperatures give it.
-//! In contact the correction is held: then nothing but pressure moves the force. What that misses is part of the
-//! 1-sigma, and reported when it could pass for a touch.
+//! The coefficient comes from the calibration record, where two saved zeros at different temperatures give it. In contact the
+//! correction is held, so that only pressure changes the force. The error of this is part of the 1-sigma, and is reported if it is
+//! as large as a touch.
 
 use crate::status::Touch;
 use crate::units::{Centidegrees, Millipascals, saturate};

@@ -1,5 +1,5 @@
-//! Pressure rise -> is the fingertip touched? Two thresholds, so that noise between them changes nothing. Both lie higher by what
-//! the zero may be above its value; between them, nobody can tell.
+//! Pressure rise -> touched or not. There are two thresholds, so that noise between them changes nothing. Both are raised by the
+//! largest error of the zero. Between them, touch is unknown.
 
 use crate::status::Touch;
 use crate::units::Pressure;

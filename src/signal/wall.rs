@@ -1,12 +1,13 @@
-//! Pressure rise -> force and indentation with their 1-sigma: of an elastic wall by the tables, of a relaxing one by what it has been
-//! through.
+//! Pressure rise -> force and indentation with their 1-sigma: for an elastic wall from the tables, for a relaxing one also from its
+//! past.
 //!
-//! A relaxing wall's past is not known at the start, after a gap in the samples, or where the transducer was at its lower end. Two states
-//! then bracket it: one goes on as if no time had passed (at the start: as if just pressed), the other is that of a wall that has settled at
-//! this pressure. Values are the middle of both, half of what they are apart is in the 1-sigma, until they have come together.
+//! A relaxing wall's past is not known at the start, after a gap in the samples, or where the transducer was at its lower end. Two
+//! states then bracket it. One continues as if no time had passed (at the start: as if just pressed). The other is that of a wall
+//! that has settled at this pressure. The values are the mean of both, and the 1-sigma includes half of their difference, until the
+//! two states agree.
 //!
-//! The wall's temperature is not measured. What [`WallSeries::temperature_gain`] allows for, through elastic pressure and tables, is in the
-//! 1-sigma too.
+//! The wall's temperature is not measured. The 1-sigma includes its effect from [`WallSeries::temperature_gain`], through elastic
+//! pressure and tables.
 
 use crate::signal::contact::{contact, through_tables};
 use crate::signal::design::{Design, Rise, Wall};

@@ -1,15 +1,15 @@
 //! The zero of a fingertip: a value, and a bound of its error. Touch, tare, undo, drift, leak and every 1-sigma come from it.
 //!
-//! The `estimator` sees the pressure in quiet windows. It keeps the lowest and the highest pressure that the true zero can
-//! have (`interval`). Both move apart with the drift that the transducer may have (`limits`), and together only with
-//! evidence. A reading is ok while the bound is at most six noise floors.
+//! The `estimator` sees the pressure in quiet windows. It keeps the lowest and the highest pressure that the true zero can have
+//! (`interval`). The two move apart with the drift of the transducer (`limits`), and together only with evidence. A reading is ok
+//! while the bound is at most six noise floors.
 //!
 //! # What it assumes
 //!
-//! 1. Nothing presses with less than nothing. A quiet window below the interval is therefore evidence: the true zero is not
-//!    higher. A wall that creeps back from below its rest breaks this for a while; the bound then covers it.
-//! 2. The zero drifts by no more than its stated rate while the fingertip is pressed. Untouched, faster drift shows: up, it
-//!    looks like a slow press, and the bound covers both; down, it is evidence.
+//! 1. A press never lowers the pressure. A quiet window below the interval is therefore evidence that the true zero is not higher.
+//!    A wall that creeps back from below its rest violates this for a while; the bound then includes it.
+//! 2. The zero drifts at most at its stated rate while the fingertip is pressed. Faster drift of an untouched fingertip is visible.
+//!    Upwards, it looks like a slow press, and the bound includes both; downwards, it is evidence.
 //! 3. The air around an absolute part is within [`AIR`](model_tables::constants::AIR), changes by weather at no more than its
 //!    stated rate while the fingertip is pressed, and by a lift only while nothing presses.
 //! 4. Who switches on or pushes the button leaves the fingertip alone. If not, a gauge part loses at most

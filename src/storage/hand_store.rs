@@ -1,9 +1,9 @@
 //! The calibrations of a hand in flash: a [log](crate::storage::log) of [records](HandRecord), each of all tips. A save changes one
-//! tip and keeps what is stored of the others, also what is of another tip than is there now. What is stored already is not
-//! stored again.
+//! tip and keeps the stored data of the others, even if they belong to a previous tip. Data that are already stored are not written
+//! again.
 //!
-//! Where a later record may have been lost, every tip is told so ([`Stored::Unreadable`]); each one's own save ends it for that tip
-//! alone.
+//! If a later record may have been lost, every tip reports it ([`Stored::Unreadable`]). A save of a tip ends this for that tip
+//! only.
 
 use crate::signal::calibration::Calibration;
 use crate::status::Stored;

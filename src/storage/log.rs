@@ -1,17 +1,17 @@
 //! Records in flash: two slots of erasable memory, each a log of records; the highest sequence number is in use.
 //!
-//! A new record goes behind the last one in its slot. When that is full the *other* slot is erased and written, never
-//! the one that holds the record in use: power may fail at any write or erasure, and what is read afterwards is
-//! the old record or the new one. Every record is read back before it counts. One erasure frees a slot for a slot full of
-//! saves, and [`ENDURANCE`] ends it before the memory does.
+//! A new record goes behind the last one in its slot. When that is full the *other* slot is erased and written, never the one that
+//! holds the record in use: power may fail at any write or erasure, and what is read afterwards is the old record or the new one.
+//! Every record is read back before it counts. One erasure makes room for a slot full of saves. [`ENDURANCE`] stops saves before
+//! the memory wears out.
 //!
-//! Memory with error correction refuses to read a unit whose programming or erasure was cut. A place with such a unit
-//! holds no record and is passed over: saves go on behind it, and the next erasure of its slot heals it. A place that
-//! may have held a whole record, newer than the one in use, makes the state [`Stored::Unreadable`] until the next
-//! save. A record is written in order, so a place that ends blank never held one.
+//! Memory with error correction refuses to read a unit whose programming or erasure was interrupted. A place with such a unit has
+//! no record and is skipped. Saves continue behind it, and the next erasure of its slot makes it usable again. A place that may
+//! have held a whole record, newer than the one in use, makes the state [`Stored::Unreadable`] until the next save. A record is
+//! written in order, so a place that ends blank never held one.
 //!
-//! Own code and no key-value crate: one value and no keys, so that there is nothing to collect; what is proven is the
-//! whole of it, by a sweep over every cut (`host-tests/tests/calibration_store.rs`, `hand_store.rs`).
+//! This is own code and no key-value crate, because there is one value and no key, so nothing to collect. All of it is tested with
+//! a power cut at every step (`host-tests/tests/calibration_store.rs`, `hand_store.rs`).
 
 use crate::status::Stored;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};

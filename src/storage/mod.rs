@@ -1,5 +1,5 @@
-//! What the flash keeps: the calibration, one [`record`] of it and the [`store`] of one fingertip, both over a [`log`] in two slots; of a hand
-//! the same of all its tips; and with the feature `load-tip` the two slots of a loaded tip.
+//! Data in the flash: the calibration, with its [`record`] and the [`store`] of one fingertip, over a [`log`] in two slots. A hand
+//! has the same for all its tips. With the feature `load-tip` there are two slots of a loaded tip.
 
 #[cfg(tips)]
 pub mod hand_record;

@@ -1,5 +1,5 @@
-//! The calibration of one fingertip in flash: a [log](crate::storage::log) of [records](Record), and whether the last of them is for
-//! this design. What is stored already is not stored again.
+//! The calibration of one fingertip in flash: a [log](crate::storage::log) of [records](Record), and whether the last of them is
+//! for this design. A calibration that is already stored is not written again.
 
 use crate::signal::calibration::Calibration;
 use crate::status::Stored;

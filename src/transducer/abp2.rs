@@ -1,7 +1,7 @@
 //! Honeywell ABP2 on I2C: gauge pressure, 24 bits, compensated by the part itself (datasheet 32350268, section 5).
 //!
-//! `AA 00 00` starts a measurement; seven bytes answer: status, pressure and temperature, the highest byte first. No
-//! command resets the part and none identifies it: what tells it from another is a status that only it gives.
+//! `AA 00 00` starts a measurement; seven bytes answer: status, pressure and temperature, the highest byte first. The part has no
+//! command for a reset or for its identity. It is recognised by a status that no other part gives.
 
 use crate::status::Fault;
 use crate::transducer::bus::{self, Bus};

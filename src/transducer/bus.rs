@@ -1,4 +1,4 @@
-//! What a driver needs of its bus, and what an error on it means.
+//! The interface of a driver to its bus, and the meaning of an error on it.
 
 use crate::status::Fault;
 use embedded_hal_async::i2c::{Error, ErrorKind, I2c};

@@ -1,10 +1,10 @@
-//! Codes of the converter -> the sum of one block of them, or why the transducer cannot be read.
+//! Codes of the converter -> the sum of one block of codes, or the reason why the transducer cannot be read.
 //!
 //! The sum is the block's average without a division: later scales are per block. Averaging is what brings
 //! the converter's 12 bits and the transducer's noise down to the resolution wanted, and it has no gain error
 //! and a delay of half a block.
 //!
-//! A block is read where the converter's DMA wrote it, two codes a word: copying it would cost more than adding it up.
+//! A block is read in place, where the converter's DMA wrote it, two codes a word. A copy would cost more than the sum.
 
 use crate::status::Fault;
 use core::sync::atomic::{AtomicU32, Ordering};

@@ -1,10 +1,11 @@
 //! Infineon DPS310 on I2C: absolute pressure, 30 to 120 kPa, so a light-touch part: in the densest air its range ends
 //! 12 kPa above it (datasheet V1.2 of 2020-10-15, whose sections are cited).
 //!
-//! A Goertek SPL06 answers with the same identity and the same coefficients, measures to 110 kPa only, and lacks the register
-//! that says which temperature sensor the coefficients are of: that reads as a sensor it must not be read with
-//! (Infineon/DPS310-Pressure-Sensor issue 20, `ArduPilot` pull request 32480). So a part is refused that does not name the
-//! sensor on the pressure element; a DPS310 calibrated for the other one, which the datasheet allows, is refused with it.
+//! A Goertek SPL06 answers with the same identity and the same coefficients, measures to 110 kPa only, and lacks the register that
+//! says which temperature sensor the coefficients are of: its coefficients would be used with the wrong sensor
+//! (Infineon/DPS310-Pressure-Sensor issue 20, `ArduPilot` pull request 32480). The driver therefore refuses a part that does not
+//! name the sensor on the pressure element. This also refuses a DPS310 that is calibrated for the other sensor, which the datasheet
+//! allows.
 //!
 //! One pressure and one temperature are commanded for each sample, so that the time of each is known, and the settings
 //! are read back with the words: a part that was reset by itself would go on with another scale.

@@ -1,7 +1,7 @@
-//! What every pressure transducer gives: a [`Sample`], or the reason why there is none.
+//! The result of every pressure transducer: a [`Sample`], or the reason why there is none.
 //!
-//! A driver knows its part and its bus, and neither clock nor policy: time limits on a bus operation are the
-//! bus's, retries and back-off the caller's, and a sample says how old it is in place of when it was taken.
+//! A driver knows its part and its bus, but no clock and no policy. The bus limits the time of an operation, and the caller does
+//! retries and back-off. A sample states its age in place of its time.
 
 use crate::status::{Fault, Warnings};
 use crate::units::{Centidegrees, Millipascals};

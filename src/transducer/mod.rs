@@ -1,4 +1,4 @@
-//! Pressure transducers: one file a part, on a bus or on the chip's converter, and what keeps each going.
+//! Pressure transducers on a bus or on the chip's converter, one file per part, and the supervisor that restarts them.
 
 pub mod abp2;
 pub mod bus;

@@ -1,8 +1,7 @@
 //! TE MS5837-02BA on I2C: absolute pressure up to 2 bar, gel-filled, made to be immersed (datasheet of 09/2017).
 //!
-//! Its sister of 30 bar carries the same version bits, where those are those of the 02BA01, and another scale: read by this
-//! part's formula, every pressure of it is a twentieth. Two things tell: its calibration word C1, and the air, which it
-//! reads as 5 kPa.
+//! The part of 30 bar has another scale, and the same version bits as the 02BA01. With the formula of this part, its pressures
+//! would read as a twentieth. It is recognised by its calibration word C1, and by the air, which would read as 5 kPa.
 //!
 //! The part gives two raw words and, once, six calibration words guarded by a CRC; the pressure is computed here,
 //! with the second-order compensation below 20 degC.

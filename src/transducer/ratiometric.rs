@@ -1,6 +1,6 @@
-//! A transducer whose voltage is a share of its supply, read by the chip's own converter: the sum of a block of codes
-//! -> gauge pressure. Where the supply is also the converter's reference, it cancels; where it is another, the board
-//! measures it too, in every second code, and it cancels by a division.
+//! A transducer whose voltage is a fraction of its supply, read by the chip's converter: the sum of a block of codes -> pressure.
+//! If the supply is also the converter's reference, it cancels. For another supply, the board measures it in every second code, and
+//! a division cancels it.
 
 use crate::status::Fault;
 use crate::transducer::counts::{self, Block, CountSum, Edges, PERIOD, Ring, Window};

@@ -1,10 +1,9 @@
 //! Ratiometric transducers of a hand, read by one converter that scans their channels: blocks of scans -> a sample of each, all of
 //! one instant, or why there is none.
 //!
-//! Each scan ends with the chip's internal reference. A scan that has shifted by a place, as the part's may after an overrun,
-//! puts another channel's code there: outside of [`REFERENCE`] it is a fault of every tip, and the converter is started anew. The
-//! check is blind while the code that comes to that place happens to be in the window: with 10 % to 90 % of the supply over
-//! 100 kPa, from 30.1 to 36.9 kPa.
+//! Each scan ends with the chip's internal reference. If a scan has shifted by one place, which can happen after an overrun,
+//! another channel's code is there. A code outside [`REFERENCE`] is a fault of every tip, and the converter is restarted. The check
+//! cannot detect the shift while that code is in the window: with 10 % to 90 % of the supply over 100 kPa, from 30.1 to 36.9 kPa.
 
 use crate::status::Fault;
 use crate::transducer::counts::{

@@ -1,13 +1,13 @@
-//! Keeps a transducer going: what is done after a fault, and how soon.
+//! Restarts a transducer after faults.
 //!
 //! | faults in a row | before the next sample |
 //! |---|---|
-//! | 1 | nothing: one disturbed transaction is over |
-//! | 2 | the part is started anew: reset, identity, calibration, settings |
-//! | 3 and more | a pause, the bus is freed, the part is started anew |
+//! | 1 | nothing: only one transaction was disturbed |
+//! | 2 | the part is restarted: reset, identity, calibration, settings |
+//! | 3 and more | a pause, the bus is cleared, the part is restarted |
 //!
-//! Every fault is handed on as soon as it is known. A pause is at most [`LONGEST_PAUSE`], so a part that comes back
-//! is noticed after that, its start and one conversion.
+//! Every fault is reported at once. A pause is at most [`LONGEST_PAUSE`]. A part that works again therefore gives a sample after at
+//! most this pause, its start and one conversion.
 
 use crate::status::Fault;
 use crate::transducer::driver::{Driver, Sample};

@@ -1,4 +1,4 @@
-//! Pressure -> pressure rise over the zero: the first zero, commanded ones, and what time and quiet windows do to them.
+//! Pressure -> pressure rise above the zero: the first zero, commanded zeros, and their change with time and quiet windows.
 //!
 //! | | gauge | absolute |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! What a zero is compared with: where it is expected, how far off it may be, and how fast it may move.
+//! The limits of a zero: its expected value, its largest deviation, and its largest rate of change.
 
 use crate::signal::touch::Thresholds;
 use crate::signal::uncertainty::Uncertainty;

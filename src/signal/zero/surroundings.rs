@@ -1,7 +1,7 @@
-//! What is measured around a fingertip -> how far its zero may have moved: the part's temperature, and the air that a host tells.
+//! Measured surroundings -> possible change of the zero: the part's temperature, and the air pressure that a host sends.
 //!
-//! Of the air between two telling only the weather is allowed for, and taken back with the next one; what lay between the last
-//! telling and the zero stays open.
+//! Between two air pressures from the host, only the weather is included, and the next one removes it again. The weather between
+//! the last air pressure and the zero stays included.
 
 use crate::signal::zero::limits::{FRACTION, Rates};
 use crate::units::{Centidegrees, Microseconds, Pressure, saturate};

@@ -1,4 +1,4 @@
-//! A zero that is being measured, at a start or by a command: what it waits for, and why it may not be taken.
+//! A zero that is being measured, at a start or by a command: the condition it waits for, and the reasons for a refusal.
 
 use crate::signal::zero::interval::Interval;
 use crate::units::Microseconds;

@@ -1,7 +1,7 @@
 //! Pressure samples -> the level of a stretch of them, whether it was quiet, and how far the pressure swings in it.
 //!
-//! A window has parts of [`PART`]. What the ranges of three parts one after the other have in common was passed three times within
-//! 48 ms: no hand presses and lets go so fast, but the hum of the mains does, and a motor. A ramp leaves nothing in common.
+//! A window has parts of [`PART`]. The common part of the ranges of three successive parts was passed three times within 48 ms. A
+//! hand cannot press and release so fast, but mains hum and a motor can. A ramp has no common part.
 
 use crate::units::{Microseconds, Pressure, saturate};
 
