@@ -243,8 +243,8 @@ const IN_TIME: &str = "\n## In real use, in time\n\n\
     **The truth is the product's own solid** in time, 2 x 60 elements: what real Agilus30 does is not in it. Of the elastic design it is\n\
     the same solid without a series, its stiffness as the absolute temperature. Errors are percent of the truth where that is 0.2 N or more; each press, hold and\n\
     release counts once, whatever it lasts. *Stated*: three deviations, and where the object is not told the widest of the band, where it is told\n\
-    the largest error of a blend in the certificate, and in time 7 % of the largest force and 2 % of the largest indentation so far. The wall's temperature is not\n\
-    stated on the wire, nor in that.\n\n";
+    the largest error of a blend in the certificate, and in time 7 % of the largest force and 2 % of the largest indentation so far. The deviation of a wall\n\
+    that relaxes holds a wall 2 K off; that of an elastic wall holds none of it.\n\n";
 
 /// As the campaign printed them.
 const GRASPS: &str = include_str!("grasps.md");
