@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Why there is no reading. A fault never becomes a number.
+/// Reasons for no reading. A fault never becomes a number.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Fault {
     /// The transducer's line rests at or above the top of its window: a broken wire, held up by the pull-up.
@@ -110,7 +110,7 @@ impl fmt::Display for Fault {
 
 impl core::error::Error for Fault {}
 
-/// What qualifies a reading, any number of reasons at once; none means it holds as it stands.
+/// Warnings of a reading, any number at once; without a warning the reading is ok.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Warnings(u16);
 
@@ -134,15 +134,14 @@ impl Warnings {
     /// The zero may be off by so much that it may pass for a touch, or hide one: drift since it was last seen untouched, or a
     /// rest pressure that rose slowly or fell. Ends with a tare.
     pub const ZERO_AGED: Self = Self(64);
-    /// The transducer's temperature changed in contact by so much that what its held compensation misses may pass
-    /// for a touch.
+    /// The transducer's temperature changed in contact. The error of its held compensation may be as large as a touch.
     pub const TEMPERATURE: Self = Self(128);
     /// The crystal failed: time comes from the chip's own oscillator and is a percent off.
     pub const CLOCK: Self = Self(256);
     /// The wall recovers from a press that it has left: the pressure is below the zero, the force 0 and the indentation an upper bound.
     pub const RECOVERING: Self = Self(512);
-    /// What a relaxing wall went through is not known: after a reset or a gap, or at the transducer's lower end. Half of what that leaves
-    /// open is in the 1-sigma.
+    /// The past of a relaxing wall is not known: after a reset or a gap, or at the transducer's lower end. Half of the resulting
+    /// difference is in the 1-sigma.
     pub const PAST_UNKNOWN: Self = Self(1024);
     /// The pressure swings to and fro by more than six noise floors allow, faster than a hand: hum of the mains, a motor, a
     /// vibration. The 1-sigma allows for it.
@@ -201,7 +200,7 @@ impl Warnings {
         named.map(|(_, word)| *word)
     }
 
-    /// Whether all of `those` are among these.
+    /// Whether these warnings include all of `those`.
     pub const fn contains(self, those: Self) -> bool {
         self.0 & those.0 == those.0
     }
@@ -219,7 +218,7 @@ impl fmt::Display for Warnings {
     }
 }
 
-/// How far to believe a report. Displays as `ok`, `warning: <reasons>` or `fault: <reason>`.
+/// Status of a report. Displays as `ok`, `warning: <reasons>` or `fault: <reason>`.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Status {
     /// The values hold.
@@ -278,7 +277,7 @@ impl Touch {
     }
 }
 
-/// Why the chip was reset last.
+/// Cause of the last reset of the chip.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub enum ResetCause {
     /// The chip does not say.
@@ -332,7 +331,7 @@ impl fmt::Display for ResetCause {
     }
 }
 
-/// What became of the stored calibration.
+/// State of the stored calibration.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub enum Stored {
     /// None was ever stored.
@@ -359,7 +358,7 @@ impl Stored {
     ];
 }
 
-/// What ended the run before this one.
+/// Cause of the end of the previous run.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub enum LastFault {
     /// Nothing that left a trace.

@@ -62,11 +62,11 @@ impl Clock {
     }
 }
 
-/// What the tasks get.
+/// The objects that the tasks get.
 pub struct Board {
     /// The time, from here on.
     pub clock: Clock,
-    /// What the transducer is on; `None` where nothing is measured.
+    /// The port of the transducer; `None` if nothing is measured.
     pub port: Option<Port>,
     /// The way out for frames.
     pub line: Line,
@@ -76,11 +76,11 @@ pub struct Board {
     pub memory: FlashMemory,
     /// Running from here on.
     pub watchdog: Watchdog,
-    /// Whether the crystal runs, where there is one; the chip's own oscillator, 1 % off, has taken its place if not.
+    /// Whether the crystal runs, if the board has one. If it does not run, the chip's own oscillator, 1 % off, is in use.
     pub crystal: bool,
 }
 
-/// What the transducer is on: the converter, ...
+/// The port of the transducer: the converter, ...
 #[cfg(transducer = "ratiometric")]
 pub type Port = AnaloguePort;
 
@@ -91,7 +91,7 @@ pub type Port = I2cBus;
 impl Board {
     /// Sets up clocks, pins and peripherals. Called once.
     ///
-    /// After `gave_up` nothing is measured, and what the transducer is on is left alone. `cause` is that of the last reset.
+    /// With `gave_up`, nothing is measured, and the port of the transducer is not set up. `cause` is that of the last reset.
     ///
     /// # Panics
     /// For faults of the board's file, found by running the image once.

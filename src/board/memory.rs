@@ -54,7 +54,7 @@ impl<F> RetryingFlash<F> {
     }
 }
 
-/// It refused, was not ready in time, or gave up correcting what was read.
+/// The memory refused, was not ready in time, or had an error that could not be corrected.
 #[derive(Debug)]
 pub struct MemoryFailure;
 

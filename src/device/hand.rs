@@ -141,7 +141,7 @@ const NO_REPORT: Report = Report {
     outcome: Err(Fault::Zeroing),
 };
 
-/// What a hand is called.
+/// Names of a hand and of its tips.
 #[derive(Clone, Copy, Debug)]
 pub struct HandNames<const TIPS: usize> {
     /// Hash of the hand: its tips, where they are, and their designs.
@@ -193,7 +193,8 @@ impl<const TIPS: usize> Hand<TIPS> {
         }
     }
 
-    /// Makes the [reports](Self::reports) of one instant; what goes on the line is given to `put`. Whether a tip's status changed.
+    /// Makes the [reports](Self::reports) of one instant. `put` gets the frames for the line. Returns whether a tip's status
+    /// changed.
     pub fn step(
         &mut self,
         tips: &mut [&mut dyn HandTip; TIPS],
@@ -229,8 +230,8 @@ impl<const TIPS: usize> Hand<TIPS> {
         &self.reports
     }
 
-    /// Does what is asked of a tip, or of all; whether there is such a tip. What has to be stored is given to `store`, with the
-    /// number of its tip.
+    /// Executes a command for a tip, or for all. Returns whether there is such a tip. `store` gets each calibration to store, with
+    /// the number of its tip.
     pub fn request(
         &mut self,
         tips: &mut [&mut dyn HandTip; TIPS],
@@ -263,7 +264,7 @@ impl<const TIPS: usize> Hand<TIPS> {
         true
     }
 
-    /// What came of storing a tip's calibration, and the number of the record that holds it.
+    /// Takes the outcome of storing a tip's calibration, and the number of its record.
     pub fn stored(
         &self,
         tips: &mut [&mut dyn HandTip; TIPS],

@@ -23,7 +23,7 @@ const HELLO_PERIOD: u64 = 1_000_000;
 /// months and not in days.
 const SAVE_PAUSE: u64 = 1_000_000;
 
-/// What a self-test found, one bit each; none: all is well.
+/// Findings of a self-test, one bit each; no bit: nothing found.
 pub mod findings {
     /// There are no readings.
     pub const NO_READING: u16 = 1;
@@ -54,14 +54,14 @@ pub struct Counters {
     pub commands_refused: u32,
 }
 
-/// What a board knows when it starts.
+/// State of a board at its start.
 #[derive(Clone, Copy, Debug)]
 pub struct Beginning {
-    /// Why the chip was reset.
+    /// Cause of the reset.
     pub reset_cause: ResetCause,
-    /// What the run before left.
+    /// Record of the previous run.
     pub start: Start,
-    /// What became of the stored calibration.
+    /// State of the stored calibration.
     pub stored: Stored,
     /// Its number.
     pub stored_sequence: u32,
@@ -73,7 +73,7 @@ pub struct Beginning {
     pub firmware: [u8; 3],
 }
 
-/// To be put in the flash; [`Device::stored`] wants to know what came of it.
+/// To be stored in the flash; the caller reports the outcome to [`Device::stored`].
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct ToStore(pub Option<Calibration>);
 
@@ -159,7 +159,7 @@ impl<D: Design> Device<D> {
         }
     }
 
-    /// The report of one sample, or of its absence; what goes on the line is given to `say`.
+    /// Makes the report of one sample, or of its absence. `say` gets the messages for the line.
     #[inline]
     pub fn step(
         &mut self,
@@ -205,8 +205,8 @@ impl<D: Design> Device<D> {
         report
     }
 
-    /// Does what is asked for, or begins to; the answer is given to `say` when there is one. What has to be stored is
-    /// the caller's to store.
+    /// Executes a command, or begins it. `say` gets the answer, as soon as there is one. The caller stores the calibration that
+    /// this returns.
     pub fn request(
         &mut self,
         now: Microseconds,
@@ -294,7 +294,7 @@ impl<D: Design> Device<D> {
         Some(to_store)
     }
 
-    /// What came of storing, and the number of the record in use now.
+    /// Takes the outcome of a store, and the number of the record now in use.
     pub fn stored(
         &mut self,
         now: Microseconds,
@@ -356,13 +356,13 @@ impl<D: Design> Device<D> {
         }
     }
 
-    /// What the signal path needs of the design.
+    /// The parameters of the design that the signal path needs.
     #[inline]
     pub fn parameters(&self) -> &Parameters {
         self.pipeline.parameters()
     }
 
-    /// The zero in use: what a reset that nobody saw coming has to keep.
+    /// The zero in use, to keep across an unrequested reset.
     pub fn zero(&self) -> Option<Zero> {
         self.pipeline.zero()
     }

@@ -14,8 +14,8 @@ use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 /// A run that lasted this long was a good one, microseconds: later resets are counted from 1.
 pub const GOOD_RUN: u64 = 10_000_000;
 
-/// Resets in a row, each before [`GOOD_RUN`] was over, after which nothing is measured any more: neither the store
-/// nor the transducer is touched, as one of them may be what hangs.
+/// Resets in a row, each before [`GOOD_RUN`] was over, after which the board no longer measures. It uses neither the store nor the
+/// transducer, because one of them may cause the hang.
 pub const RESET_LIMIT: u8 = 5;
 
 /// The tasks that must report, and how often.
@@ -50,7 +50,7 @@ impl<const TASKS: usize> TaskMonitor<TASKS> {
     }
 }
 
-/// How far a start came: what a hang without another trace is told by.
+/// Progress of a start; it shows where a hang without another trace occurred.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Stage {
     /// It is over: samples come.
@@ -63,14 +63,14 @@ pub enum Stage {
     Transducer = 3,
 }
 
-/// What a run leaves for the next one. In memory that no start-up clears, so any bits may lie there first.
+/// Record of a run for the next one. It is in memory that start-up does not clear, so it may have any bits at first.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct CrashRecord {
-    /// What went wrong, and where.
+    /// The fault, and its place.
     pub fault: LastFault,
     /// Which task, line or address; the [`Stage`] as long as nothing went wrong.
     pub detail: u32,
-    /// Resets in a row that nobody asked for.
+    /// Unrequested resets in a row.
     pub resets: u8,
     /// Whether this run has lasted for [`GOOD_RUN`].
     pub good: bool,
@@ -122,7 +122,7 @@ impl CrashRecord {
         words
     }
 
-    /// What was kept; nothing when the words are none that [`CrashRecord::to_words`] gives.
+    /// The record in the words; `None` if [`CrashRecord::to_words`] did not write them.
     pub fn from_words(words: &[u32; WORDS]) -> Option<Self> {
         let [magic, flags, detail, low, high, zero, bound, sum] = *words;
         if magic != MAGIC || sum != check(words) {
@@ -143,7 +143,7 @@ impl CrashRecord {
         })
     }
 
-    /// What the run before left, and what this run starts with. `found` is what the memory holds.
+    /// The record of the previous run, and the start of this run. `found` is the record in the memory.
     pub fn start(found: Option<Self>, cause: ResetCause, design_hash: u64) -> Start {
         // Memory that fits its check was never without power: what looks like a power-on was a supply that sagged, and
         // a board that sags again and again is one that resets again and again.
@@ -176,10 +176,10 @@ impl CrashRecord {
     }
 }
 
-/// How a run starts.
+/// The start of a run.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Start {
-    /// What ended the run before.
+    /// Cause of the end of the previous run.
     pub fault: LastFault,
     /// Which task, line, address or stage.
     pub detail: u32,

@@ -53,7 +53,7 @@ pub enum Command {
     },
 }
 
-/// Which command, without what goes with it.
+/// The kind of a command, without its arguments.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum CommandKind {
     /// [`Command::Tare`].
@@ -122,7 +122,7 @@ impl Command {
     }
 }
 
-/// What came of a command.
+/// Outcome of a command.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Outcome {
     /// It is done.

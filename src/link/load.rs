@@ -11,7 +11,7 @@ pub const CHUNK: usize = 64;
 /// Most bytes that are read back at a time.
 pub const READ_BACK: usize = 56;
 
-/// What the command `arm` has to hold: no other command resembles it.
+/// The argument of the command `arm`; no other command has it.
 pub const ARM_WORD: [u8; 4] = *b"LOAD";
 
 /// Bytes before what goes with a command: version, kind, sequence number.
@@ -80,7 +80,7 @@ pub enum LoadCommand {
     },
 }
 
-/// Which command, without what goes with it.
+/// The kind of a command, without its arguments.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum LoadKind {
     /// [`LoadCommand::Arm`].
@@ -111,7 +111,7 @@ impl LoadKind {
         (Self::ReadBack, 0x96),
     ];
 
-    /// What it is called.
+    /// Its name.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Arm => "arm",
@@ -140,7 +140,7 @@ impl LoadCommand {
     }
 }
 
-/// What came of a command.
+/// Outcome of a command.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum LoadOutcome {
     /// It is done.
@@ -181,7 +181,7 @@ impl LoadOutcome {
     ];
 }
 
-/// Why a block is refused, one bit each.
+/// Reasons for refusing a block, one bit each.
 pub mod refused {
     /// It is shorter or longer than `load begin` announced, or no block.
     pub const LENGTH: u16 = 1;
@@ -206,10 +206,10 @@ pub struct LoadRequest {
     pub command: LoadCommand,
 }
 
-/// What the board says to it.
+/// Reply of the board.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum LoadReply {
-    /// What came of a command.
+    /// Answer to a command.
     Answer {
         /// When.
         time: Microseconds,

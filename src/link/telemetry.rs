@@ -23,14 +23,14 @@ const ANSWER: usize = HEADER + 6;
 /// Of an indentation that tells something.
 const KNOWN: usize = ANSWER + 16;
 
-/// Who is speaking, once a second and when asked.
+/// Identity and state of the board, once a second and on request.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Hello {
     /// When.
     pub time: Microseconds,
     /// Version of the firmware: major, minor, patch.
     pub firmware: [u8; 3],
-    /// Why the chip was reset last.
+    /// Cause of the last reset.
     pub reset_cause: ResetCause,
     /// Hash of the design whose tables are in the image.
     pub design_hash: u64,
@@ -38,11 +38,11 @@ pub struct Hello {
     pub table_version: u32,
     /// From one report on the wire to the next, microseconds.
     pub report_period: u32,
-    /// What became of the stored calibration.
+    /// State of the stored calibration.
     pub stored: Stored,
-    /// What ended the run before this one.
+    /// Cause of the end of the previous run.
     pub last_fault: LastFault,
-    /// Resets in a row that nobody asked for.
+    /// Unrequested resets in a row.
     pub resets_in_a_row: u8,
     /// Which task, line or address, as `last_fault` says.
     pub last_fault_detail: u32,
@@ -54,11 +54,11 @@ pub struct Hello {
     pub samples_rejected: u32,
     /// Frames dropped since reset because the line was not free.
     pub frames_dropped: u32,
-    /// What came over the line since reset and was no command: frames, and stretches that were lost.
+    /// Count since reset of received data that were not a command: frames, and lost stretches of bytes.
     pub commands_refused: u32,
 }
 
-/// What came of a command.
+/// Answer to a command.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Answer {
     /// When.
@@ -67,16 +67,16 @@ pub struct Answer {
     pub command: CommandKind,
     /// Its sequence number, as it came.
     pub command_sequence: u16,
-    /// What came of it.
+    /// Its outcome.
     pub outcome: Outcome,
-    /// Of a self-test: what it found, one bit each. Of an indentation: [`doubts`](model_tables::table::known::doubts).
+    /// For a self-test: its findings, one bit each. For an indentation: [`doubts`](model_tables::table::known::doubts).
     pub findings: u16,
     /// The force and curvature at an indentation that the host gave, whose doubts are the findings; `None` in every
     /// other answer.
     pub known: Option<KnownContact>,
 }
 
-/// What one frame says.
+/// Content of a frame.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Message {
     /// A report of the signal path.
@@ -88,9 +88,9 @@ pub enum Message {
     },
     /// Who is speaking.
     Hello(Hello),
-    /// What came of a command.
+    /// Answer to a command.
     Answer(Answer),
-    /// What the loader of a tip's data says.
+    /// Answer of the loader of a tip's data.
     #[cfg(feature = "load-tip")]
     Load(LoadReply),
 }
@@ -405,7 +405,7 @@ pub(super) fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<
 pub struct Decoder(Deframer);
 
 impl Decoder {
-    /// Takes the next byte; at the zero that closes a frame, what the frame says. Zeros alone say nothing.
+    /// Takes the next byte. At the zero that closes a frame, returns the frame. Zeros alone give nothing.
     pub fn push(&mut self, byte: u8) -> Option<Result<Frame, DecodeError>> {
         let body = self.0.push(byte)?;
         Some(body.and_then(|body| read_body(&body)))

@@ -57,7 +57,7 @@ pub enum TipsMessage {
     },
     /// A tip, once a second and when asked.
     Tip(TipHello),
-    /// What came of a command to a tip.
+    /// Answer to a command to a tip.
     Answer {
         /// The tip.
         tip: u8,
@@ -79,7 +79,7 @@ pub struct TipHello {
     pub table_version: u32,
     /// From one of its reports on the wire to the next, microseconds.
     pub report_period: u32,
-    /// What became of its stored calibration.
+    /// State of its stored calibration.
     pub stored: Stored,
     /// Number of that calibration.
     pub stored_sequence: u32,
@@ -108,7 +108,7 @@ pub struct TipsFrame {
     pub sequence: u16,
     /// Frames dropped since reset, wraps.
     pub dropped: u16,
-    /// What it tells.
+    /// Its content.
     pub message: TipsMessage,
 }
 
@@ -177,7 +177,7 @@ impl<'a> FrameStart<'a> {
         body.finish();
     }
 
-    /// What came of a command to a tip.
+    /// Writes the answer to a command to a tip.
     pub fn answer(self, tip: u8, answer: &Answer) {
         let body = self.header(ANSWER, answer.time);
         body.put([tip, answer.command.code()]);
@@ -254,7 +254,7 @@ pub enum AnyFrame {
 pub struct AnyDecoder(Deframer);
 
 impl AnyDecoder {
-    /// Takes the next byte; at the zero that closes a frame, what it is. Zeros alone are none.
+    /// Takes the next byte. At the zero that closes a frame, returns the frame. Zeros alone give nothing.
     pub fn push(&mut self, byte: u8) -> Option<Result<AnyFrame, DecodeError>> {
         let body = self.0.push(byte)?;
         Some(body.and_then(|body| match body.first() {

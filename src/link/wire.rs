@@ -28,7 +28,7 @@ pub const MAXIMUM_FRAME: usize = 1 + MAXIMUM_BODY + CRC_BYTES + 1;
 
 const CHECK: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
 
-/// Why bytes are not a frame.
+/// Reasons why bytes are not a frame.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum DecodeError {
     /// The stuffing is broken, or there are more bytes than any frame has.

@@ -25,7 +25,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Whether every value is one that can be.
+    /// Whether every value is possible.
     pub fn is_plausible(&self, range: [i32; 2]) -> bool {
         let span = i64::from(range[1]) - i64::from(range[0]);
         // Gauge or absolute, a fingertip rests within its transducer's range or some of it and an atmosphere beside.

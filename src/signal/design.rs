@@ -84,7 +84,7 @@ pub struct Rise {
     pub warnings: Warnings,
 }
 
-/// What a wall remembers of its past.
+/// Memory of a wall of its past.
 pub trait Wall: Clone + core::fmt::Debug {
     /// A wall of whose past nothing is known.
     const NEW: Self;
@@ -102,11 +102,11 @@ pub trait Wall: Clone + core::fmt::Debug {
     fn lose_track(&mut self);
 }
 
-/// There are no tables of an object: the design has none, or its radius is tighter than what was solved.
+/// There are no tables for an object: the design has none, or the radius is smaller than the smallest solved one.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct NoSuchObject;
 
-/// What the stages need of a design, each in its own form, worked out once: by the compiler for an image.
+/// Parameters of a design for the stages, each in its own form, computed once: for an image by the compiler.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Parameters {
     /// The design itself.

@@ -191,7 +191,7 @@ impl Filter {
         }
     }
 
-    /// A gap: what was before it is not next to what comes after.
+    /// A gap: samples before it are not neighbours of samples after it.
     pub fn interrupt(&mut self) {
         self.filled = 0;
         self.hold = 0;

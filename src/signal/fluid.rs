@@ -27,7 +27,7 @@ const STANDS: u64 = 60_000_000;
 /// liquid. Permille.
 const SOFT_PERMILLE: i64 = 850;
 
-/// What a leak is compared with, counts.
+/// Limits for a leak, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Fall {
     /// Further below the lowest zero to be expected: a leak.
@@ -54,7 +54,7 @@ impl Fall {
     }
 }
 
-/// What is suspected.
+/// Suspicions about the fluid.
 #[derive(Clone, Debug)]
 pub struct FluidHealth {
     fall: Fall,
@@ -72,7 +72,7 @@ impl FluidHealth {
         }
     }
 
-    /// What is suspected so far.
+    /// Suspicions so far.
     pub const fn suspicions(&self) -> Warnings {
         self.suspicions
     }
@@ -94,7 +94,7 @@ impl FluidHealth {
         }
     }
 
-    /// A gap in the samples: what it hid is no time below.
+    /// A gap in the samples; its time does not count as time below the limit.
     pub fn interrupt(&mut self) {
         self.below_since = None;
     }

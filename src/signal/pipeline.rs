@@ -46,8 +46,7 @@ pub struct Pipeline<D: Design> {
 }
 
 impl<D: Design> Pipeline<D> {
-    /// A signal path of a design that has seen nothing yet, with what is stored of this fingertip. `standing` qualifies every
-    /// reading.
+    /// A new signal path of a design, with the stored calibration of this fingertip. Every reading has the warnings `standing`.
     pub fn new(design: D, start_up: StartUp, calibration: Calibration, standing: Warnings) -> Self {
         let parameters = design.parameters();
         let limits = match calibration.zero_counts(parameters.scale) {
@@ -254,7 +253,7 @@ impl<D: Design> Pipeline<D> {
         }
     }
 
-    /// A host tells the air around an absolute part, whose zero moves with it.
+    /// Takes the air pressure around an absolute part from the host; the zero moves with it.
     ///
     /// # Errors
     /// [`AirRefusal`].
@@ -292,11 +291,11 @@ impl<D: Design> Pipeline<D> {
         self.wall = D::Wall::NEW;
     }
 
-    /// The host asserts that the fingertip is unloaded: takes a new zero if it may be one. What came of it is asked with
-    /// [`Pipeline::take_tare_answer`].
+    /// The host asserts that the fingertip is unloaded: takes a new zero if the pressure can be a zero.
+    /// [`Pipeline::take_tare_answer`] gives the outcome.
     ///
     /// # Errors
-    /// [`TareRefusal`] when that is plain at once.
+    /// [`TareRefusal`] if the refusal is certain at once.
     pub fn tare(&mut self) -> Result<(), TareRefusal> {
         if self.wall.lowers_the_pressure() {
             // It may be touched again, and not show it.
@@ -315,12 +314,12 @@ impl<D: Design> Pipeline<D> {
         self.zero.undo()
     }
 
-    /// What came of the last commanded tare, once.
+    /// The outcome of the last commanded tare, once.
     pub fn take_tare_answer(&mut self) -> Option<Result<(), TareRefusal>> {
         self.zero.take_answer()
     }
 
-    /// The zero of now, drift included: what survives a reset that nobody saw coming.
+    /// The present zero, drift included, to keep across an unrequested reset.
     pub fn zero(&self) -> Option<Zero> {
         let moved = self.moved_around();
         self.zero.zero().map(|zero| Zero {
@@ -345,8 +344,8 @@ impl<D: Design> Pipeline<D> {
         Some(self.calibration.rezeroed(zero, self.celsius, transducer))
     }
 
-    /// The calibration was stored, and is what the next zero of a gauge transducer is compared with; nothing: what was
-    /// stored is void, and the design's rest pressure is.
+    /// The calibration was stored. The next zero of a gauge transducer is compared with it. With `None`, the stored calibration is
+    /// void, and the zero is compared with the design's rest pressure.
     pub fn calibrated(&mut self, calibration: Option<Calibration>) {
         self.standing = self.standing.without(Warnings::CALIBRATION_REFUSED);
         self.fluid.clear();
@@ -360,7 +359,7 @@ impl<D: Design> Pipeline<D> {
         self.gain = Gain::new(self.calibration.gain);
     }
 
-    /// What the signal path needs of its design.
+    /// The parameters of its design.
     #[inline]
     pub fn parameters(&self) -> &Parameters {
         self.design.parameters()
@@ -371,7 +370,7 @@ impl<D: Design> Pipeline<D> {
         self.calibration
     }
 
-    /// Whether something presses, as of the last reading.
+    /// Touch state of the last reading.
     pub fn touch(&self) -> Touch {
         self.touch
     }
@@ -381,15 +380,15 @@ impl<D: Design> Pipeline<D> {
         self.fluid.suspicions()
     }
 
-    /// Something else is touched from now on.
+    /// Sets the touched object from now on.
     ///
     /// # Errors
-    /// [`NoSuchObject`]; readings stay those of what was touched before.
+    /// [`NoSuchObject`]; readings stay those of the previous object.
     pub fn touch_object(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
         self.design.touch(touched)
     }
 
-    /// What a known indentation, above 0, tells beside the last reading; nothing without one that holds, or without `[object]`.
+    /// The contact from the last reading and a known indentation, above 0; `None` without a valid reading, or without `[object]`.
     pub fn tell(&self, known: Nanometres) -> Option<KnownContact> {
         self.design.tell(known)
     }

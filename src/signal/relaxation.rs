@@ -39,7 +39,7 @@ const AREA_SHIFT: u32 = 8;
 const FORCE_BITS: u32 = 16;
 /// One as a share.
 pub const WHOLE: u32 = 1 << 16;
-/// What a relaxing wall's pressure says.
+/// Reading from the pressure of a relaxing wall.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct RelaxedReading {
     /// The settled wall's pressure rise at the same indentation, rounded down.

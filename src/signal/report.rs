@@ -5,7 +5,7 @@ use crate::units::Microseconds;
 use model_tables::table::known::ReadPair;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-/// Force and indentation at a pressure rise, with what qualifies them.
+/// Force and indentation at a pressure rise, with their warnings.
 ///
 /// | status | what the fields mean |
 /// |---|---|
@@ -27,19 +27,19 @@ pub struct Measurement {
     pub force: Micronewtons,
     /// Indentation of its pole.
     pub indentation: Nanometres,
-    /// One standard deviation of the three: the transducer's noise and resolution, and what drift may have done
-    /// since the zero was last known, and 2 K that a relaxing wall may be off its series. What the model leaves out is not in it.
+    /// One standard deviation of the three. It includes the transducer's noise and resolution, the possible drift since the zero
+    /// was last known, and 2 K between a relaxing wall and its series. The error of the model is not in it.
     pub sigma: Sigma,
-    /// Whether something presses.
+    /// Touch state.
     pub touch: Touch,
-    /// What qualifies the others.
+    /// Warnings about the other fields.
     pub warnings: Warnings,
-    /// What the actuator makes of it.
+    /// Force of the feedback actuator.
     pub feedback: Feedback,
 }
 
 impl Measurement {
-    /// What a known indentation tells more of; nothing where force and indentation are bounds, 0, or of another volume of liquid.
+    /// The reading as used with a known indentation; `None` if force and indentation are bounds, 0, or of another volume of liquid.
     #[inline]
     pub fn pair(&self) -> Option<ReadPair> {
         let refused = [
@@ -59,8 +59,8 @@ impl Measurement {
     }
 }
 
-/// What the feedback actuator presses the wearer with. It takes room, and can hold a force, only where the design has an actuator, or one may be
-/// loaded.
+/// Force of the feedback actuator on the wearer. It takes memory, and can hold a force, only if the design has an actuator, or if
+/// one may be loaded.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Feedback {
     #[cfg(feedback)]
@@ -124,7 +124,7 @@ pub struct Contact {
     pub force: Micronewtons,
     /// Indentation of its pole.
     pub indentation: Nanometres,
-    /// What qualifies both.
+    /// Warnings about both.
     pub warnings: Warnings,
 }
 
@@ -138,7 +138,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// How far to believe the report.
+    /// Status of the report.
     pub fn status(&self) -> Status {
         match self.outcome {
             Ok(Measurement { warnings, .. }) => Status::qualified(warnings),

@@ -49,12 +49,12 @@ impl Temperature {
         }
     }
 
-    /// What temperature adds to the zero, counts.
+    /// Offset of the zero by temperature, counts.
     pub const fn correction(&self) -> i32 {
         self.correction
     }
 
-    /// What the held correction misses, counts.
+    /// Error of the held correction, counts.
     pub const fn missed(&self) -> i32 {
         self.missed
     }

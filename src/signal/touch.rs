@@ -13,7 +13,7 @@ const TOUCH_FLOORS: i64 = 6;
 /// And ends below this one.
 const RELEASE_FLOORS: i64 = 3;
 
-/// Where a touch begins and ends, counts.
+/// Thresholds at which a touch begins and ends, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Thresholds {
     /// Above: touched.

@@ -5,7 +5,7 @@ use crate::units::Pressure;
 use model_tables::constants::{DesignConstants, TransducerKind};
 use model_tables::units::PressureRise;
 
-/// What is uncertain in a pressure rise, whatever happens: counts.
+/// The constant part of the uncertainty of a pressure rise, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Uncertainty {
     /// Noise after averaging and filtering, and resolution.

@@ -39,13 +39,13 @@ use model_tables::constants::Quantity;
 pub struct Zero {
     /// The pressure that reads as no rise.
     pub pressure: Pressure,
-    /// How far off it may be, counts, >= 0.
+    /// Its largest error, counts, >= 0.
     pub bound: i32,
-    /// Whether it was measured on a fingertip that nothing pressed.
+    /// Whether it was measured on an untouched fingertip.
     pub verified: bool,
 }
 
-/// Where the zero comes from at start-up.
+/// Source of the zero at start-up.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum StartUp {
     /// Measured, if the limits let it.

@@ -40,7 +40,7 @@ pub const fn length(tips: usize) -> usize {
     HEAD + TIP * tips + END
 }
 
-/// What is stored of one tip.
+/// The stored data of one tip.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct TipEntry {
     /// The tip it is for: its name, its place and its design.
@@ -49,7 +49,7 @@ pub struct TipEntry {
     pub table_version: u32,
     /// The record that changed it last; 0: none did.
     pub number: u32,
-    /// What was calibrated; `None`: nothing is stored.
+    /// The calibration; `None`: nothing is stored.
     pub calibration: Option<Calibration>,
     /// A later one may have been lost in a place that could not be read.
     pub doubtful: bool,
@@ -111,7 +111,7 @@ impl TipEntry {
     }
 }
 
-/// What is stored of all tips.
+/// The stored data of all tips.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct HandRecord<const TIPS: usize> {
     /// The highest is in use.

@@ -11,7 +11,7 @@ use crate::storage::hand_record::{HandRecord, TipEntry};
 use crate::storage::log::{RecordLog, StoreError};
 use embedded_storage_async::nor_flash::NorFlash;
 
-/// What a tip's entry is for.
+/// Identity of the tip of an entry.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct TipIdentity {
     /// The tip: its name, its place on the board and its design.
@@ -22,10 +22,10 @@ pub struct TipIdentity {
     pub range: [i32; 2],
 }
 
-/// What is stored of a tip.
+/// Stored data of a tip.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct StoredTip {
-    /// What became of it.
+    /// State of the stored calibration.
     pub state: Stored,
     /// The record that changed it last; 0: none did.
     pub number: u32,
@@ -63,7 +63,7 @@ impl<F: NorFlash, const TIPS: usize, const LENGTH: usize> HandStore<F, TIPS, LEN
         self.state = self.log.load().await;
     }
 
-    /// What is stored of a tip; of one that is not there nothing.
+    /// The stored data of a tip; nothing for a tip that does not exist.
     pub fn stored(&self, tip: usize) -> StoredTip {
         let entry = self.entry(tip);
         let own = self

@@ -29,7 +29,7 @@ pub const END: usize = 8;
 /// Records are few: no table for speed.
 const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// What lies in the place of a record.
+/// Content of the place of a record.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Found<R> {
     /// Erased memory.
@@ -82,7 +82,7 @@ pub(super) fn unseal<R, const LENGTH: usize>(
     read(body).map_or(Found::Torn, Found::Record)
 }
 
-/// Why a record was not stored. What was stored before is stored still.
+/// Reasons why a record was not stored. The previous record is still stored.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum StoreError {
     /// The memory does not take it, or not what was given.
@@ -216,7 +216,7 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         self.latest.as_ref()
     }
 
-    /// Whether a later record may lie in a place that cannot be read.
+    /// Whether a place that cannot be read may have a later record.
     pub const fn is_hidden(&self) -> bool {
         self.hidden > 0
     }

@@ -28,7 +28,7 @@ pub const LENGTH: usize = 48;
 
 const MAGIC: [u8; 4] = *b"FTC\x01";
 
-/// A calibration with what it is for.
+/// A calibration and the identity of its design.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Record {
     /// The highest is in use.
@@ -39,7 +39,7 @@ pub struct Record {
     pub table_version: u32,
     /// The firmware that wrote it: major, minor, patch.
     pub firmware: [u8; 3],
-    /// What was calibrated; `None` voids what was stored before.
+    /// The calibration; `None` voids the previous one.
     pub calibration: Option<Calibration>,
     /// Erasures so far, of both slots together.
     pub erasures: u32,
@@ -100,7 +100,7 @@ pub fn encode(record: &Record) -> [u8; LENGTH] {
     bytes
 }
 
-/// What the bytes are.
+/// Decodes the bytes.
 pub fn decode(bytes: &[u8; LENGTH]) -> Found<Record> {
     unseal(bytes, MAGIC, read)
 }

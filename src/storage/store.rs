@@ -7,7 +7,7 @@ use crate::storage::log::{RecordLog, StoreError};
 use crate::storage::record::{LENGTH, Record};
 use embedded_storage_async::nor_flash::NorFlash;
 
-/// What records are for.
+/// Identity of the fingertip of the records.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Identity {
     /// The design whose tables are in the image.

@@ -151,8 +151,8 @@ impl TipSlots {
         Ok(())
     }
 
-    /// Writes a part of a block into the free slot and reads it back. What lies there already is not written again; what lies
-    /// there and differs fails.
+    /// Writes a part of a block into the free slot and reads it back. Equal data that are already there are not written again;
+    /// different data give an error.
     ///
     /// # Errors
     /// [`StoreError`]
@@ -210,7 +210,7 @@ impl TipSlots {
         flash.read(at, bytes).await.map_err(|_| StoreError::Failed)
     }
 
-    /// Puts a block of the free slot in use, which was read back whole.
+    /// Puts the block of the free slot in use, after the whole block was read back.
     ///
     /// # Errors
     /// [`StoreError`]; what was in use is still.

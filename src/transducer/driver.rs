@@ -24,7 +24,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// What qualifies every reading made of this sample.
+    /// Warnings of every reading from this sample.
     pub const fn warnings(&self) -> Warnings {
         Warnings::SATURATED.when(self.headroom.0 < 0)
     }

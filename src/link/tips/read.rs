@@ -16,7 +16,7 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 /// The tip and the request of a body.
 ///
 /// # Errors
-/// [`DecodeError`] for what is no command of version 3.
+/// [`DecodeError`] if the body is not a command of version 3.
 pub fn read_request(body: &[u8]) -> Result<(u8, Request), DecodeError> {
     let [HAND_VERSION, kind, low, high, tip, payload @ ..] = body else {
         return Err(match body {
@@ -37,7 +37,7 @@ pub fn read_request(body: &[u8]) -> Result<(u8, Request), DecodeError> {
 /// The frame in a body.
 ///
 /// # Errors
-/// [`DecodeError`] for what no board of version 3 sends.
+/// [`DecodeError`] if the body is not a frame of version 3.
 pub fn read_body(body: &[u8]) -> Result<TipsFrame, DecodeError> {
     if body.len() < HEADER {
         return Err(DecodeError::Short);

@@ -51,18 +51,18 @@ pub struct Limits {
     pub expected: [Pressure; 2],
     /// Whether the reference was stored by someone who saw the fingertip untouched.
     pub stored: bool,
-    /// How far from the design's rest pressure a zero may lie that nobody vouches for, >= 0.
+    /// Largest distance of an unverified zero from the design's rest pressure, >= 0.
     pub near: i32,
-    /// How far outside `expected` any zero may lie, >= 0.
+    /// Largest distance of any zero outside `expected`, >= 0.
     pub far: i32,
-    /// How far a quiet window may spread, >= 0.
+    /// Largest range of a quiet window, >= 0.
     pub quiet: i32,
     /// What noise may have in common from one part of a window to the next two, >= 0.
     pub swing: i32,
-    /// How well a quiet window tells the zero: half a noise floor, and `wander`.
+    /// Error of a zero from a quiet window: half a noise floor, and `wander`.
     pub margin: i32,
-    /// What moves the zero back and forth while nothing presses: the fluid's weight, hysteresis, creep, and temperature where the
-    /// part does not tell it; >= 0.
+    /// Movement of the zero back and forth without a press: the fluid's weight, hysteresis, creep, and temperature if the part does
+    /// not measure it; >= 0.
     pub wander: i32,
     /// The largest bound of a zero whose readings are ok, and the rise from which on a quiet window is a touch: what the design
     /// states, or six noise floors.
@@ -73,7 +73,7 @@ pub struct Limits {
     pub drift: i64,
     /// The fastest rise of an untouched zero that is no surprise, in the same unit; 0 for a gauge transducer.
     pub air: i64,
-    /// How fast the value follows, in the same unit.
+    /// Largest rate at which the value follows, in the same unit.
     pub follows: i64,
 }
 

@@ -20,7 +20,7 @@ pub struct Surroundings {
     seen: Microseconds,
 }
 
-/// What follows from a newly told air, counts.
+/// Effects of a new air pressure from the host, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct AirMoved {
     /// The zero is so much higher.
@@ -29,7 +29,7 @@ pub struct AirMoved {
     pub widen: i32,
 }
 
-/// Why a told air is not taken.
+/// Reasons for refusing an air pressure.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum AirRefusal {
     /// The design has nobody tell it.
@@ -46,7 +46,7 @@ impl Surroundings {
         seen: Microseconds(0),
     };
 
-    /// A temperature of the part, where it tells one.
+    /// Takes a temperature of the part, if it measures one.
     pub fn warm(&mut self, temperature: Option<Centidegrees>) {
         let Some(now) = temperature else { return };
         let [coldest, warmest] = self.span.unwrap_or([now; 2]);
@@ -70,7 +70,7 @@ impl Surroundings {
         self.seen = now;
     }
 
-    /// A host tells the air.
+    /// Takes an air pressure from the host.
     pub fn tell(&mut self, rates: &Rates, air: Pressure, now: Microseconds) -> AirMoved {
         let before = self.told.replace((air, now));
         match before {

@@ -3,10 +3,10 @@
 use crate::signal::zero::interval::Interval;
 use crate::units::Microseconds;
 
-/// How long a good window is waited for, microseconds.
+/// Longest wait for a good window, microseconds.
 pub const PATIENCE: u64 = 2_000_000;
 
-/// Why a zero was not taken, or not undone.
+/// Reasons why a zero was not taken, or not undone.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum TareRefusal {
     /// The fingertip is touched, or may be.

@@ -1,11 +1,11 @@
-//! Why there is no press in time.
+//! The reasons why a press in time has no answer.
 
 use crate::limit::EndsBy;
 use crate::solid::disc::DiscEnd;
 use crate::solid::{Failure, SolidError};
 use core::fmt;
 
-/// Why there is no press in time.
+/// Reasons why a press in time has no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HistoryError {
     /// The wall is inflated at rest.
