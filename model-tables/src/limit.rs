@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// What ends a press.
+/// Cause of the end of a press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndsBy {
     /// The bulge becomes tangent to the base plane.

@@ -296,7 +296,7 @@ impl<'a> Section<'a> {
         (line, problem)
     }
 
-    /// The end of reading: a key that was never asked for is an error. The first in the file is named.
+    /// Ends the reading: an unknown key is an error. The first in the file is named.
     ///
     /// # Errors
     /// [`KeyFault`] with the key, what was found and what is allowed.

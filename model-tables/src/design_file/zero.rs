@@ -17,9 +17,9 @@ pub struct ZeroSection {
     pub per_kelvin_pa: Option<f64>,
     /// `fluid_head_pa`, pascals: from one attitude of the hand to another; `None`: 0.
     pub fluid_head_pa: Option<f64>,
-    /// `hysteresis_pa`, pascals: what a press leaves for good; `None`: 0.
+    /// `hysteresis_pa`, pascals: permanent offset after a press; `None`: 0.
     pub hysteresis_pa: Option<f64>,
-    /// `creep_pa`, pascals: what a press leaves until the wall has crept back; `None`: 0.
+    /// `creep_pa`, pascals: offset after a press until the wall has crept back; `None`: 0.
     pub creep_pa: Option<f64>,
     /// `bound_pa`, pascals, > 0: largest bound of the zero of an ok reading; `None`: six noise floors.
     pub bound_pa: Option<f64>,

@@ -16,7 +16,7 @@ use crate::units::PressureRise;
 /// Inputs that are evaluated one by one at most: 2^22.
 const EVALUATED: i32 = 1 << 22;
 
-/// What holds of tables on every input.
+/// Proven properties of tables over every input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
     /// Inputs that it holds of: all from zero to the maximum.
@@ -33,8 +33,8 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Whether the tables may be used: accurate, never falling, zero at zero, flagged at both ends; and the
-    /// comparison itself a hundred times finer than what it is to show.
+    /// Whether the tables can be used: they are accurate, never fall, give zero at zero, and are flagged at both ends. The
+    /// comparison itself must be a hundred times finer than the errors that it measures.
     pub fn holds(&self) -> bool {
         let allowed = self.force.allowed_percent.min(self.indentation.allowed_percent);
         self.force.holds() && self.indentation.holds() && 100.0 * self.comparison_error <= 0.01 * allowed

@@ -51,7 +51,7 @@ impl Generated {
         self.tip(None)
     }
 
-    /// The tip's data as a [`crate::block`], with what is known of the one fingertip.
+    /// The tip's data as a [`crate::block`], with the calibration of the fingertip.
     pub fn tip(&self, calibration: Option<StoredCalibration>) -> Vec<u8> {
         let tables = &self.certified.tables;
         TipData {

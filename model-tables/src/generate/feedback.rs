@@ -16,13 +16,13 @@ use crate::units::{Micronewtons, PressureRise};
 /// The force of an actuator over a press.
 #[derive(Clone, Debug)]
 pub struct FeedbackCurve {
-    /// What it gains since rest: pressure rise as the transducer reads it, force, indentation of the fingertip.
+    /// Its gain since rest: pressure rise as the transducer reads it, force, indentation of the fingertip.
     pub gained: Curve,
     /// Force at rest, newtons, >= 0.
     pub at_rest: f64,
 }
 
-/// Tables of that force, with what holds of them.
+/// Tables of that force, with their proven errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CertifiedFeedback {
     /// The layout, that of the tables of force and indentation.

@@ -10,7 +10,7 @@ const EXCHANGES: usize = 30;
 /// The largest error this close to that of the alternation is taken for it.
 const CLOSE: f64 = 1.002;
 
-/// What a sum should be at one input: `middle`, give or take `half`.
+/// The wanted value of a sum at one input: `middle`, plus or minus `half`.
 #[derive(Clone, Copy, Debug)]
 pub struct FitSample {
     /// Factors of its coefficients, dimensionless.

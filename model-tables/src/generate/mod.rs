@@ -53,12 +53,12 @@ const MAX_BEYOND: f64 = 1.0 + 1.0 / 64.0;
 /// Fraction bits of a pascal at most.
 const MAX_FRACTION_BITS: u32 = 16;
 
-/// Tables and what holds of them.
+/// Tables and their certificate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certified {
     /// The tables.
     pub tables: OwnedTables,
-    /// What holds of them on every input.
+    /// Their proven properties over every input.
     pub certificate: Certificate,
     /// Tables of other objects; `None` where the design has no `[object]`.
     pub object: Option<ObjectTables>,
@@ -66,8 +66,8 @@ pub struct Certified {
     pub feedback: Option<CertifiedFeedback>,
     /// Segmentations looked at before these tables were found to be the smallest.
     pub tried: usize,
-    /// Half of what the transducer tells apart, in percent of reading of force and indentation, where that is least. Tables are
-    /// held to no less than the smaller one, whatever the accuracy asks.
+    /// Half of the transducer's resolution, in percent of reading of force and indentation, where it is smallest. The accuracy
+    /// limit of tables is at least the smaller of the two, whatever accuracy is required.
     pub resolvable_percent: [f64; 2],
 }
 
@@ -111,8 +111,8 @@ fn resolvable_percent(curve: &Curve, end: Contact, accuracy: &Accuracy, resoluti
     best
 }
 
-/// The smallest tables that meet an accuracy, certified, for a press that ends at `end` and a transducer that tells
-/// `resolution` pascals apart. The curve may go on beyond the end: the last input is then the next round number.
+/// The smallest tables that meet an accuracy, certified, for a press that ends at `end` and a transducer with a resolution of
+/// `resolution` pascals. The curve may go on beyond the end: the last input is then the next round number.
 ///
 /// # Errors
 /// [`NoTables`], with the numbers.
@@ -125,7 +125,7 @@ pub fn tables(
     tables_with(curve, end, accuracy, resolution, &Beside::default())
 }
 
-/// What else is to have tables of the same layout.
+/// Further curves that get tables of the same layout.
 #[derive(Clone, Debug, Default)]
 pub struct Beside {
     /// Other objects than the plate; `None`: the plate alone.
@@ -134,7 +134,7 @@ pub struct Beside {
     pub feedback: Option<FeedbackCurve>,
 }
 
-/// The same, with tables of what else is to have some, in the same layout.
+/// The same, with tables of further curves in the same layout.
 ///
 /// # Errors
 /// [`NoTables`], with the numbers.

@@ -32,7 +32,7 @@ const FARTHEST: f64 = 6.0;
 /// A law may lie so much beyond its ends, in units of a weight.
 const MARGIN: i32 = 1 << (WEIGHT_BITS - 5);
 
-/// Tables of the reference object, and what a blend of them and the plate's is worth.
+/// Tables of the reference object, and the errors of a blend of them with the plate's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectTables {
     /// The reference object's, of the layout of the plate's.
@@ -41,7 +41,7 @@ pub struct ObjectTables {
     pub reference: Touched,
     /// The weights over the radius.
     pub law: BlendLaw,
-    /// What the design says is touched, until a command says otherwise.
+    /// The object of the design, in use until a command changes it.
     pub start: Touched,
     /// Errors are of pressure rises from here on, pascals.
     pub from: f64,

@@ -6,7 +6,7 @@ use crate::units::PressureRise;
 /// Tables of any number of segments; reads exactly as [`crate::table::Tables`] does.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct OwnedTables {
-    /// Where the segments lie and how their words are read.
+    /// Position of the segments, and the layout of their words.
     pub layout: Layout,
     /// The words, [`Layout::words`] a segment, the segment of the largest inputs first.
     pub words: Vec<i32>,

@@ -27,7 +27,7 @@ pub struct Errors {
     pub equal_steps: u64,
     /// Steps up by one count where the output falls.
     pub falling_steps: u64,
-    /// Largest step up by one count: what a count of input is worth where the output is steepest.
+    /// Largest increase for one count of input, where the output is steepest.
     pub largest_step: i32,
     /// Smallest and largest output.
     pub range: [i32; 2],
@@ -45,7 +45,7 @@ pub struct Spread {
 }
 
 impl Errors {
-    /// Largest error as a fraction of what is allowed.
+    /// Largest error as a fraction of the allowed one.
     pub fn share_of_allowed(&self) -> f64 {
         self.of_reading.max.max(self.below_percent_of_from) / self.allowed_percent
     }

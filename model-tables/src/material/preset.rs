@@ -26,7 +26,7 @@ pub struct Preset {
     pub rate: &'static str,
     /// Largest engineering strain of the uniaxial test that was fitted, dimensionless; `None` where it is not known.
     pub strain: Option<f64>,
-    /// What to expect of the material beyond a static law.
+    /// Behaviour of the material beyond a static law.
     pub caution: &'static str,
 }
 

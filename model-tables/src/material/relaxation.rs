@@ -16,7 +16,7 @@ pub struct Term {
     pub weight: f64,
 }
 
-/// What a term does over a step of time in which the relaxed stress changes evenly.
+/// Change of a term over a time step in which the relaxed stress changes linearly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decay {
     /// Share of the term's stress that is left after the step: `exp(-dt / tau)`.

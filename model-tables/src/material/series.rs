@@ -43,10 +43,10 @@ impl Factor {
     }
 }
 
-/// What a term does in a step of time.
+/// Change of a term in a time step.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct TermStep {
-    /// `k = 1 - exp(-dt / tau)`: what is lost of it.
+    /// `k = 1 - exp(-dt / tau)`: the fraction of it that is lost.
     pub lost: Factor,
     /// `c / (1 + sum c)` with `c = g tau / dt k`: its share of a change of stress.
     pub share: Factor,
@@ -136,7 +136,7 @@ impl SeriesStep {
     }
 }
 
-/// What a wall is warmer or colder than its series where nothing measures it: one standard deviation, kelvin.
+/// Temperature difference between a wall and its series if it is not measured: one standard deviation, kelvin.
 pub const WALL_TEMPERATURE: f64 = 2.0;
 
 /// A wall in time, as the chip knows it.

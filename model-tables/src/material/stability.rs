@@ -14,7 +14,7 @@
 use crate::material::Hyperelastic;
 use core::fmt;
 
-/// What a law does where it is not stable.
+/// Kind of instability of a law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// It softens under stretch: `W_11` or `W_22` is not positive.
@@ -40,7 +40,7 @@ impl fmt::Display for Mode {
 pub struct Margin {
     /// 1 in the undeformed state, not positive where the law is unstable.
     pub value: f64,
-    /// What it does first.
+    /// The first instability.
     pub mode: Mode,
     /// Meridional stretch.
     pub meridional_stretch: f64,

@@ -103,7 +103,7 @@ pub struct Adaptive<L, const S: usize> {
     pub iterations: u64,
 }
 
-/// What the mesh of a solution was graded for.
+/// The quantities for which the mesh of a solution was graded.
 #[derive(Clone, Debug)]
 pub struct Graded<const S: usize> {
     /// The solution.

@@ -1,6 +1,6 @@
 //! The condition that selects a state of equilibrium, and the outcome of the search for it.
 
-/// What fixes a rest state.
+/// Condition that fixes a rest state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RestControl {
     /// The stretch of the pole.
@@ -13,7 +13,7 @@ pub enum RestControl {
     Height(f64),
 }
 
-/// What selects a pressed state.
+/// Condition that selects a pressed state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PressControl {
     /// The contact parameter `t_c`.

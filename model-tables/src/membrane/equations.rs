@@ -84,7 +84,7 @@ impl Zone {
     }
 }
 
-/// What the constitutive law says at a point.
+/// Response of the constitutive law at a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Response {
     /// Meridional stretch.
@@ -112,7 +112,7 @@ pub struct LocalEquations<L> {
     pub law: L,
     /// Whether it may push.
     pub tension_field: TensionField,
-    /// Curvature of what touches, over `1 / a0`: 0 of a plate, above 0 of a ball, below 0 of a cup.
+    /// Curvature of the object, over `1 / a0`: 0 for a plate, above 0 for a ball, below 0 for a cup.
     pub curvature: f64,
 }
 

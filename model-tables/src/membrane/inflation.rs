@@ -10,7 +10,7 @@ use crate::membrane::adapt::{Adaptive, Graded, Unsolved};
 use crate::membrane::closure::{Closure, RestControl};
 use crate::membrane::equations::{POLE, PRESSURE};
 
-/// Where inflation ends short of a pole stretch.
+/// The end of an inflation that does not reach a pole stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
     /// The pole stretch has a maximum there, and the equator bulges instead.

@@ -9,7 +9,7 @@ use crate::membrane::mesh::{Breaks, Depth};
 use crate::membrane::solution::Pole;
 use core::f64::consts::FRAC_PI_2;
 
-/// What the rest state is given by, for messages.
+/// The quantity that gives the rest state, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RestQuantity {
     /// Stretch of the pole.

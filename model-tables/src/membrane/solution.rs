@@ -10,7 +10,7 @@ pub const MAX_ELEMENTS: usize = 64;
 /// Shift of a node, over the spacing there, up to which two meshes count as nearly the same.
 const LARGEST_SHIFT: f64 = 0.1;
 
-/// What the membrane does at its pole.
+/// State of the membrane at its pole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pole {
     /// Taut: the pole parameter is the stretch of the pole.

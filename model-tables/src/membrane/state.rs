@@ -73,7 +73,7 @@ impl Wrinkling {
     }
 }
 
-/// What every state of equilibrium has.
+/// Quantities of every state of equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressShape {
     /// Gauge pressure of the fluid, pascals.
@@ -132,7 +132,7 @@ pub struct PressedState {
     pub indentation: f64,
     /// Pressure over that of the rest state, pascals.
     pub pressure_rise: f64,
-    /// Force on what touches, newtons; on a plate total pressure times contact area.
+    /// Force on the object, newtons; on a plate, total pressure times contact area.
     pub force: f64,
     /// Deformed radius of the contact, metres.
     pub contact_radius: f64,

@@ -45,7 +45,7 @@ pub const fn elements_in_time(model: ModelSection) -> Option<Elements> {
     }
 }
 
-/// What the other fidelities are measured against.
+/// The reference for the other fidelities.
 pub const REFINED: Elements = Elements {
     through: 3,
     along: 96,
@@ -83,8 +83,8 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// What a design file states, and the defaults of the rest. The accuracy of the tables is another matter: they round a curve,
-    /// whichever model made it.
+    /// The values of a design file, and defaults for the others. The accuracy of the tables is independent of this: they round a
+    /// curve of any model.
     pub fn of(file: &DesignFile) -> Self {
         let percent = file
             .accuracy
@@ -173,7 +173,7 @@ fn in_a_cup(design: &Design) -> f64 {
     libm::sqrt((1.0 - crown / radius).max(TIGHTEST_CUP))
 }
 
-/// A model that was taken, and on what evidence.
+/// The chosen model, and the evidence for the choice.
 #[derive(Clone, Debug)]
 pub struct Choice {
     /// The model.

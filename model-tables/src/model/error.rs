@@ -15,7 +15,7 @@ pub enum ModelError {
 }
 
 impl ModelError {
-    /// The end of the press, if the indentation asked for lies beyond it.
+    /// The end of the press, if the requested indentation is beyond it.
     pub fn beyond(&self) -> Option<Limit> {
         match *self {
             Self::Membrane(MembraneError::BeyondLimit { limit, .. })

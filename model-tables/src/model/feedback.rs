@@ -193,7 +193,7 @@ impl Loop {
         self.rest_pressure
     }
 
-    /// The compliance at rest of all that the fluid goes to, cubic metres per pascal.
+    /// The compliance at rest of actuator, gas and tubing, cubic metres per pascal.
     pub fn constant_compliance(&self) -> f64 {
         self.design.compliance
             + self.actuator_at_rest.compliance
@@ -213,7 +213,7 @@ impl Loop {
         self.alone(self.constant_compliance())?.contact_at(indentation)
     }
 
-    /// The fingertip alone that has the same state: its compliance stands for all that the fluid goes to.
+    /// The fingertip alone with the same state: its compliance replaces actuator, gas and tubing.
     ///
     /// # Errors
     /// [`ModelError`] of the fingertip.

@@ -50,7 +50,7 @@ const SHARE: [[f64; 2]; 2] = [[-4.2, 4.2], [0.0, 1.0]];
 const LOOK: u32 = 7;
 const HALVINGS: u32 = 8;
 
-/// What the chip's rules for a wall in time need of a design.
+/// Parameters of a design for the chip's rules for a relaxing wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InTime {
     /// `phi_0`: share of the contact's force that the fluid bears at no pressure, 0 to 1.
@@ -61,7 +61,7 @@ pub struct InTime {
     pub weight_gain: f64,
     /// `P_2` of it, pascals, > 0.
     pub weight_half: f64,
-    /// What [`WALL_TEMPERATURE`] moves the settled pressure by, over `P_e (1 - P_e / P)`, >= 0.
+    /// Change of the settled pressure by [`WALL_TEMPERATURE`], over `P_e (1 - P_e / P)`, >= 0.
     pub temperature_gain: f64,
 }
 

@@ -2,7 +2,7 @@
 
 use super::Generated;
 
-/// What tables are held to.
+/// Accuracy limit of tables.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum AccuracyLimit {
     /// What `[accuracy]` asks.
@@ -25,7 +25,7 @@ impl AccuracyLimit {
 }
 
 impl Generated {
-    /// What force and indentation are held to.
+    /// Accuracy limits of force and indentation.
     pub fn limits(&self) -> [AccuracyLimit; 2] {
         let certificate = &self.certified.certificate;
         let allowed = [&certificate.force, &certificate.indentation].map(|errors| errors.allowed_percent);
@@ -61,7 +61,7 @@ impl Generated {
         force.min(indentation)
     }
 
-    /// What `[accuracy]` asks of force and indentation, percent of reading.
+    /// Accuracy of force and indentation that `[accuracy]` requires, percent of reading.
     pub fn asked_percent(&self) -> [f64; 2] {
         self.design.accuracy.as_ref().map_or([0.0; 2], |accuracy| {
             [
@@ -71,7 +71,7 @@ impl Generated {
         })
     }
 
-    /// One line that justifies how fine the tables are: what was asked, and what the transducer can tell.
+    /// One line that justifies the accuracy of the tables: the required one, and the resolution of the transducer.
     pub fn choice(&self) -> String {
         let [force, indentation] = self.asked_percent();
         let tells = format!(

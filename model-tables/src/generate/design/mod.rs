@@ -35,7 +35,7 @@ const MAX_STIFFENED: f64 = 65_535.0;
 /// How often the accuracy is doubled at most where worse is allowed: a thousand times what was asked.
 const MAX_DOUBLINGS: u32 = 10;
 
-/// What tables of a design are made from.
+/// The solved design from which tables are made.
 #[derive(Clone, Debug)]
 pub struct Solved {
     /// Its transducer.
@@ -73,12 +73,11 @@ pub struct Generated {
     pub model_error: Option<Comparison>,
     /// The model that the curve is of; `None` where it was measured.
     pub kind: Option<Kind>,
-    /// What the chip's rules for a wall in time need; `None` where the wall does not relax.
+    /// Parameters of the chip's rules for a relaxing wall; `None` if the wall does not relax.
     pub in_time: Option<InTime>,
     /// The membrane against the solid of the same wall; `None` where the model is a solid, or there is none.
     pub membrane_error: Option<OwnError>,
-    /// What an object that the chip is not told leaves open; `None` where the curve is of data, the object a punch, or a ball has no
-    /// press.
+    /// Band for an unknown object; `None` if the curve is of data, the object is a punch, or a ball has no press.
     pub band: Option<Band>,
     /// Largest error of the feedback force on finer meshes, percent of reading; `None` where there is none, or the curve is of data.
     pub feedback_mesh_percent: Option<f64>,
@@ -100,8 +99,8 @@ pub fn from_design(design: DesignFile) -> Result<Generated, GenerateError> {
     make(design, 0)
 }
 
-/// The same, where no tables meet the accuracy with those of the nearest accuracy that some meet: that asked for, doubled as often
-/// as it takes. [`Generated::shortfall`] says what was not reached.
+/// The same. If no tables meet the accuracy, they are those of the nearest reachable one: the required accuracy, doubled as often
+/// as necessary. [`Generated::shortfall`] states the accuracy that was not reached.
 ///
 /// # Errors
 /// [`GenerateError`].

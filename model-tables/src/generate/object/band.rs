@@ -35,7 +35,7 @@ const TENTHS: f64 = 10.0;
 /// How far the truth may lie from a reading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
-    /// What the tables are of that are read.
+    /// The object of the tables.
     pub tables_of: Touched,
     /// Smallest ball of the set, millimetres.
     pub smallest_ball_mm: f64,
@@ -322,7 +322,7 @@ impl Band {
 }
 
 impl BandRow {
-    /// Whether force and indentation lie within the band of what is read, in units of their own.
+    /// Whether force and indentation are within the band of the reading, each in its own unit.
     pub fn holds(&self, read: [f64; 2], truth: [f64; 2]) -> bool {
         let bands = [self.force_percent, self.indentation_percent];
         bands.iter().zip(read).zip(truth).all(|((band, read), truth)| {

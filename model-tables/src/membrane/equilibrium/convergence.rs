@@ -21,7 +21,7 @@ pub(super) struct Step {
     /// Change of the pole, relative. It is a singular point: nothing else depends on it strongly, and it settles an iteration
     /// later.
     pub pole: f64,
-    /// What the step was multiplied by, 1 for a full step.
+    /// Factor of the step, 1 for a full step.
     pub damping: f64,
 }
 

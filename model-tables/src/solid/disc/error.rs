@@ -4,7 +4,7 @@ use super::DiscDesign;
 use crate::solid::Failure;
 use core::fmt;
 
-/// What ends the path of a disc.
+/// Cause of the end of a disc's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DiscEnd {
     /// The pressure has its greatest value: beyond, the disc inflates under less and less.
