@@ -167,11 +167,11 @@ pub(crate) fn rise_where(generated: &Generated, reached: impl Fn(Reading) -> boo
 pub fn markdown(budgets: &[Budget]) -> String {
     let mut text = "# Error budgets\n\
          \n\
-         What each stage adds to the error of a reading, percent of the force (F) and the indentation (H) at 5, 25 and 100 % of the\n\
-         full indentation. `UPDATE_EXPECT=1 cargo test --package host-tests --test golden` writes this page; the same test fails\n\
-         when it is stale. *max* is a largest error, *sd* one standard deviation; the sum is that of the largest errors and the\n\
-         root of the sum of the squares of the others. The zero is one that was measured untouched, with no drift and no change of\n\
-         temperature since. Not in it: what the model leaves out of a real dome, which a calibration takes in.\n"
+         The tables list the error of each stage of a reading, in percent of the force (F) and the indentation (H), at 5, 25 and\n\
+         100 % of the full indentation. `UPDATE_EXPECT=1 cargo test --package host-tests --test golden` writes this page; the same\n\
+         test fails when it is stale. *max* is a largest error, *sd* one standard deviation. The sum adds the largest errors and the\n\
+         root of the sum of the squares of the others. The zero was measured untouched, without drift or change of temperature since.\n\
+         The difference between model and real dome is not included; a calibration corrects for it.\n"
         .to_owned();
     for budget in budgets {
         let _ = write!(

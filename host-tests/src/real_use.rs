@@ -160,20 +160,22 @@ fn depth_error(depth: f64) -> f64 {
 
 /// The page.
 pub fn markdown(designs: &[RealUse]) -> String {
-    let mut text = "# What a reading is worth: everything that adds to its error\n\
-         \n\
-         What each source adds to a reading of 0.2, 1 and 5 N of a plate, percent of the force (F) and of the indentation (H): the truth\n\
-         less the reading, largest to either side; *sd* is one standard deviation. `UPDATE_EXPECT=1 cargo test --package host-tests --test\n\
-         golden` writes this page; the same test fails when it is stale. Stages of the chip are those of [their budget](../host-tests/BUDGET.md).\n\
-         \n\
-         - The zero: its bound of an ok reading, drift and transducer's temperature included.\n\
-         - Time: `index-fingertip` steps its wall in time; what is left is tested (`cargo test -p host-tests --test relaxing_wall`), of the\n\
-         \x20 first press. A wall like that read through tables alone, as those of `index-fingertip-elastic`, gives 8.2 N for 5 N pressed in 1 s\n\
-         \x20 (the same test). The other designs state no series, so nothing is known of their walls in time.\n\
-         - The wall's temperature: of a relaxing wall quoted from finite elements, a kelvin (5 % of F, 0.05, 0.08 and 0.11 mm of H at 0.5,\n\
-         \x20 1 and 2 mm); of the others as of ideal rubber, whose stiffness goes with the absolute temperature.\n\
-         - Object and friction: the band of [the certificate](golden), where the chip is not told what it touches; one effect at a time.\n\
-         - Not in it: material constants and thickness of one fingertip, which [a calibration](CALIBRATION.md) takes in.\n"
+    let mut text = "# Error budget: all error sources of a reading\n\
+    \n\
+    The tables list the error of each source for a reading of 0.2, 1 and 5 N on a plate, in percent of the force (F) and of the\n\
+    indentation (H). The error is the truth minus the reading, largest to either side; *sd* is one standard deviation.\n\
+    `UPDATE_EXPECT=1 cargo test --package host-tests --test golden` writes this page; the same test fails when it is stale.\n\
+    The stages of the chip are those of [their budget](../host-tests/BUDGET.md).\n\
+    \n\
+    - Zero: the bound of an ok reading, drift and transducer's temperature included.\n\
+    - Time: `index-fingertip` computes the relaxation of its wall. The remaining error in the first press is tested\n\
+    \x20 (`cargo test -p host-tests --test relaxing_wall`). Without that computation, tables like those of `index-fingertip-elastic`\n\
+    \x20 read 8.2 N on such a wall for 5 N pressed in 1 s (the same test). The other designs state no series, so their error in time\n\
+    \x20 is unknown.\n\
+    - Temperature of the wall: for a relaxing wall, one kelvin, quoted from finite elements (5 % of F; 0.05, 0.08 and 0.11 mm of H\n\
+    \x20 at 0.5, 1 and 2 mm). For the others, that of ideal rubber, whose stiffness is proportional to the absolute temperature.\n\
+    - Object and friction: the band of [the certificate](golden) for an object unknown to the chip; effects are not combined.\n\
+    - Not included: material constants and thickness of one fingertip; [a calibration](CALIBRATION.md) corrects for them.\n"
         .to_owned();
     for design in designs {
         let _ = write!(
@@ -235,11 +237,11 @@ pub fn markdown(designs: &[RealUse]) -> String {
 const IN_TIME: &str = "\n## In real use, in time\n\n\
     `cargo campaign grasps --scenes 30 --worlds 4 --seed 2026` prints these tables. A scene is two grasps of one object through the\n\
     firmware's own signal path. Four of ten objects are plates, four balls of 5 to 50 mm radius, two cups from 2.65 times the crown's\n\
-    radius of curvature on. Drawn evenly in the logarithm: the force of the grasp (0.2 to 8 N on a plate), the ramp (0.1 to 30 s), the hold (0.3 to 10 s),\n\
-    the release (0.1 to 3 s), the time to the next grasp (1 to 30 s). The wall has 15 to 25 degrees Celsius and the chip takes it to have 20.\n\
-    Each scene is read in four worlds, told the object and not told: half with the design's own part, half with an absolute one (MS5837-02BA) in weather of up to\n\
-    98 Pa an hour; each with the part's noise and steps, a drift of up to 2 Pa an hour, and a zero that goes, before the touch, anywhere within the bound\n\
-    of an ok reading.\n\n\
+    radius of curvature on. These values are drawn with a uniform logarithm: the force of the grasp (0.2 to 8 N on a plate), the ramp\n\
+    (0.1 to 30 s), the hold (0.3 to 10 s), the release (0.1 to 3 s), and the time to the next grasp (1 to 30 s). The wall has 15 to 25\n\
+    degrees Celsius; the chip assumes 20. Each scene is read in four worlds, with the object told to the chip and not told. Half of the\n\
+    worlds have the design's own part, half an absolute one (MS5837-02BA) in weather of up to 98 Pa an hour. Each has the part's noise\n\
+    and steps, a drift of up to 2 Pa an hour, and, before the touch, a zero anywhere within the bound of an ok reading.\n\n\
     **The truth is the product's own solid** in time, 2 x 60 elements: what real Agilus30 does is not in it. Of the elastic design it is\n\
     the same solid without a series, its stiffness as the absolute temperature. Errors are percent of the truth where that is 0.2 N or more; each press, hold and\n\
     release counts once, whatever it lasts. *Stated*: three deviations, and where the object is not told the widest of the band, where it is told\n\

@@ -216,10 +216,11 @@ fn by_indentation(text: &mut String, measured: &[&MeasuredWall]) {
 fn choices(text: &mut String, measured: &[&MeasuredWall]) {
     text.push_str(
         "\n## What `kind = \"auto\"` takes\n\n\
-         The cheapest fidelity that differs from the solid 2 x 60 by no more than what is allowed less that solid's own error (0.6 %; \
-         1 % where the wall is thinner than 0.02 of the radius, or pressed deeper than 0.36 of the height), and otherwise the \
-         cheapest that is near enough to the refined one. How many walls end on which fidelity, and the largest error let through, \
-         with the number of its wall (`compare::campaign::walls::draw`):\n\n\
+         `auto` takes the cheapest fidelity whose difference from the solid 2 x 60 is at most the allowed error less that \
+         solid's own error. This own error is 0.6 %, or 1 % if the wall is thinner than 0.02 of the radius or pressed deeper \
+         than 0.36 of the height. If there is none, `auto` takes the cheapest fidelity that is close enough to the refined \
+         one. The table lists how many walls get which fidelity, and the largest error that was accepted, with the number of \
+         its wall (`compare::campaign::walls::draw`):\n\n\
          | allowed, % |",
     );
     for kind in LADDER {

@@ -218,10 +218,10 @@ fn page(domes: &[Case; 3], papers: &[Case; 3], paper_data: &Data, target: &Targe
         libm::ceil(worst)
     );
     text.push_str(
-        "\nA membrane can be made to follow a wall that bends, but with values that the device does not have: the data were made \
-         with the modulus as drawn, no stretch, no compliance and no offset. Inside the range it was fitted in, such a \
-         calibration is valid; it carries over to no other depth or dome. The standard errors do not include that: they are \
-         those of noise. Modulus and wall act on a membrane as one, so the wall is held.\n\n",
+        "\nA membrane can be fitted to a wall that bends, but only with values that the device does not have: the data were \
+        made with the modulus as drawn, no stretch, no compliance and no offset. Such a calibration is valid inside the range \
+        of its data, and for no other depth or dome. The standard errors do not include this model error, only noise. Modulus \
+        and wall thickness have the same effect on a membrane, so the wall is held.\n\n",
     );
     text.push_str(SURENESS);
     text.push_str(&paper_section(papers, paper_data));
@@ -231,7 +231,7 @@ fn page(domes: &[Case; 3], papers: &[Case; 3], paper_data: &Data, target: &Targe
 
 /// Too long for a test, which runs fewer repeats against the same nominal shares.
 const SURENESS: &str = "## How sure the standard errors are, and how long it takes\n\n\
-    Where the model is right and noise is all there is, they hold. Over 200 synthetic benches (25 rows, 1 % noise, the usual \
+    If the model is right and noise is the only error, the standard errors are correct. Over 200 synthetic benches (25 rows, 1 % noise, the usual \
     parameters) the truth lies within one standard error of the modulus in 68 %, of the stretch in 64 %, of the compliance in 70 % \
     of them (nominal are 68 %, and 7 % either way is chance), and within two in 95, 95 and 97 % (nominal 95 %). `FIT_REPEATS=200 cargo test --release -p designer \
     --test fit standard_errors -- --nocapture` repeats that. Such a fit takes half a second of one core, and the search below 7 s; \

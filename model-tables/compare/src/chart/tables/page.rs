@@ -44,9 +44,9 @@ fn of_designs(fronts: &[Front]) -> String {
     let mut text = format!(
         "## Over designs and accuracies\n\
          \n\
-         Bytes / instructions of force and indentation together, at a largest error of so much of reading from 1 % of full scale up\n\
-         (the same in absolute terms below), certified over every input; a transducer of 2 Pa. No output falls anywhere. The\n\
-         instructions are the lookup's own, from its shape; the image's are counted as they run.\n\
+         Bytes / instructions of force and indentation together, for the largest error in the heading: percent of reading from 1 % of\n\
+         full scale up, the same absolute error below, certified over every input. The transducer has 2 Pa. No output falls anywhere.\n\
+         The instructions are computed from the shape of the lookup; those of the image are counted as they run.\n\
          \n\
          | design | pole stretch at rest | octaves | exponent | {percents} |\n\
          |---|---|---|---|---|---|---|---|---|\n"
@@ -55,13 +55,13 @@ fn of_designs(fronts: &[Front]) -> String {
         let _ = writeln!(text, "{row}");
     }
     text.push_str(
-        "\nWhat a design needs goes with two of its numbers. *Octaves*: from the pressure at 1 % of the full indentation to that at\n\
-         the end; below, the errors are absolute and one segment does. A segment spans two octaves, so half as many segments\n\
-         are needed, and one or two for first contact, at 16 bytes each (20 with four powers). *Exponent*: the local power with\n\
-         which the indentation follows the pressure, there and at the end; the further it goes, the more each sum has to bend.\n\
-         Domes that are hardly stretched at rest touch down softly: most octaves, hence more than 128 bytes at 0.125 %. The one\n\
-         with most of them needs a sixth power, which is an instruction more: 29 where the others take 28 or less.\n\
-         *none*: 16-bit coefficients do not reach so far there.\n",
+        "\nThe size of the tables depends on two numbers of a design. *Octaves*: from the pressure at 1 % of the full indentation to that\n\
+        at the end. Below, the errors are absolute and one segment is enough. A segment spans two octaves, so half as many segments\n\
+        are needed, and one or two for first contact, at 16 bytes each (20 with four powers). *Exponent*: the local power of the\n\
+        indentation over the pressure, at both places. The more it changes, the more each sum must bend. Domes with little stretch at\n\
+        rest have a soft first contact. They have the most octaves, and need more than 128 bytes at 0.125 %. The dome with the most\n\
+        octaves needs a sixth power, which takes one more instruction: 29, while the others take 28 or less. *none*: 16-bit\n\
+        coefficients cannot reach this accuracy.\n",
     );
     text
 }
@@ -74,9 +74,9 @@ fn of_transducers(designs: &[Design]) -> String {
     let mut text = format!(
         "## Over transducers\n\
          \n\
-         What the tool chooses for a coarse transducer and for a fine one: bytes / instructions, and what it holds the tables to where\n\
-         that is not what was asked. Half of what a transducer tells apart, where that is least as a share of a reading, is as fine as\n\
-         tables need be: the certificate and `cargo designer table` say which of the two it was.\n\
+         Bytes / instructions of the tables that the tool chooses for a coarse and for a fine transducer, and their accuracy limit if it\n\
+         is not the required one. Tables need not be finer than half of the transducer's resolution, as the smallest fraction of a\n\
+         reading. The certificate and `cargo designer table` state which of the two limits applies.\n\
          \n\
          | design | asked | {} |\n\
          |---|---|{}\n",
@@ -116,12 +116,12 @@ fn of_ways(designs: &[Design]) -> String {
     let mut text = format!(
         "## Beside other ways\n\
          \n\
-         The least bytes at which each way keeps {COMPARED} % of reading, and its instructions then; in brackets the least error it\n\
-         reaches where it does not. Instructions are of both results as one function on the emulated chip, median over 64 inputs\n\
-         ([instructions.csv](instructions.csv), held by `cargo test-all`); the figures of these tables are those of their shape\n\
-         and what the call of the shipped ones adds. The others get what is best for them: an input already in their own unit, knots\n\
-         and values fitted to least largest error, and one search for both results where they have a search; 8-byte knots and\n\
-         up. Their errors are found at 20 000 inputs, those of these tables at every input. All points:\n\
+         The table lists the fewest bytes with which each method keeps {COMPARED} % of reading, and its instructions. If a method does not\n\
+         reach this, its smallest error is in brackets. Instructions are those of both results as one function on the emulated chip,\n\
+         median over 64 inputs ([instructions.csv](instructions.csv), checked by `cargo test-all`). For the tables of this project they\n\
+         are computed from their shape, plus the call of the shipped tables. The other methods get favourable conditions: an input in\n\
+         their own unit, knots and values fitted to the smallest maximum error, and one search for both results. One knot takes\n\
+         8 bytes or more. Their errors are found at 20 000 inputs, those of this project's tables at every input. All points:\n\
          [lookups.csv](lookups.csv).\n\
          \n\
          ![error against bytes and instructions](lookups.svg)\n\
