@@ -177,11 +177,12 @@ fn needed(scene: &ObjectScene, allowed: f64) -> &'static str {
 /// The chapter of the page.
 pub fn markdown(scenes: &[ObjectScene]) -> String {
     let mut text = format!(
-        "\n## What touches\n\nThe printed dome, 9 x 7 mm outside, Agilus30, unstretched, with three walls, on balls of radii that no law of \
-         weights is fitted to, and on a plate with a coefficient of friction of {FRICTION}. *Plate*: errors of a plate's tables, force / indentation, percent \
-         of the truth, which is the full solution of the same solid. *Blend*: of the plate's and the reference ball's tables, blended \
-         for the object; there is none of friction. *Band*: whether the truth lies in the band that the certificate states of the \
-         plate's tables. *Needs*: the least model whose force and indentation are within {} % at all three depths.\n\n\
+        "\n## What touches\n\nThe object tables are for the printed dome, 9 x 7 mm outside, Agilus30, unstretched, with three walls. The objects are \
+         balls with radii to which no law of weights is fitted, and a plate with a coefficient of friction of {FRICTION}. \
+         *Plate*: errors of the tables of a plate, force / indentation, in percent of the truth. The truth is the full solution \
+         of the same solid. *Blend*: errors of the blend of the tables of plate and reference ball; there is no blend for \
+         friction. *Band*: whether the truth is in the band that the certificate states for the tables of the plate. *Needs*: \
+         the simplest model whose force and indentation are within {} % at all three depths.\n\n\
          | wall, mm | object |",
         ALLOWED.map(|percent| percent.to_string()).join(", ")
     );

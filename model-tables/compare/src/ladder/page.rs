@@ -70,9 +70,11 @@ pub(super) fn markdown(
     let mut text = format!(
         "# Which model a wall needs\n\n\
          Written by `cargo designer ladder --designs {} --out DIR`, with every number in `ladder.csv`. Times are those of the machine \
-         that wrote the page; a test recomputes the walls that the last table names. Random walls: outer radius 5 to 12 mm, height 0.6 to 1.4 of it, wall 0.1 to 1.5 mm, three materials, one in \
-         three unstretched, the others stretched by 1 % to 100 % at the pole and bonded there. *Error* is the larger of force and \
-         pressure rise against the {}, relative, from 1 % of full scale on, at eight indentations up to 0.35 of the height",
+         that wrote the page; a test recomputes the walls that the last table names. \
+         Random walls: outer radius 5 to 12 mm, height 0.6 to 1.4 of the radius, wall 0.1 to 1.5 mm, three materials. One wall \
+         in three is unstretched; the others are stretched by 1 % to 100 % at the pole and bonded there. *Error* is the larger \
+         relative error of force and pressure rise against the {}, from 1 % of full scale on. It is found at eight indentations \
+         up to 0.35 of the height",
         measured.len() + left_out,
         LADDER[refined]
     );
