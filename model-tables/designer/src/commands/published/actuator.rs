@@ -116,7 +116,8 @@ impl OfPaper {
              {}\n\
              A disc between the fluid and a plate, clamped at its rim, passes on at most the pressure times its free area: {} N at {} kPa. Neither the \
              published formula nor the measurement is reproduced: both are more than that, and need an area of {} and {} mm^2 where the disc has {}. \
-             Whatever adds to it in the measurement (a wider chamber, a bulge over the frame, a zero of the force) is not in the paper.\n\
+             The paper does not state what increases the measured force (a wider chamber, a bulge over the frame, or a zero of \
+             the force).\n\
              \n\
              ### Is the exchange of fluid negligible?\n\
              \n\
@@ -126,7 +127,8 @@ impl OfPaper {
              {}\n\
              Against a plate that touches it the disc takes {} % of the fluid, and the touch has {} of the force of a closed fingertip: the conclusion \
              holds there. With {} it takes {} % of the volume, and the touch has {} of its force; with nothing over it {} %, and \
-             {}: a percent of the volume is not a percent of the force, because a closed fingertip is stiff.\n",
+             {}: one percent of the volume changes the force by much more than one percent, because a closed fingertip is \
+             stiff.\n",
             published(BLOCKED_PRESSURE * 1e-3),
             published(VOLUME_CHANGE_PRESSURE * 1e-3),
             table(

@@ -52,8 +52,8 @@ fn numbers(paper: &Paper) -> String {
          \n\
          G. Shi, A. Shariati, I. Eames, H. Wurdemann, *Modelling the compression of a soft ellipsoid fingertip*, Soft \
          Matter 18 (2022) 9076. Its stated inputs are `designs/paper-prestretched.toml`: semi-axes 4.5 mm (radial) and \
-         2.7 mm (axial), wall 1 mm, Agilus30 (C1 = 160355 Pa, C2 = 46559 Pa), stretched to 2.3 at the pole. They do not \
-         give its numbers, and nothing in this project is tuned so that they would.\n\
+         2.7 mm (axial), wall 1 mm, Agilus30 (C1 = 160355 Pa, C2 = 46559 Pa), stretched to 2.3 at the pole. These inputs do \
+         not give the paper's numbers, and nothing in this project is tuned to reach them.\n\
          \n\
          {}\n\
          The published end of the press is the inflated height less the undeformed one, {} mm with these inputs; here the \
@@ -168,9 +168,9 @@ fn misprints() -> String {
 fn others() -> String {
     "### Presses that others published\n\
      \n\
-     Found by reading, not computed by this page. No published press of a fluid-filled dome whose rim is held, with \
-     numbers of force or pressure against the travel of the plate, was found. Published problems that look alike do \
-     not map onto this one:\n\
+     This list is quoted from publications, not computed by this page. No published press of a fluid-filled dome with a held \
+     rim was found that gives numbers of force or pressure over the travel of the plate. Similar published problems do not \
+     correspond to this one:\n\
      \n\
      - A spherical membrane between two plates (W. W. Feng, W. H. Yang, J. Appl. Mech. 40 (1973) 209; T. J. \
      Lardner, P. Pujara, Mechanics Today 5 (1980) 161): its equator widens as it is pressed, while the rim of a \
@@ -292,10 +292,10 @@ fn consequences(solid: &Solid) -> String {
         "### So\n\
          \n\
          - A light touch is carried by bending. At {} mm the solid's force over its pressure means a contact radius of {} \
-         mm; its real contact has {} mm. There the force is not the pressure times the contact area. That the stretched \
-         membrane reads such touches nearly right it owes to the choice of its stretch, not to its physics.\n\
-         - A little stretch at rest stands in for bending, at one depth or another; it is no model of it. Its rest \
-         pressure is real only if the fingertip is really filled to that stretch.\n\
+         mm; its real contact has {} mm. There the force is not the pressure times the contact area. The stretched membrane \
+         reads such touches nearly right only because of the choice of its stretch, not because of its physics.\n\
+         - A small stretch at rest can replace bending at one depth, but it is no model of bending. Its rest pressure is real \
+         only if the fingertip is really filled to that stretch.\n\
          - Compliance of tubing and bubbles matters as much: {} mm^3/kPa turn the solid's {} N at 2 mm into {} N, and the \
          stretched membrane's {} N into {} N.\n\
          - An unstretched printed dome is therefore solved as a solid (`model.kind`), and a part still needs a calibration on \
