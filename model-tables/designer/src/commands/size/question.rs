@@ -34,42 +34,42 @@ const COLUMNS: &[&str] = &[
     "table_bytes",
     "accuracy_percent",
 ];
-/// Designs that a question gives where `--best` does not say.
+/// Number of designs for a job without `--best`.
 const BEST: usize = 3;
 /// Share of the search in the progress.
 const SEARCH: f64 = 0.4;
 
-/// The question in options, in the place of a file.
+/// The job in options, in place of a file.
 #[derive(Debug, clap::Args)]
 pub(super) struct Words {
-    /// The lightest touch that has to be told, newtons
+    /// Lightest touch to detect, newtons
     #[arg(long, value_name = "N", value_parser = finite, requires = "greatest_force_n", conflicts_with = "target")]
     lightest_touch_n: Option<f64>,
-    /// The greatest force that has to be read, newtons
+    /// Greatest force to measure, newtons
     #[arg(long, value_name = "N", value_parser = finite, requires = "lightest_touch_n", conflicts_with = "target")]
     greatest_force_n: Option<f64>,
-    /// Readings a second
+    /// Readings per second
     #[arg(long, value_name = "RATE", value_parser = finite, requires = "lightest_touch_n", default_value_t = 1.0)]
     readings_per_second: f64,
-    /// How long a grasp lasts, seconds
+    /// Duration of a grasp, seconds
     #[arg(long, value_name = "S", value_parser = finite, requires = "lightest_touch_n", default_value_t = 1.0)]
     grasp_s: f64,
-    /// What presses on the transducer: air, oil or water [default: any of them]
+    /// Medium at the transducer: air, oil or water [default: any of them]
     #[arg(long, value_name = "MEDIUM", requires = "lightest_touch_n", value_parser = MEDIA)]
     filling: Option<String>,
-    /// Radius of the ball that is grasped, millimetres [default: a plate]
+    /// Radius of the grasped ball, millimetres [default: a plate]
     #[arg(long, value_name = "MM", value_parser = finite, requires = "lightest_touch_n")]
     object_radius_mm: Option<f64>,
-    /// Outer diameter that the tip may have, millimetres
+    /// Largest outer diameter of the tip, millimetres
     #[arg(long, value_name = "MM", value_parser = finite, requires = "lightest_touch_n", default_value_t = 18.0)]
     diameter_mm: f64,
-    /// Height that the tip may have, millimetres
+    /// Largest height of the tip, millimetres
     #[arg(long, value_name = "MM", value_parser = finite, requires = "lightest_touch_n", default_value_t = 9.0)]
     height_mm: f64,
 }
 
 impl Words {
-    /// The question; `None` where none is asked in options.
+    /// The job; `None` if the options state none.
     pub(super) fn question(&self) -> Result<Option<SizingQuestion>, Refusal> {
         let (Some(lightest), Some(greatest)) = (self.lightest_touch_n, self.greatest_force_n) else {
             return Ok(None);
