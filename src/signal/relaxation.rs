@@ -1,18 +1,19 @@
 //! Pressure rise -> elastic pressure -> force and indentation, where the wall relaxes.
 //!
-//! A wall that relaxes as `g(t) = 1 + sum g_i exp(-t / tau_i)` answers an indentation with `P = w g * (P_e / w)`, the convolution of its series with
-//! the changes of the pressure `P_e` that the settled wall has at that indentation. The weight `w = 1 / (1 + kappa P_e / (P_2 + P_e))` falls as the
-//! contact grows: stress from when it was small lies where it does little now. Each step of time inverts it exactly, with `v = P_e / w`:
+//! A wall relaxes as `g(t) = 1 + sum g_i exp(-t / tau_i)`. Its pressure at an indentation is `P = w g * (P_e / w)`: the convolution
+//! of its series with the changes of `P_e`, the pressure of the settled wall at that indentation. The weight `w = 1 / (1 + kappa
+//! P_e / (P_2 + P_e))` falls as the contact grows, because stress from a smaller contact has little effect on the present one. Each
+//! time step inverts the convolution exactly, with `v = P_e / w`:
 //!
 //! `q_i -= k_i q_i; d = P / w - v - sum q_i; v += d / (1 + sum c); q_i += d c_i / (1 + sum c)`
 //!
-//! with `k_i = 1 - exp(-dt / tau_i)` and `c_i = g_i tau_i / dt k_i`. Afterwards `P / w = v + sum q_i` again, so that nothing drifts. The weight is
-//! that of the `P_e` that the two steps before lead half way on to; from there one step of Newton's method leads to the `P_e` of `v`. An error of
-//! what is expected moves the next one by `P_e / w` times the weight's slope at most, 0.48 of it, so that none grows. The tables lead
-//! from `P_e` to the indentation and to the settled force `F_e`.
+//! with `k_i = 1 - exp(-dt / tau_i)` and `c_i = g_i tau_i / dt k_i`. Afterwards `P / w = v + sum q_i` holds again, so there is no
+//! drift. The weight is that of the `P_e` extrapolated half a step from the two previous steps; from there, one step of Newton's
+//! method gives the `P_e` of `v`. An error of the extrapolation changes the next one by at most `P_e / w` times the weight's slope,
+//! 0.48 of it, so errors do not grow. The tables give the indentation and the settled force `F_e` at `P_e`.
 //!
-//! The contact's force is borne by the fluid, whose pressure acts on the area of contact at once, and by the wall, which remembers. Of the
-//! settled force the fluid bears the share `phi = phi_0 + (1 - phi_0) P_e / (P_1 + P_e)`. So
+//! Two parts carry the contact force: the fluid, whose pressure acts on the contact area at once, and the wall, which has a memory.
+//! The fluid carries the share `phi = phi_0 + (1 - phi_0) P_e / (P_1 + P_e)` of the settled force. Therefore
 //!
 //! `F = phi A P + (1 - phi) g * F_e` with `A = F_e / P_e`.
 //!
@@ -20,7 +21,7 @@
 //!
 //! A plate cannot pull: there is no force below zero.
 //!
-//! All states are 64-bit integers. A change of pressure, of at most 2^57, is shared, and nothing that the terms hold grows beyond it.
+//! All states are 64-bit integers. A change of pressure, of at most 2^57, is divided among the terms, and no term grows beyond it.
 
 use crate::signal::design::Design;
 use crate::signal::report::Contact;

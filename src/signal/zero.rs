@@ -17,11 +17,11 @@
 //! 5. Who commands a tare leaves the fingertip alone. If not, a gauge part loses at most six noise floors with status ok: a
 //!    level further over all that is known is taken, but stays unverified. An absolute part cannot tell a press from denser
 //!    air; it finds out at the release.
-//! 6. Who saves a tared zero vouches for it.
-//! 7. Hum grows by no more than a noise floor within four parts of a window, 64 ms.
+//! 6. A tared zero that the user saves is correct.
+//! 7. Hum grows by at most one noise floor within four parts of a window, 64 ms.
 //!
-//! What a design states beside drift (the weight of the fluid, hysteresis, creep, temperature) moves the zero back and forth: it is in
-//! the margin of everything that is seen. What is measured around the fingertip is in `surroundings`.
+//! The effects that a design states beside drift (the weight of the fluid, hysteresis, creep, temperature) move the zero back and
+//! forth. They are in the margin of every observation. Measured surroundings are in `surroundings`.
 
 pub mod estimator;
 mod interval;

@@ -8,16 +8,16 @@
 //! | in an activation | bytes | field |
 //! |---|---|---|
 //! | 0 | 4 | `FTA` and the version of this layout, 1 |
-//! | 4 | 4 | sequence number, from 1; the highest of both slots is in force |
+//! | 4 | 4 | sequence number, from 1; the highest of both slots is valid |
 //! | 8 | 4 | 1: this slot's block is in use; 0: the image's own tables are |
 //! | 12 | 4 | bytes of the block |
 //! | 16 | 4 | the CRC-32 in its head |
 //! | 20 | 8 | its design's hash |
 //! | 28 | 4 | CRC-32/ISO-HDLC of the bytes before |
 //!
-//! Numbers are little-endian. Power may fail at any write or erasure. A block counts only by an activation, which is written after
-//! the block was read back whole, and the slot with the activation in force is never erased: what a start finds is the tip
-//! from before or the new one, whole. What cannot be read is no activation.
+//! Numbers are little-endian. Power may fail at any write or erasure. A block is valid only with an activation, which is written
+//! after the whole block was read back. The slot with the valid activation is never erased. A start therefore finds the previous
+//! tip or the new one, complete. An activation that cannot be read is ignored.
 
 use crate::link::wire::Reader;
 use crate::storage::log::StoreError;

@@ -4,9 +4,9 @@
 //! |---|---|---|
 //! | start by a person or the supply | a quiet window near the reference: verified | a verified zero that is kept; else a quiet window that can be: unverified |
 //! | none within [`PATIENCE`] | the reference, unverified | no zero: [`Fault::Zeroing`] until one comes, or a command |
-//! | a supply that sags, a reset nobody saw coming, a zero is kept | it goes on as it was | it goes on as it was: the air has not moved meanwhile |
+//! | a supply that sags or an unrequested reset, a zero is kept | it stays in use | it stays in use: the air pressure has not changed meanwhile |
 //! | the same, none is kept | the reference, unverified | no zero: [`Fault::Zeroing`] until a command; the tip may be pressed |
-//! | command | refused as touched over an ok zero where it would not be ok; else taken, and verified where its bound allows | the same; what the air may have done is in the bound |
+//! | command | refused as touched over an ok zero if the new zero would not be ok; else taken, and verified if its bound allows | the same; the possible change of the air pressure is in the bound |
 
 use crate::signal::zero::interval::Interval;
 use crate::signal::zero::limits::Limits;
@@ -17,7 +17,7 @@ use crate::status::{Fault, Warnings};
 use crate::units::{Microseconds, Pressure};
 use model_tables::units::PressureRise;
 
-/// How long a window is, microseconds.
+/// Length of a window, microseconds.
 pub const WINDOW: u64 = window::LENGTH;
 
 /// The zero of one fingertip.
