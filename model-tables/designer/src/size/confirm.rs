@@ -1,6 +1,6 @@
 //! Sized membranes as design files: each solved by the model that its wall needs, moved to the target by that, with its tables.
 
-use super::question::judge::tabled;
+use super::question::judge::{ACCURACY, tabled};
 use super::refine::refine;
 use super::target::Target;
 use super::{NOTHING_FOUND, Sized, Sizing, Start, judge, root_mean_square, size};
@@ -135,7 +135,7 @@ impl Confirmed {
     }
 
     fn solved(target: &Target, sized: &Sized) -> Result<Self, String> {
-        let (text, generated) = tabled(|percent| sized.design_file(NAME, target, percent))?;
+        let (text, generated) = tabled(ACCURACY, |percent| sized.design_file(NAME, target, percent))?;
         let file = DesignFile::parse(&text, "design").map_err(|error| error.to_string())?;
         let mut tip = Fingertip::for_curve(&file).map_err(|error| error.to_string())?;
         let forces = target

@@ -14,7 +14,9 @@ use std::fmt::Write as _;
 /// How much deeper than the coarse solid's greatest force a design is pressed, in force.
 const BEYOND: f64 = 1.03;
 /// Accuracy of the tables that is asked first, percent of reading; what a part cannot tell is asked less of.
-const ACCURACY: f64 = 1.0;
+pub const ACCURACY: f64 = 1.0;
+/// The same of tables with a ball's beside them: their blend is worth a few percent, and finer ones are searched for in vain for seconds.
+const ACCURACY_OF_BLEND: f64 = 2.0;
 /// Halvings of a pressure that is looked for.
 const HALVINGS: usize = 40;
 /// Digits after the point of what an accuracy is rounded up to.
@@ -48,18 +50,18 @@ pub struct SizedTip<'a> {
 }
 
 /// A design file that needs no accuracy that its part cannot tell, and its tables; `design` writes its text with the accuracies of force
-/// and indentation in percent.
+/// and indentation in percent, of which `asked` comes first.
 ///
 /// # Errors
 /// One line, of what gives no tables.
-pub fn tabled(design: impl Fn(f64) -> String) -> Result<(String, Generated), String> {
+pub fn tabled(asked: f64, design: impl Fn(f64) -> String) -> Result<(String, Generated), String> {
     let make = |percent: f64| -> Result<(String, Generated), String> {
         let text = design(percent);
         let file = DesignFile::parse(&text, "design").map_err(|error| error.to_string())?;
         let generated = from_design_or_worse(file).map_err(|error| error.to_string())?;
         Ok((text, generated))
     };
-    let (text, generated) = make(ACCURACY)?;
+    let (text, generated) = make(asked)?;
     if generated.shortfall().is_none() {
         return Ok((text, generated));
     }
@@ -85,11 +87,20 @@ pub fn judge<'a>(
     candidate: Candidate<'a>,
 ) -> Result<SizedTip<'a>, String> {
     let mut deepest = candidate.deepest * libm::pow(BEYOND, 0.5);
-    let mut made = tabled(|percent| design(question, name, &candidate, deepest, percent))?;
+    let asked = if question.radius_mm.is_none() {
+        ACCURACY
+    } else {
+        ACCURACY_OF_BLEND
+    };
+    let mut made = tabled(asked, |percent| {
+        design(question, name, &candidate, deepest, percent)
+    })?;
     if question.radius_mm.is_none() && made.1.end.force < question.greatest_n {
         // Force grows at least in proportion.
         deepest *= BEYOND * question.greatest_n / made.1.end.force;
-        made = tabled(|percent| design(question, name, &candidate, deepest, percent))?;
+        made = tabled(asked, |percent| {
+            design(question, name, &candidate, deepest, percent)
+        })?;
     }
     let (text, generated) = made;
     // Tables of a plate are read as on the chip; of a ball the model is, whose blend of both tables is within a few percent of it.
