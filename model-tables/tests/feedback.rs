@@ -116,3 +116,56 @@ fn what_cannot_balance_is_refused_with_the_reason() {
         "{refused:?}"
     );
 }
+
+const SKIN: FarSide = FarSide::Foundation {
+    gap: 0.0,
+    stiffness: 20e6,
+};
+
+/// The compliance at rest is the volume of a small pressure over that pressure; what is out of reach changes nothing of it.
+#[test]
+fn the_compliance_at_rest_is_that_of_a_small_pressure() {
+    let over = |far_side: FarSide| {
+        let mut disc = actuator(far_side, AGILUS30, 1e-3);
+        let at_rest = disc.at_pressure(0.0).expect("at rest").compliance;
+        let small = disc.at_pressure(0.1).expect("a state");
+        println!(
+            "{far_side:?}: {at_rest:e} at rest, {:e} at 0.1 Pa",
+            small.volume / 0.1
+        );
+        assert!(
+            (at_rest / (small.volume / 0.1) - 1.0).abs() < 1e-4,
+            "{far_side:?}"
+        );
+        at_rest
+    };
+    over(SKIN);
+    let free = over(FarSide::Free);
+    for gap in [0.01e-3, 0.1e-3, 0.2e-3] {
+        let gapped = over(FarSide::Plate { gap });
+        assert!((gapped / free - 1.0).abs() < 1e-9, "{gap}");
+    }
+}
+
+/// The volume that has left the fingertip is the actuator's at that pressure, at every indentation from a touch of a tenth of a millimetre on: to
+/// a hundred-thousandth, as the actuator's compliances are.
+#[test]
+fn no_fluid_is_lost_at_any_indentation() {
+    let mut off = 0.0_f64;
+    for far_side in [SKIN, FarSide::Free, FarSide::Plate { gap: 0.2e-3 }] {
+        let mut haptic = Loop::new(
+            Kind::Solid(COARSE),
+            &printed(0.0),
+            actuator(far_side, AGILUS30, 1e-3),
+        )
+        .expect("at rest");
+        let mut disc = actuator(far_side, AGILUS30, 1e-3);
+        for step in 5..=100 {
+            let state = haptic.at_indentation(f64::from(step) * 0.02e-3).expect("a state");
+            let volume = disc.at_pressure(state.actuator.pressure).expect("a state").volume;
+            off = off.max((state.volume_moved / volume - 1.0).abs());
+        }
+        println!("{far_side:?}: volume off by at most {off:.1e}");
+    }
+    assert!(off < 1e-5, "{off:.1e}");
+}

@@ -27,8 +27,12 @@ use std::fmt;
 const TOLERANCE: f64 = 1e-7;
 /// Accuracy that is enough where rounding leaves no better one: at the lightest touches.
 const ROUNDED: f64 = 1e-5;
-/// Part of the disc's volume by which a sum of its compliances may be off a finer one to be taken for it. It is then right to the square of that.
+/// Part of the disc's volume by which a sum of its compliances may be off a finer one, and off the volume where that has the digits, to be
+/// taken for it. The compliances themselves are right to 1e-5.
 const SMOOTH: f64 = 1e-4;
+/// Part of its wall's volume from which on the volume that a disc has taken has more digits than [`SMOOTH`] asks: both volumes are right to some 1e-9 of
+/// that.
+const COUNTED: f64 = 1e-4;
 /// Part by which the sum of two compliances may be off the volume for a third one to be looked at, from this part of the pressure on.
 const ABOUT: f64 = 1e-2;
 const LIGHT: f64 = 0.05;
@@ -281,7 +285,10 @@ impl Loop {
         }
         let middle = self.actuator.at_pressure(at_rest.pressure + 0.5 * rise)?;
         let simpson = rise / 6.0 * (ends + 4.0 * middle.compliance);
-        let is_smooth = (trapezium - simpson).abs() <= SMOOTH * simpson.abs();
+        let is_off = |other: f64| (other - simpson).abs() > SMOOTH * simpson.abs();
+        let is_counted = difference.abs() > COUNTED * self.actuator.wall_volume();
+        // Two sums may agree by chance.
+        let is_smooth = !is_off(trapezium) && !(is_counted && is_off(difference));
         Ok(if is_smooth { simpson } else { difference })
     }
 

@@ -85,7 +85,7 @@ impl fmt::Display for DiscError {
             ),
             Self::NotADisc { design } => write!(
                 f,
-                "an actuator of diameter {} mm and thickness {} mm with {:?} over it is no disc: the thickness is more than 0 \
+                "an actuator of diameter {:?} mm and thickness {:?} mm with {} over it is no disc: the thickness must be more than 0 \
                  and less than the diameter, a gap at least 0, a foundation's stiffness more than 0",
                 design.diameter * 1e3,
                 design.thickness * 1e3,

@@ -22,6 +22,7 @@ use super::state::{Balance, State};
 use crate::material::{Hyperelastic as _, Law};
 use crate::object::Friction;
 use core::f64::consts::PI;
+use core::fmt;
 use path::{Kept, Path, Stop};
 
 /// Elements of a disc: deflection and volume to 0.3 % of a refined mesh where the thickness is 0.2 of the radius, 1.5 % at 0.45.
@@ -54,6 +55,23 @@ pub enum FarSide {
         /// Its pressure over the depth to which it is pushed in, pascals per metre, > 0.
         stiffness: f64,
     },
+}
+
+impl fmt::Display for FarSide {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Free => f.write_str("nothing"),
+            Self::Plate { gap } => write!(f, "a plate at {:?} mm", gap * 1e3),
+            Self::Foundation { gap, stiffness } => {
+                write!(
+                    f,
+                    "a foundation of {:?} kPa/mm at {:?} mm",
+                    stiffness * 1e-6,
+                    gap * 1e3
+                )
+            }
+        }
+    }
 }
 
 /// A disc, in SI units.
@@ -229,6 +247,11 @@ impl Disc {
             pressure,
             ..found.in_units(&self.wall, self.path.plate(), self.length, self.modulus)
         })
+    }
+
+    /// Volume of the wall within the clamp, cubic metres.
+    pub fn wall_volume(&self) -> f64 {
+        PI * self.wall.mesh.thickness * self.length * self.length * self.length
     }
 
     fn solve(&mut self, pressure: f64) -> Result<Kept, DiscError> {

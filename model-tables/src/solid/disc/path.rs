@@ -16,6 +16,8 @@ use core::f64::consts::PI;
 const FIRST_STEP: f64 = 0.15;
 /// Largest step, moduli.
 const LARGEST_STEP: f64 = 0.1;
+/// Pressure of a state that is hardly loaded, over that of the first step.
+const HARDLY: f64 = 1e-4;
 /// Step under which a path ends, over the pressure.
 const SMALLEST_STEP: f64 = 1e-6;
 /// Largest growth of a step.
@@ -184,10 +186,8 @@ impl Path {
                 Ok((kept, strain)) => {
                     let growth = libm::sqrt(EASY / strain.max(1e-3)).min(LARGEST_GROWTH);
                     self.step = (self.step * growth).min(LARGEST_STEP);
-                    if self.stations.len() == 1 {
-                        // A face that only touches what is over it follows as if it were free: the loaded one's slopes hold down to no load.
-                        self.stations[0].tangent = kept.tangent.clone();
-                        self.stations[0].compliance = kept.compliance;
+                    if self.stations.len() == 1 && self.plate <= wall.mesh.thickness {
+                        self.lie(wall, &kept);
                     }
                     self.stations.push(kept);
                     return;
@@ -201,6 +201,19 @@ impl Path {
                 }
             }
         }
+    }
+
+    /// A face that only touches what is over it follows as if it were free. The slopes of one that is hardly loaded, [`HARDLY`] of this state's
+    /// pressure, hold down to no load; of this state itself, where there is no such one.
+    fn lie(&mut self, wall: &mut SolidWall, loaded: &Kept) {
+        let mut guess = self.stations[0].state.clone();
+        guess.add(-HARDLY, &self.stations[0].state);
+        guess.add(HARDLY, &loaded.state);
+        let pressure = HARDLY * loaded.pressure();
+        let hardly = self.solve(wall, &self.stations[0], pressure, &guess, Some(loaded.work));
+        let slopes = hardly.as_ref().map_or(loaded, |(kept, _)| kept);
+        self.stations[0].tangent = slopes.tangent.clone();
+        self.stations[0].compliance = slopes.compliance;
     }
 
     /// A guess beyond the last state: the parabola with its value and slope, through the one before.
