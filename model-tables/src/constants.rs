@@ -111,6 +111,18 @@ impl Transducer {
         }
     }
 
+    /// The same part at another address of its bus; an analogue one has none.
+    #[must_use]
+    pub const fn at(self, address: u8) -> Self {
+        let kind = match self.kind {
+            TransducerKind::Abp2 { counts, .. } => TransducerKind::Abp2 { address, counts },
+            TransducerKind::Ms5837 { .. } => TransducerKind::Ms5837 { address },
+            TransducerKind::Dps310 { .. } => TransducerKind::Dps310 { address },
+            analogue @ TransducerKind::Ratiometric { .. } => analogue,
+        };
+        Self { kind, ..self }
+    }
+
     /// The lowest rise that still reads as untouched, in counts of `1 / 2^fraction_bits` pascal: below it the
     /// firmware warns.
     pub const fn lowest_rest(&self, fraction_bits: u32) -> PressureRise {
@@ -166,6 +178,26 @@ pub mod period {
     pub const MS5837: u32 = 7_000;
     /// Two measurements of it.
     pub const DPS310: u32 = 14_000;
+}
+
+/// How long a part on a bus converts, microseconds.
+pub mod conversion {
+    /// Pressure and temperature at once (datasheet 32350268, section 5).
+    pub const ABP2: u32 = 5_000;
+    /// Temperature with 256 samples, and pressure with 2048 (TE, datasheet of 09/2017, "ADC": at most 0.60 and 4.54 ms).
+    pub const MS5837: [u32; 2] = [600, 4_600];
+    /// Temperature once, and four pressures averaged (datasheet V1.2, section 8.3, table 16).
+    pub const DPS310: [u32; 2] = [3_600, 8_400];
+}
+
+/// What limits the parts of a hand on one I2C bus, microseconds.
+pub mod hand_bus {
+    /// Longest that one transaction takes: 21 bytes, the most that a driver reads, are 0.5 ms at 400 kHz.
+    pub const OPERATION_LIMIT: u32 = 1_000;
+    /// Most that freeing the bus takes after it: the multiplexers' reset, nine pulses of 10 us and a stop, and their timers.
+    pub const RECOVERY: u32 = 500;
+    /// Most that a part that fails takes of the bus at a time.
+    pub const FAILURE: u32 = OPERATION_LIMIT + RECOVERY;
 }
 
 impl TransducerKind {

@@ -1,12 +1,13 @@
 //! The file of a hand: its tips, each with its own design and the input of its transducer on the board.
 
+pub mod bus;
+
 use super::bounds::Bounds;
 use super::document;
 use super::error::{DesignFileError, Problem};
 use super::section::{KeyFault, Section};
 use super::{DesignFile, Supply, TransducerKindSection};
 use sha2::{Digest, Sha256};
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
@@ -108,26 +109,22 @@ impl HandFile {
     /// The designs of its tips, in their order, each checked against the place that its tip names.
     ///
     /// # Errors
-    /// [`DesignFileError`] of a design, or of the tip that a design does not fit.
+    /// [`DesignFileError`] of a design, or of the tip that a design, its address or the time of the bus does not fit.
     pub fn designs(&self) -> Result<Vec<DesignFile>, DesignFileError> {
         let designs: Vec<DesignFile> = self
             .tips
             .iter()
             .map(|tip| self.design(tip))
             .collect::<Result<_, _>>()?;
-        let mut taken = BTreeSet::new();
-        for (tip, design) in self.tips.iter().zip(&designs) {
-            if let Some(place) = part_on_a_bus(tip.place, design)
-                && !taken.insert(place)
-            {
-                return Err(self.refuse(
-                    tip,
-                    "address",
-                    address_text(place),
-                    "another one than every other part's on this branch of the bus",
-                ));
-            }
+        let analogue = |tip: &TipSection| matches!(tip.place, TransducerPlace::Channel(_));
+        if let Some(tip) = self.tips.iter().find(|tip| !analogue(tip))
+            && let Some(other) = self.tips.iter().find(|tip| analogue(tip))
+        {
+            let found = format!("on the bus, and that of {} on the converter", other.name);
+            let allowed = "on the same as all others: a hand's reports are of one instant, and the two have periods of their own";
+            return Err(self.refuse(tip, "place", found, allowed));
         }
+        bus::BusRound::of(self, &designs, bus::SET_UP)?;
         Ok(designs)
     }
 
@@ -192,34 +189,6 @@ fn hash<'a>(tips: impl IntoIterator<Item = (&'a TipSection, &'a DesignFile)>) ->
     }
     let [a, b, c, d, e, f, g, h, ..] = <[u8; 32]>::from(digest.finalize());
     u64::from_be_bytes([a, b, c, d, e, f, g, h])
-}
-
-/// The place of a part on a bus with the address that it answers to.
-fn part_on_a_bus(place: TransducerPlace, design: &DesignFile) -> Option<TransducerPlace> {
-    let TransducerPlace::Bus { bus, branch, address } = place else {
-        return None;
-    };
-    let own = match design.transducer.as_ref()?.kind {
-        TransducerKindSection::Ratiometric { .. } => return None,
-        TransducerKindSection::Abp2 { address, .. } | TransducerKindSection::Dps310 { address } => address,
-        // TE, datasheet of 09/2017: the one address that it has.
-        TransducerKindSection::Ms5837 => 0x76,
-    };
-    Some(TransducerPlace::Bus {
-        bus,
-        branch,
-        address: Some(address.unwrap_or(own)),
-    })
-}
-
-fn address_text(place: TransducerPlace) -> String {
-    match place {
-        TransducerPlace::Bus {
-            address: Some(address),
-            ..
-        } => format!("{address:#04x}"),
-        _ => String::new(),
-    }
 }
 
 fn hand(text: &str, file: &str) -> Result<HandFile, KeyFault> {
@@ -324,15 +293,6 @@ fn check(section: &Section<'_>, before: &[TipSection], tip: &TipSection) -> Resu
             format!("another one than that of tip {}", other.name)
         };
         return Err(section.refuse("channel", &allowed));
-    }
-    if let TransducerPlace::Bus {
-        branch: Some(branch),
-        address: Some(address),
-        ..
-    } = tip.place
-        && address == branch.multiplexer
-    {
-        return Err(section.refuse("address", "another one than its multiplexer's"));
     }
     Ok(())
 }

@@ -139,11 +139,6 @@ fn what_a_hand_cannot_be_is_one_line_with_the_remedy() {
         ),
         (
             "channel = 5",
-            "bus = 1\nmultiplexer = [0x70, 1]\naddress = 0x70",
-            "hand.toml:12: `tip.address` is 0x70: must be another one than its multiplexer's",
-        ),
-        (
-            "channel = 5",
             "bus = 1",
             "hand.toml:9: `tip.design of index` is skin-analogue.toml: must be one whose transducer is on a bus, as the tip has `bus`; give `channel` for a ratiometric one",
         ),
@@ -216,8 +211,25 @@ fn two_parts_of_one_address_need_two_branches() {
     ] {
         let error = on_a_bus(first, second).expect_err("they answer at once");
         assert!(
-            error.contains("`tip.address of b` is 0x77: must be another one than every other part's on this branch of the bus"),
+            error.contains(
+                "`tip.address of b` is 0x77: must be another one than that of tip a on this branch of the bus"
+            ),
             "{error}"
         );
     }
+}
+
+#[test]
+fn a_hand_is_on_the_converter_or_on_the_bus() {
+    let text = format!("{HAND}[[tip]]\nname = \"ring\"\ndesign = \"skin-light-touch.toml\"\nbus = 1\n");
+    let error = beside_the_designs(&text)
+        .and_then(|hand| hand.designs().map(drop))
+        .expect_err("its tips have two periods")
+        .to_string();
+    assert!(
+        error.contains(
+            "`tip.place of ring` is on the bus, and that of thumb on the converter: must be on the same as all others"
+        ),
+        "{error}"
+    );
 }
