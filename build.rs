@@ -3,9 +3,11 @@
 //! `FINGERTIP_DESIGN`, relative to the workspace root, chooses the design.
 
 use model_tables::constants::TransducerKind;
-use model_tables::design_file::DesignFile;
+use model_tables::design_file::hand::bus::{BusRound, SET_UP};
 use model_tables::design_file::hand::{HandFile, TransducerPlace, is_hand};
+use model_tables::design_file::{DesignFile, TransducerKindSection};
 use model_tables::generate::{self, AccuracyLimit, GenerateError, Generated};
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -21,6 +23,10 @@ const BOARDS: [(&str, Option<&str>, u32); 3] = [
     ("nucleo-g474re", Some("src/board/nucleo_g474re.x"), 10),
 ];
 
+/// What the firmware of a board that is not the default one does for a transaction on a hand's bus beside its bits, microseconds: 3500
+/// instructions, all that runs beside them among them, at 1.3 cycles of 24 and 104 MHz.
+const SET_UPS: [(&str, u32); 2] = [("nucleo-l432kc", 190), ("nucleo-g474re", 45)];
+
 /// A tip's conversion, and what the scans of a block come to at about, microseconds.
 const CONVERSION: u32 = 10;
 const BLOCK: u32 = 1_000;
@@ -33,8 +39,10 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rustc-check-cfg=cfg(relaxation)");
     println!(
-        "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\"))"
+        "cargo::rustc-check-cfg=cfg(transducer, values(\"ratiometric\", \"abp2\", \"ms5837\", \"dps310\", \"bus\"))"
     );
+    println!("cargo::rustc-check-cfg=cfg(part, values(\"abp2\", \"ms5837\", \"dps310\"))");
+    println!("cargo::rustc-check-cfg=cfg(multiplexer)");
     println!("cargo::rustc-check-cfg=cfg(object)");
     println!("cargo::rustc-check-cfg=cfg(feedback)");
     println!("cargo::rustc-check-cfg=cfg(feedback_tables)");
@@ -104,46 +112,32 @@ fn hand(path: &Path) -> Result<(String, String), String> {
         println!("cargo::rerun-if-changed={}", tip.design.display());
     }
     let designs = file.designs().map_err(|error| error.to_string())?;
-    let channels: Vec<u8> = file
-        .tips
-        .iter()
-        .filter_map(|tip| match tip.place {
-            TransducerPlace::Channel(channel) => Some(channel),
-            TransducerPlace::Bus { .. } => None,
-        })
-        .collect();
-    if channels.len() != file.tips.len() {
-        return Err(named(
-            "parts on a bus are not read yet: give each [[tip]] a channel",
-        ));
-    }
     println!("cargo::rustc-cfg=hand");
     if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
         // Its tips are made on the stack.
         println!("cargo::rustc-link-arg-bins=--defsym=_stack_length=0x4000");
     }
     println!("cargo::rustc-cfg=tips");
-    println!("cargo::rustc-cfg=transducer=\"ratiometric\"");
-    let reference = chosen_board().map_or(BOARDS[0].2, |(_, _, reference)| reference);
-    let scan = CONVERSION * channels.len() as u32 + reference;
-    // Two scans are a row of words where their codes are an odd number.
-    let step = if channels.len().is_multiple_of(2) { 2 } else { 1 };
-    let scans = (BLOCK + step * scan / 2) / (step * scan) * step;
+    let board = chosen_board().map_or(BOARDS[0].0, |(board, ..)| board);
+    let other = SET_UPS.iter().find(|(name, _)| *name == board);
+    let set_up = other.map_or(SET_UP, |(_, set_up)| *set_up);
+    let round = BusRound::of(&file, &designs, set_up).map_err(|error| error.to_string())?;
+    let of_the_kind = match &round {
+        None => scanned(&file),
+        Some(round) => on_the_bus(&file, &designs, round),
+    };
     let names: Vec<&str> = file.tips.iter().map(|tip| tip.name.as_str()).collect();
-    let tips = channels.len();
+    let tips = file.tips.len();
     let mut source = format!(
         "/// The hand's name.\npub const NAME: &str = {:?};\n\
          /// Hash of its tips, where they are, and their designs.\npub const HASH: u64 = {};\n\
          /// Its tips.\npub const TIPS: usize = {tips};\n\
          /// Their names.\npub const TIP_NAMES: [&str; TIPS] = {names:?};\n\
          /// What their stored calibrations are for: hashes of each tip's name, place and design.\npub const TIP_HASHES: [u64; TIPS] = {:?};\n\
-         /// Their channels.\npub const CHANNELS: [u8; TIPS] = {channels:?};\n\
-         /// Scans of a block.\npub const SCANS: usize = {scans};\n\
-         /// From one block to the next, microseconds.\npub const PERIOD: u32 = {};\n",
+         {of_the_kind}",
         file.name,
         file.hash(&designs),
         file.tip_hashes(&designs),
-        scans * scan
     );
     // Tips of one design share its tables and its code.
     let mut different: Vec<&DesignFile> = Vec::new();
@@ -183,6 +177,72 @@ fn hand(path: &Path) -> Result<(String, String), String> {
     }
     let tips = format!("hand! {{\n    designs {{\n{list}    }}\n    tips {{\n{of_tips}    }}\n}}\n");
     Ok((source, tips))
+}
+
+/// What the image of a hand on the converter has to know of its scans.
+fn scanned(file: &HandFile) -> String {
+    println!("cargo::rustc-cfg=transducer=\"ratiometric\"");
+    let channel = |place| match place {
+        TransducerPlace::Channel(channel) => Some(channel),
+        TransducerPlace::Bus { .. } => None,
+    };
+    let channels: Vec<u8> = file.tips.iter().filter_map(|tip| channel(tip.place)).collect();
+    let reference = chosen_board().map_or(BOARDS[0].2, |(_, _, reference)| reference);
+    let scan = CONVERSION * channels.len() as u32 + reference;
+    // Two scans are a row of words where their codes are an odd number.
+    let step = if channels.len().is_multiple_of(2) { 2 } else { 1 };
+    let scans = (BLOCK + step * scan / 2) / (step * scan) * step;
+    format!(
+        "/// Their channels.\npub const CHANNELS: [u8; TIPS] = {channels:?};\n\
+         /// Scans of a block.\npub const SCANS: usize = {scans};\n\
+         /// From one block to the next, microseconds.\npub const PERIOD: u32 = {};\n",
+        scans * scan
+    )
+}
+
+/// What the image of a hand on the bus has to know of its parts and their rounds.
+fn on_the_bus(file: &HandFile, designs: &[DesignFile], round: &BusRound) -> String {
+    println!("cargo::rustc-cfg=transducer=\"bus\"");
+    let kinds: BTreeSet<&str> = designs
+        .iter()
+        .filter_map(|design| match design.transducer.as_ref()?.kind {
+            TransducerKindSection::Ratiometric { .. } => None,
+            TransducerKindSection::Abp2 { .. } => Some("abp2"),
+            TransducerKindSection::Ms5837 => Some("ms5837"),
+            TransducerKindSection::Dps310 { .. } => Some("dps310"),
+        })
+        .collect();
+    for kind in kinds {
+        // Only the drivers of these kinds get into the image.
+        println!("cargo::rustc-cfg=part=\"{kind}\"");
+    }
+    let branches: Vec<Option<[u8; 2]>> = round
+        .parts
+        .iter()
+        .map(|part| part.branch.map(|branch| [branch.multiplexer, branch.number]))
+        .collect();
+    if branches.iter().any(Option::is_some) {
+        println!("cargo::rustc-cfg=multiplexer");
+    }
+    // Cargo shows it with -vv.
+    println!(
+        "hand {}: a round of {} parts in {} us",
+        file.name,
+        round.parts.len(),
+        round.period
+    );
+    let addresses: Vec<u8> = round.parts.iter().map(|part| part.address).collect();
+    format!(
+        "/// The addresses of their parts.\npub const ADDRESSES: [u8; TIPS] = {addresses:?};\n\
+         /// The address and the channel of the multiplexer of each, if it is behind one.\n\
+         pub const BRANCHES: [Option<[u8; 2]>; TIPS] = {branches:?};\n\
+         /// From one round to the next, microseconds.\npub const PERIOD: u32 = {};\n\
+         /// From the beginning of a round to its instant, and how far a part may be from that, microseconds.\n\
+         pub const INSTANT: [u32; 2] = [{}, {}];\n\
+         /// From the beginning of a round to that of each part, microseconds.\npub const BEGINS: [u32; TIPS] = {:?};\n\
+         /// Half of the conversion of each, microseconds.\npub const HALVES: [u32; TIPS] = {:?};\n",
+        round.period, round.instant, round.skew, round.begins, round.halves
+    )
 }
 
 /// The design file: what `FINGERTIP_DESIGN` asks for, or the default. The build script runs in the folder of its

@@ -8,9 +8,11 @@ use super::converter::DmaConverter as AnaloguePort;
 #[cfg(not(transducer = "ratiometric"))]
 use super::i2c::I2cBus;
 use super::memory::RetryingFlash;
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 use super::scan::DmaScan as AnaloguePort;
 use crate::status::ResetCause;
+#[cfg(all(transducer = "bus", hand))]
+use crate::transducer::rounds::RoundTimer;
 use crate::units::Microseconds;
 use embassy_stm32::mode::Async;
 use embassy_stm32::pac;
@@ -18,6 +20,8 @@ use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_time::Instant;
+#[cfg(all(transducer = "bus", hand))]
+use embassy_time::{Duration, Timer};
 use static_cell::ConstStaticCell;
 
 /// The serial port's sender.
@@ -59,6 +63,17 @@ impl Clock {
     #[inline]
     pub fn now(self) -> Microseconds {
         Microseconds(Instant::now().as_micros().saturating_sub(self.start.as_micros()))
+    }
+}
+
+#[cfg(all(transducer = "bus", hand))]
+impl RoundTimer for Clock {
+    fn now(&self) -> u64 {
+        Clock::now(*self).0
+    }
+
+    async fn until(&self, time: u64) {
+        Timer::at(self.start + Duration::from_micros(time)).await;
     }
 }
 

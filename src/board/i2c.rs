@@ -1,17 +1,28 @@
-//! The bus to a transducer. It is set up again for every transaction, so that a disturbed line cannot block the peripheral: an I2C
+//! The bus to a transducer, or to those of a hand. It is set up again for every transaction, so that a disturbed line cannot block the peripheral: an I2C
 //! of the STM32F4 that was disturbed reports busy until it is reset. A transaction that takes too long is aborted.
 
+#[cfg(hand)]
+use super::chosen::LINES;
 use super::chosen::{BusInterrupts, BusPins};
-use crate::transducer::bus::{Bus, OPERATION_LIMIT};
+use crate::transducer::bus::Bus;
+#[cfg(not(hand))]
+use crate::transducer::bus::OPERATION_LIMIT;
+#[cfg(multiplexer)]
+use crate::transducer::multiplexer::{BusBranch, PortError};
 use embassy_stm32::gpio::{Level, OutputOpenDrain, Speed};
 use embassy_stm32::i2c::{Config, Error, I2c, Master};
 use embassy_stm32::mode::Async;
 use embassy_stm32::time::Hertz;
 use embassy_time::{Duration, Timer, with_timeout};
 use embedded_hal_async::i2c::{self, Operation};
+#[cfg(hand)]
+use model_tables::constants::hand_bus::OPERATION_LIMIT;
 
 /// Half a clock pulse of a line that is freed by hand: 100 kHz.
 const HALF_PULSE: Duration = Duration::from_micros(5);
+
+/// One transaction.
+const LIMIT: Duration = Duration::from_micros(OPERATION_LIMIT as u64);
 
 /// The bus on the board's pins, at 400 kHz, with pull-ups of 2.2 to 4.7 kilo-ohm on the transducer's side.
 pub struct I2cBus(pub(super) BusPins);
@@ -22,6 +33,8 @@ impl I2cBus {
         let pins = &mut self.0;
         let mut config = Config::default();
         config.frequency = Hertz(400_000);
+        // Where the driver waits without yielding it gives up as soon.
+        config.timeout = LIMIT;
         I2c::new(
             pins.i2c.reborrow(),
             pins.clock.reborrow(),
@@ -41,6 +54,45 @@ impl I2cBus {
             OutputOpenDrain::new(pins.data.reborrow(), Level::High, Speed::Low),
         ]
     }
+
+    /// Closes all branches (TCA9548A, SCPS207 section 8.3.2: at least 6 ns).
+    #[cfg(multiplexer)]
+    async fn reset_multiplexers(&mut self) {
+        let pin = self.0.multiplexer_reset.reborrow();
+        let mut reset = OutputOpenDrain::new(pin, Level::Low, Speed::Low);
+        Timer::after(HALF_PULSE).await;
+        reset.set_high();
+        // The pull-up, 10 kilo-ohm, lifts 100 pF in 1 us.
+        Timer::after(HALF_PULSE).await;
+    }
+}
+
+/// The peripheral while it is set up: for a transaction, or for all that one behind a multiplexer takes.
+struct Wire<'a>(I2c<'a, Async, Master>);
+
+impl i2c::ErrorType for Wire<'_> {
+    type Error = Error;
+}
+
+impl i2c::I2c for Wire<'_> {
+    async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
+        // On a line that is held it would wait in vain.
+        #[cfg(hand)]
+        if !is_free() {
+            return Err(Error::Bus);
+        }
+        with_timeout(LIMIT, self.0.transaction(address, operations))
+            .await
+            .unwrap_or(Err(Error::Timeout))
+    }
+}
+
+/// Whether nobody holds a line; the pins are the bus's.
+#[cfg(hand)]
+fn is_free() -> bool {
+    LINES
+        .into_iter()
+        .all(|(port, line)| port.idr().read().idr(line) == embassy_stm32::pac::gpio::vals::Idr::HIGH)
 }
 
 impl i2c::ErrorType for I2cBus {
@@ -49,17 +101,19 @@ impl i2c::ErrorType for I2cBus {
 
 impl i2c::I2c for I2cBus {
     async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
-        let mut i2c = self.i2c();
-        let limit = Duration::from_micros(u64::from(OPERATION_LIMIT));
-        with_timeout(limit, i2c.transaction(address, operations))
-            .await
-            .unwrap_or(Err(Error::Timeout))
+        i2c::I2c::transaction(&mut Wire(self.i2c()), address, operations).await
     }
 }
 
 impl Bus for I2cBus {
     async fn clear(&mut self) {
+        #[cfg(multiplexer)]
+        self.reset_multiplexers().await;
         let [mut clock, mut data] = self.lines();
+        #[cfg(hand)]
+        if clock.is_high() && data.is_high() {
+            return;
+        }
         // A part in the middle of a byte lets go after at most nine pulses (UM10204 3.1.16).
         for _ in 0..9 {
             clock.set_low();
@@ -72,5 +126,17 @@ impl Bus for I2cBus {
         Timer::after(HALF_PULSE).await;
         data.set_high();
         Timer::after(HALF_PULSE).await;
+    }
+
+    #[cfg(multiplexer)]
+    async fn through(
+        &mut self,
+        branch: BusBranch,
+        address: u8,
+        operations: &mut [Operation<'_>],
+    ) -> Result<(), PortError> {
+        branch
+            .transaction(&mut Wire(self.i2c()), address, operations)
+            .await
     }
 }

@@ -11,7 +11,7 @@ mod memory;
 mod pins;
 #[cfg(all(transducer = "ratiometric", not(feature = "board-nucleo-f429zi")))]
 mod ring;
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 mod scan;
 
 #[cfg(feature = "board-nucleo-f429zi")]

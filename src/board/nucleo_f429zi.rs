@@ -7,6 +7,7 @@
 //! | its supply, where it is measured | PC0, `ADC123_IN10` | A1 of that header |
 //! | a hand's channels 0 to 5 | PA3, PC0, PC3, PB1, PC2, PA5; `ADC1_IN3`, `10`, `13`, `9`, `12`, `5` | A0, A1, A2, A6, A7, D13: pins of ADC1 that the board uses for nothing else (UM1974 tables 19 and 20) |
 //! | transducer, bus | PB8, PB9, I2C1 | D15 and D14 of that header, with pull-ups at the transducer |
+//! | RESET of a hand's multiplexers | PF13 | D7 of that header, used for nothing else; open-drain, with the breakout's pull-up |
 //! | serial port | PD8, PD9, USART3 | the ST-LINK's virtual COM port by default (UM1974 6.9) |
 //! | calibration | flash from `0x0810_0000`, two sectors of 16 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
 //! | a loaded tip (`load-tip`) | the two sectors behind it, from `0x0810_8000` | the same |
@@ -47,6 +48,8 @@ pins! {
         data: PB9,
         transmit_dma: DMA1_CH6,
         receive_dma: DMA1_CH0,
+        #[cfg(multiplexer)]
+        multiplexer_reset: PF13,
     }
 }
 
@@ -65,8 +68,12 @@ bind_interrupts!(pub(super) struct BusInterrupts {
     DMA1_STREAM6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
 });
 
+/// Clock and data of the bus of a hand: the port of each, and its place there.
+#[cfg(all(transducer = "bus", hand))]
+pub(super) const LINES: [(pac::gpio::Gpio, usize); 2] = [(pac::GPIOB, 8), (pac::GPIOB, 9)];
+
 /// What a hand's `channel` counts: A0, A1, A2, A6, A7 and D13 of the Zio and Arduino headers.
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 pub(super) const CHANNELS: [Input; 6] = [
     Input::new(3, pac::GPIOA, 3),
     Input::new(10, pac::GPIOC, 0),

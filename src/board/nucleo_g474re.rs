@@ -8,6 +8,7 @@
 //! | its supply, where it is measured | PA1, `ADC1_IN2` | A1 of that header |
 //! | a hand's channels 0 to 5 | PA0, PA1, PB0, PC1, PC0, PC2; `ADC1_IN1`, `2`, `15`, `7`, `6`, `8` | A0, A1, A3, A4, A5, and pin 35 of CN7; A2 (PA4) is not a channel of ADC1 |
 //! | transducer, bus | PA15, PB7, I2C1 | pins 17 and 21 of CN7, with pull-ups at the transducer. Not D15: its pin PB8 is `BOOT0` at reset, and a pull-up there starts the boot loader instead of the image |
+//! | RESET of a hand's multiplexers | PA8 | D7 of the Arduino header, used for nothing else; open-drain, with the breakout's pull-up |
 //! | serial port | PA2, PA3, LPUART1 | the ST-LINK's virtual COM port by default |
 //! | calibration | flash from `0x0804_0000`, two pages of 2 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
 //! | a loaded tip (`load-tip`) | the six pages behind it | the same |
@@ -49,6 +50,8 @@ pins! {
         data: PB7,
         transmit_dma: DMA1_CH4,
         receive_dma: DMA1_CH5,
+        #[cfg(multiplexer)]
+        multiplexer_reset: PA8,
     }
 }
 
@@ -67,8 +70,12 @@ bind_interrupts!(pub(super) struct BusInterrupts {
     DMA1_CHANNEL5 => dma::InterruptHandler<peripherals::DMA1_CH5>;
 });
 
+/// Clock and data of the bus of a hand: the port of each, and its place there.
+#[cfg(all(transducer = "bus", hand))]
+pub(super) const LINES: [(pac::gpio::Gpio, usize); 2] = [(pac::GPIOA, 15), (pac::GPIOB, 7)];
+
 /// What a hand's `channel` counts: A0, A1, A3, A4 and A5 of the Arduino header, and pin 35 of CN7.
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 pub(super) const CHANNELS: [Input; 6] = [
     Input::new(1, pac::GPIOA, 0),
     Input::new(2, pac::GPIOA, 1),

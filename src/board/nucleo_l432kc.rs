@@ -7,6 +7,7 @@
 //! | its supply, where it is measured | PA1, `ADC1_IN6` | A1 of that header |
 //! | a hand's channels 0 to 5 | PA0, PA1, PA3, PA4, PA7, PA5; `ADC1_IN5`, `6`, `8`, `9`, `12`, `10` | A0, A1, A2, A3, A6, A4; PA5 is wired to PB7 (SB16), which stays an input |
 //! | transducer, bus | PB6, PB7, I2C1 | D5 and D4 of that header, with pull-ups at the transducer; A5 and A4 (PA5, PA6) are wired to them by default (SB16, SB18) and stay inputs |
+//! | RESET of a hand's multiplexers | PB0 | D3 of that header, used for nothing else; open-drain, with the breakout's pull-up |
 //! | serial port | PA2, PA15, USART2 | the ST-LINK's virtual COM port by default (UM1956 6.8) |
 //! | calibration | the last two pages of flash, 2 KB each | erasing one stalls the code for 25 ms at most (DS11451 table 58): samples are lost, and counted |
 //! | a loaded tip (`load-tip`) | the six pages before them | erasing three stalls the code for 75 ms at most |
@@ -25,7 +26,7 @@ use crate::status::ResetCause;
 use embassy_stm32::flash::{self, Bank1Region, Flash};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::i2c;
-#[cfg(transducer = "ratiometric")]
+#[cfg(any(transducer = "ratiometric", hand))]
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::{self, DMA1_CH6, DMA1_CH7, USART2};
 use embassy_stm32::rcc::{Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk, mux};
@@ -49,6 +50,8 @@ pins! {
         data: PB7,
         transmit_dma: DMA2_CH7,
         receive_dma: DMA2_CH6,
+        #[cfg(multiplexer)]
+        multiplexer_reset: PB0,
     }
 }
 
@@ -67,8 +70,12 @@ bind_interrupts!(pub(super) struct BusInterrupts {
     DMA2_CHANNEL7 => dma::InterruptHandler<peripherals::DMA2_CH7>;
 });
 
+/// Clock and data of the bus of a hand: the port of each, and its place there.
+#[cfg(all(transducer = "bus", hand))]
+pub(super) const LINES: [(pac::gpio::Gpio, usize); 2] = [(pac::GPIOB, 6), (pac::GPIOB, 7)];
+
 /// What a hand's `channel` counts: A0, A1, A2, A3, A6 and A4 of the Nano header.
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 pub(super) const CHANNELS: [Input; 6] = [
     Input::new(5, pac::GPIOA, 0),
     Input::new(6, pac::GPIOA, 1),

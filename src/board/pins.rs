@@ -27,7 +27,7 @@ impl Input {
 
 /// The peripherals that a board uses, by what they are used for: `Pins`, and `BusPins` for a transducer on a bus.
 macro_rules! pins {
-    (board { $($(#[$when:meta])? $name:ident: $peripheral:ident,)* } bus { $($bus_name:ident: $bus_peripheral:ident,)* }) => {
+    (board { $($(#[$when:meta])? $name:ident: $peripheral:ident,)* } bus { $($(#[$bus_when:meta])? $bus_name:ident: $bus_peripheral:ident,)* }) => {
         /// What is used whatever the transducer is.
         pub(super) struct Pins {
             $($(#[$when])? pub(super) $name: embassy_stm32::Peri<'static, embassy_stm32::peripherals::$peripheral>,)*
@@ -39,7 +39,7 @@ macro_rules! pins {
         /// What a transducer on a bus is on.
         #[cfg(not(transducer = "ratiometric"))]
         pub(super) struct BusPins {
-            $(pub(super) $bus_name:
+            $($(#[$bus_when])? pub(super) $bus_name:
                 embassy_stm32::Peri<'static, embassy_stm32::peripherals::$bus_peripheral>,)*
         }
 
@@ -49,7 +49,7 @@ macro_rules! pins {
                 Self {
                     $($(#[$when])? $name: peripherals.$peripheral,)*
                     #[cfg(not(transducer = "ratiometric"))]
-                    bus: BusPins { $($bus_name: peripherals.$bus_peripheral,)* },
+                    bus: BusPins { $($(#[$bus_when])? $bus_name: peripherals.$bus_peripheral,)* },
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! The STM32F4: flags of the last reset, and its converter.
 
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 use super::chosen::CHANNELS;
 #[cfg(all(transducer = "ratiometric", not(hand)))]
 use super::chosen::{OUTPUT, SUPPLY};
@@ -63,11 +63,11 @@ pub(super) fn set_up_converter(supply_measured: bool) {
 }
 
 /// Sampling of the internal reference, at least 10 us (DS9405 table 84): 56 cycles of 4 MHz are 14 us, and 12 of conversion make 17.
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 pub(super) const IDENTITY_CONVERSION: u32 = 17;
 
 /// Sets up ADC1 as [`set_up_converter`] does, for a scan of these channels and the internal reference after them.
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 pub(super) fn set_up_scan(channels: &[u8]) {
     const REFERENCE: u8 = 17;
     let adc = pac::ADC1;

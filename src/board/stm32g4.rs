@@ -4,7 +4,7 @@
 //! interrupts twice a ring and hands out copies without a time, and an instant that is known, and a converter that is seen to stall,
 //! need the place of the DMA.
 
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 use super::chosen::CHANNELS;
 #[cfg(all(transducer = "ratiometric", not(hand)))]
 use super::chosen::{OUTPUT, SUPPLY};
@@ -101,11 +101,11 @@ pub(super) fn set_up_converter(supply_measured: bool) {
 }
 
 /// Sampling of the internal reference, at least 4 us (DS12288, embedded voltage reference): 9.5 us, as of every channel.
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 pub(super) const IDENTITY_CONVERSION: u32 = 10;
 
 /// Sets up ADC1 for a scan of these channels and the internal reference after them.
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 pub(super) fn set_up_scan(channels: &[u8]) {
     /// `ADC1_IN18` (RM0440 table 163).
     const REFERENCE: u8 = 18;

@@ -1,6 +1,6 @@
 //! The STM32L4: flags of the last reset, and its converter.
 
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 use super::chosen::CHANNELS;
 #[cfg(all(transducer = "ratiometric", not(hand)))]
 use super::chosen::{OUTPUT, SUPPLY};
@@ -78,11 +78,11 @@ fn run_free() {
 }
 
 /// Sampling of the internal reference, at least 4 us (DS11451, embedded voltage reference): 7.9 us, as of every channel.
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 pub(super) const IDENTITY_CONVERSION: u32 = 10;
 
 /// Sets up ADC1 as [`set_up_converter`] does, for a scan of these channels and the internal reference after them.
-#[cfg(hand)]
+#[cfg(all(transducer = "ratiometric", hand))]
 pub(super) fn set_up_scan(channels: &[u8]) {
     const REFERENCE: u8 = 0;
     pac::ADC1_COMMON.ccr().modify(|w| {

@@ -13,9 +13,6 @@ use crate::storage::log::StoreError;
 use crate::transducer::driver::Sample;
 use crate::units::Microseconds;
 
-/// One of two reports goes on the line at the start: five tips take 55 of its 100 kB/s.
-pub const EVERY: u16 = 2;
-
 /// A tip, whatever its design.
 pub trait HandTip {
     /// [`Device::step`].
@@ -163,20 +160,20 @@ pub struct Hand<const TIPS: usize> {
 }
 
 impl<const TIPS: usize> Hand<TIPS> {
-    /// A hand of tips that have seen nothing yet.
-    pub fn new(names: HandNames<TIPS>, tips: &mut [&mut dyn HandTip; TIPS]) -> Self {
+    /// A hand of tips that have seen nothing yet; one of `every` reports goes on the line until a command wants it otherwise.
+    pub fn new(names: HandNames<TIPS>, tips: &mut [&mut dyn HandTip; TIPS], every: u16) -> Self {
         let bits = tips.each_ref().map(|tip| tip.pressure_fraction_bits());
         let least = bits.iter().copied().min().unwrap_or(0);
         let mut hand = Self {
             names,
             bits: least as u8,
             shifts: bits.map(|bits| bits - least),
-            every: EVERY,
+            every,
             passed: 0,
             statuses: [None; TIPS],
             reports: [NO_REPORT; TIPS],
         };
-        hand.slow_down(tips, EVERY);
+        hand.slow_down(tips, every);
         hand
     }
 

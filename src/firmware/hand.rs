@@ -6,22 +6,22 @@ use crate::firmware::queues::{
     self, IDLE, REFUSED, REMEMBER, REQUESTS, SEND, SENT, STORED, TO_STORE, Waiting, alive, refuse,
 };
 use crate::firmware::retained;
+use crate::firmware::samples::{self, Samples};
 use crate::firmware::watch::{self, NOTES, WATCHDOG_PERIOD, missing, version};
 use core::sync::atomic::Ordering;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_time::{Duration, Ticker, with_timeout};
-use fingertip::board::{self, Board, Clock, FlashMemory, Port, SLOT, Watchdog};
+use fingertip::board::{self, Board, Clock, FlashMemory, SLOT, Watchdog};
 use fingertip::device::hand::Hand;
 use fingertip::device::kept_zeros::ZeroWords;
 use fingertip::device::logic::{Beginning, ToStore};
 use fingertip::device::task_monitor::{CrashRecord, GOOD_RUN, Stage, Start};
-use fingertip::image::{IDENTITIES, NAME, NAMES, PERIOD, RECORD, ROW, ROWS, TIPS, TRANSDUCERS, Tips};
+use fingertip::image::{EVERY, IDENTITIES, NAME, NAMES, PERIOD, RECORD, TIPS, Tips};
 use fingertip::signal::report::Report;
 use fingertip::status::{Fault, Status, Stored};
 use fingertip::storage::hand_store::{HandStore, StoredTip};
 use fingertip::storage::log::StoreError;
-use fingertip::transducer::scan::Scan;
 
 /// After reset upon reset the flash is left alone.
 const NOT_READ: StoredTip = StoredTip {
@@ -72,32 +72,35 @@ async fn main(spawner: Spawner) {
     spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
     spawner.spawn(listen(board.serial_rx, clock).expect("spawned once"));
     spawner.spawn(remember(store, clock).expect("spawned once"));
-    signal(clock, board.port, waiting, board.watchdog, &beginnings).await
+    let samples = match board.port {
+        Some(port) => Some(samples::of(port, clock, spawner).await),
+        None => None,
+    };
+    signal(clock, samples, waiting, board.watchdog, &beginnings).await
 }
 
 /// Turns samples into reports, and answers commands. Period: [`PERIOD`]. Deadline: the next one; when late, samples are lost, which is
-/// reported and counted. Feeds the watchdog as long as the other tasks report too. Without a converter it measures nothing and
+/// reported and counted. Feeds the watchdog as long as the other tasks report too. Without a converter or a bus it measures nothing and
 /// reports so at the same pace.
 async fn signal(
     clock: Clock,
-    port: Option<Port>,
+    mut source: Option<Samples>,
     waiting: &'static Waiting,
     mut watchdog: Watchdog,
     beginnings: &[Beginning; TIPS],
 ) -> ! {
     let mut tips = Tips::new(beginnings);
-    let mut hand = Hand::new(NAMES, &mut tips.each());
+    let mut hand = Hand::new(NAMES, &mut tips.each(), EVERY);
     let mut crash_record = CrashRecord {
         detail: Stage::Running as u32,
         ..beginnings[0].start.crash_record
     };
     let mut log = Log::default();
     let mut pace = Ticker::every(Duration::from_micros(u64::from(PERIOD)));
-    let mut scan = port.map(|port| Scan::<_, TIPS, ROW, ROWS>::new(TRANSDUCERS, port));
     let (mut last_sample, mut next_feed, mut next_note) = (None, 0, 0);
     loop {
-        let samples = if let Some(scan) = &mut scan {
-            scan.next().await
+        let samples = if let Some(source) = &mut source {
+            source.next().await
         } else {
             pace.next().await;
             &[Err(Fault::ResetLoop); TIPS]

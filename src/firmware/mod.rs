@@ -6,6 +6,8 @@ mod hand;
 mod line;
 mod queues;
 mod retained;
+#[cfg(hand)]
+mod samples;
 #[cfg(not(hand))]
 mod tasks;
 #[cfg(feature = "load-tip")]

@@ -181,6 +181,24 @@ impl Parameters {
         }
     }
 
+    /// The same of a tip of a hand on a bus: a sample each `period` microseconds.
+    ///
+    /// # Panics
+    /// As [`Parameters::of`].
+    #[cfg(tips)]
+    pub const fn of_rounds(
+        constants: DesignConstants,
+        fraction_bits: u32,
+        last_rise: PressureRise,
+        period: u32,
+    ) -> Self {
+        Self {
+            period,
+            step_limits: StepLimits::of(&constants, fraction_bits, period),
+            ..Self::of(constants, fraction_bits, last_rise)
+        }
+    }
+
     /// Two samples further apart than this are not next to each other, microseconds.
     pub const fn gap(&self) -> u64 {
         20 * self.period as u64

@@ -9,7 +9,7 @@ use crate::transducer::driver::{Driver, Sample};
 use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
 use model_tables::constants;
-use model_tables::constants::{TransducerKind, period};
+use model_tables::constants::{TransducerKind, conversion, period};
 
 /// From one sample to the next, microseconds: the part measures about 200 times a second.
 pub const PERIOD: u32 = period::ABP2;
@@ -23,7 +23,7 @@ const MEMORY_ERROR: u8 = 0x04;
 const SATURATED: u8 = 0x01;
 
 /// A measurement is waited for this long, microseconds, ...
-const CONVERSION: u32 = 5_000;
+const CONVERSION: u32 = conversion::ABP2;
 /// ... and if the part is busy still, this often more ...
 const ATTEMPTS: u32 = 4;
 /// ... this long each, microseconds.

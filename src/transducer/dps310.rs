@@ -15,7 +15,7 @@ use crate::transducer::bus::{self, Bus};
 use crate::transducer::driver::{Driver, Sample, recognise};
 use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
-use model_tables::constants::period;
+use model_tables::constants::{conversion, period};
 
 /// From one sample to the next, microseconds.
 pub const PERIOD: u32 = period::DPS310;
@@ -46,11 +46,11 @@ const COMMAND_TEMPERATURE: u8 = 0x02;
 
 /// Four pressures averaged: 8.4 ms, and 0.5 Pa of noise (section 8.3, table 16); the word needs no shift.
 const PRESSURE_PRECISION: u8 = 0x02;
-const PRESSURE_CONVERSION: u32 = 8_400;
+const PRESSURE_CONVERSION: u32 = conversion::DPS310[1];
 const PRESSURE_SCALE: i64 = 3_670_016;
 /// One temperature: 3.6 ms.
 const TEMPERATURE_PRECISION: u8 = 0x00;
-const TEMPERATURE_CONVERSION: u32 = 3_600;
+const TEMPERATURE_CONVERSION: u32 = conversion::DPS310[0];
 const TEMPERATURE_SCALE: i64 = 524_288;
 /// Of `COEF_SRCE` and `TMP_CFG`: the temperature sensor on the pressure element, and not the other one (sections 8.4 and
 /// 8.12). Of which the coefficients are, that one has to be read.

@@ -11,7 +11,7 @@ use crate::transducer::bus::{self, Bus};
 use crate::transducer::driver::{Driver, Sample, recognise};
 use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
-use model_tables::constants::period;
+use model_tables::constants::{conversion, period};
 
 /// From one sample to the next, microseconds.
 pub const PERIOD: u32 = period::MS5837;
@@ -25,11 +25,10 @@ const CONVERT_TEMPERATURE: u8 = 0x50;
 const CONVERT_PRESSURE: u8 = 0x46;
 const READ_ADC: u8 = 0x00;
 
-/// Times that the part may take, microseconds: reload after a reset, and the conversions of 256 and 2048 samples
-/// (datasheet, "ADC": at most 0.60 and 4.54 ms).
+/// Times that the part may take, microseconds: reload after a reset, and the conversions of 256 and 2048 samples.
 const RELOAD: u32 = 10_000;
-const TEMPERATURE_CONVERSION: u32 = 600;
-const PRESSURE_CONVERSION: u32 = 4_600;
+const TEMPERATURE_CONVERSION: u32 = conversion::MS5837[0];
+const PRESSURE_CONVERSION: u32 = conversion::MS5837[1];
 /// A command, a byte and three bytes with their addresses at 400 kHz, microseconds.
 const READ: u32 = 150;
 

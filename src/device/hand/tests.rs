@@ -6,6 +6,8 @@ use crate::signal::test_design::Linear;
 use crate::status::{ResetCause, Stored, Touch};
 use crate::units::Millipascals;
 
+const EVERY: u16 = 2;
+
 const NAMES: HandNames<3> = HandNames {
     hash: 77,
     tips: ["thumb", "index", "middle"],
@@ -62,7 +64,7 @@ impl Bench {
             firmware: [0, 1, 0],
         };
         let mut tips = [(); 3].map(|()| Device::new(Linear::NEW, &beginning));
-        let hand = Hand::new(NAMES, &mut dynamic(&mut tips));
+        let hand = Hand::new(NAMES, &mut dynamic(&mut tips), EVERY);
         Self {
             tips,
             hand,
