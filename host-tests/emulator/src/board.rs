@@ -1,11 +1,13 @@
 //! The NUCLEO-F429ZI as the image sees it: the microcontroller, its clock, its converter's pins or the part on its
 //! bus, its serial wire to the host.
 
+use crate::multiplexer::{BusCommand, BusTrunk};
 use crate::sensor::Sensor;
-use crate::transducer::{ElectricalOutput, EmulatedTransducer};
+use crate::transducer::{ElectricalOutput, EmulatedTransducer, Part};
 use rigless::chip::Timeline;
 use rigless::chip::uart::Peer;
 use rigless::cpu::armv7m::windows;
+use rigless::device::Level;
 use rigless::machine::{Board, Target, armv7m};
 use rigless::mcu::{Mcu, Operate};
 use rigless::snapshot::Store;
@@ -13,6 +15,7 @@ use rigless::soc::Error;
 use rigless::soc::stm32f427::Stm32f427;
 use rigless::soc::stm32f427::peripherals::SERIAL_PORTS;
 use rigless::soc::stm32f427::peripherals::adc::Channel;
+use rigless::soc::stm32f427::peripherals::gpio::Pin;
 use rigless::time::VirtualNanos;
 use std::collections::VecDeque;
 use std::num::{NonZeroU32, NonZeroU64};
@@ -45,6 +48,10 @@ const SUPPLY_CHANNEL: u8 = 10;
 /// The bus of D14 and D15: I2C1, and the one part on it.
 const BUS: usize = 0;
 const ON_THE_BUS: usize = 0;
+/// Its lines, PB8 and PB9, and RESET of a hand's multiplexers, PF13: each port's number and its pin.
+const CLOCK_LINE: (usize, u8) = (1, 8);
+const DATA_LINE: (usize, u8) = (1, 9);
+const MULTIPLEXER_RESET: (usize, u8) = (5, 13);
 /// The serial port that the ST-LINK carries to the host.
 const HOST_PORT: &str = "USART3";
 
@@ -80,6 +87,52 @@ impl Nucleo {
             supply: Channel::new(SUPPLY_CHANNEL).expect("a pin's channel"),
             host_port,
         })
+    }
+
+    /// The board with parts on its bus in place of one transducer, each with the multiplexer's address and the branch that it is behind;
+    /// the lines have their pull-ups.
+    pub(crate) fn with_bus(parts: &[(EmulatedTransducer, Option<[u8; 2]>)]) -> Result<Self, Error> {
+        let analogue = EmulatedTransducer {
+            part: Part::Analogue,
+            ..parts[0].0
+        };
+        let mut board = Self::new(&analogue)?;
+        board.mcu.i2c[BUS].attach(BusTrunk::new(parts));
+        for line in [CLOCK_LINE, DATA_LINE, MULTIPLEXER_RESET] {
+            board.drive(VirtualNanos(0), line, Level::High);
+        }
+        Ok(board)
+    }
+
+    fn drive(&mut self, at: VirtualNanos, (port, pin): (usize, u8), level: Level) {
+        let pin = Pin::new(pin).expect("a port has sixteen pins");
+        self.mcu.drive_port(at, port, |port, registers, context| {
+            port.drive(pin, Some(level), registers, context);
+        });
+    }
+
+    /// Everything on the bus of a hand.
+    pub(crate) fn trunk(&mut self) -> Option<&mut BusTrunk> {
+        self.mcu.i2c[BUS].chip_mut::<BusTrunk>(ON_THE_BUS)
+    }
+
+    /// The commands to the parts of a hand since the last call.
+    pub(crate) fn take_commands(&mut self) -> Vec<BusCommand> {
+        self.trunk().map(BusTrunk::take_commands).unwrap_or_default()
+    }
+
+    /// The image may have pulled RESET; the data line of the branch of this tip is held low from now on, if of any.
+    pub(crate) fn hold(&mut self, at: VirtualNanos, tip: Option<usize>) {
+        let (port, pin) = MULTIPLEXER_RESET;
+        let pin = Pin::new(pin).expect("a port has sixteen pins");
+        let (gpio, registers) = self.mcu.port(port);
+        let resets = gpio.level(pin, registers) == Level::Low;
+        let Some(trunk) = self.trunk() else { return };
+        if resets {
+            trunk.reset();
+        }
+        let held = tip.is_some_and(|tip| trunk.is_connected(tip));
+        self.drive(at, DATA_LINE, if held { Level::Low } else { Level::High });
     }
 
     /// What the transducer does from now on.

@@ -3,9 +3,10 @@
 use crate::bench::{BenchError, CallCounter, Moment, emulator, gaps, seconds, starts_the_clock};
 use crate::board::Nucleo;
 use crate::image::Image;
+use crate::multiplexer::BusCommand;
 use crate::plant::Plant;
 use crate::record::instant;
-use crate::transducer::ElectricalOutput;
+use crate::transducer::{ElectricalOutput, EmulatedTransducer};
 use fingertip::link::telemetry::{Answer, Hello};
 use fingertip::link::tips::{AnyDecoder, AnyFrame, TipHello, TipsMessage};
 use fingertip::link::wire::DecodeError;
@@ -30,12 +31,26 @@ const CHANNELS: [u8; 6] = [3, 10, 13, 9, 12, 5];
 /// A hand and what happens to it.
 #[derive(Clone, Debug)]
 pub struct EmulatedHand {
-    /// The plants, on the hand's channels from 0 on.
+    /// The plants, on the hand's channels from 0 on or on its bus.
     pub tips: Vec<Plant>,
+    /// The places of their parts on the bus; empty: they are on the channels.
+    pub places: Vec<BusPlace>,
+    /// While these seconds of virtual time pass, the part of this tip holds the data line of its branch; `None`: no
+    /// part does.
+    pub held: Option<(usize, std::ops::Range<f64>)>,
     /// While these seconds of virtual time pass, each code lies in its neighbour's place.
     pub shifted: std::ops::Range<f64>,
     /// Bytes that the host sends, each at its time, seconds, ascending.
     pub sent: Vec<(f64, Vec<u8>)>,
+}
+
+/// Where the part of a tip is on the bus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BusPlace {
+    /// Its seven-bit address.
+    pub address: u8,
+    /// The multiplexer's address and the branch that it is behind; `None`: it is on the bus itself.
+    pub branch: Option<[u8; 2]>,
 }
 
 /// The reports of one instant.
@@ -74,6 +89,12 @@ pub struct HandRun {
     pub instructions: u64,
     /// The instructions of each call of the last function asked for, with those of the others before it.
     pub calls: Vec<u64>,
+    /// The commands to the parts on the bus.
+    pub commands: Vec<BusCommand>,
+    /// How often two parts on the bus answered at once.
+    pub clashes: usize,
+    /// Transactions on the bus.
+    pub transactions: usize,
     /// What the image asked of the part that the emulator does not model, in words.
     pub gaps: Vec<String>,
 }
@@ -94,7 +115,17 @@ pub fn run(
 ) -> Result<HandRun, BenchError> {
     let counter = CallCounter::of(image, counted)?;
     let elf = rigless::image::Image::new(image.path(), image.bytes().to_vec(), None).map_err(emulator)?;
-    let board = Box::new(Nucleo::new(&hand.tips[0].transducer()).map_err(emulator)?);
+    let board = if hand.places.is_empty() {
+        Nucleo::new(&hand.tips[0].transducer())
+    } else {
+        let parts = hand.tips.iter().zip(&hand.places).map(|(plant, place)| {
+            let transducer = plant.transducer();
+            let part = transducer.part.at(place.address);
+            (EmulatedTransducer { part, ..transducer }, place.branch)
+        });
+        Nucleo::with_bus(&parts.collect::<Vec<_>>())
+    };
+    let board = Box::new(board.map_err(emulator)?);
     let mut session = Session::new(board, 0, VirtualNanos(LISTEN)).map_err(emulator)?;
     for address in counter.addresses() {
         session.watch(Watch::Instruction(address));
@@ -104,6 +135,7 @@ pub fn run(
         hand,
         counter,
         bytes: vec![],
+        commands: vec![],
         scanning_since: None,
         clock_zero: None,
         end: VirtualNanos((duration * 1e9) as u64),
@@ -118,13 +150,19 @@ pub fn run(
         .stop
         .map_or((0.0, 0), |stop| (seconds(stop.at), stop.instruction_count));
     let driver = finished.driver;
+    let mut finished_session = finished.session;
     let mut run = HandRun {
         time,
         instructions,
-        gaps: gaps(&finished.session),
+        gaps: gaps(&finished_session),
         ..read(&driver.bytes, driver.clock_zero.unwrap_or_default())
     };
     run.calls = driver.counter.into_calls();
+    run.commands = driver.commands;
+    if let Some(trunk) = finished_session.board_mut().trunk() {
+        run.clashes = trunk.clashes();
+        run.transactions = trunk.transactions();
+    }
     Ok(run)
 }
 
@@ -181,6 +219,7 @@ struct HandBench {
     sent: usize,
     counter: CallCounter,
     bytes: Vec<(f64, u8)>,
+    commands: Vec<BusCommand>,
     /// When the converter was started last, nanoseconds.
     scanning_since: Option<u64>,
     clock_zero: Option<f64>,
@@ -220,6 +259,25 @@ impl HandBench {
         }
     }
 
+    /// The pressures on the parts on the bus, with noise of their own, and what is wrong with their wires.
+    fn press(&mut self, board: &mut Nucleo, at: u64) {
+        let time = at as f64 * 1e-9;
+        for (tip, plant) in self.hand.tips.iter_mut().enumerate() {
+            if let ElectricalOutput::Pressure(pascals, wiring) = plant.output(time)
+                && let Some(trunk) = board.trunk()
+            {
+                trunk.set(tip, pascals, wiring);
+            }
+        }
+    }
+
+    /// Whether a branch of the bus is held, after an access of the image.
+    fn hold(&self, board: &mut Nucleo, at: VirtualNanos) {
+        let time = seconds(at);
+        let held = self.hand.held.as_ref().filter(|(_, when)| when.contains(&time));
+        board.hold(at, held.map(|(tip, _)| *tip));
+    }
+
     fn note(&mut self, access: Access) {
         if access.kind != AccessKind::Write {
             return;
@@ -236,9 +294,17 @@ impl HandBench {
 impl Driver<Nucleo> for HandBench {
     fn on_settled(&mut self, session: &mut Session<Nucleo>, _host: &mut dyn Host, settled: Settled) {
         match settled {
+            Settled::Stop(stop) if !self.hand.places.is_empty() => {
+                self.press(session.board_mut(), stop.at.0);
+                self.hold(session.board_mut(), stop.at);
+            }
             Settled::Stop(stop) => self.convert(session.board_mut(), stop.at.0),
             Settled::Access { access, .. } => {
                 self.note(access);
+                if !self.hand.places.is_empty() {
+                    self.hold(session.board_mut(), access.virtual_time);
+                    return;
+                }
                 if access.address == CONVERTER_CONTROL {
                     self.convert(session.board_mut(), access.virtual_time.0);
                 }
@@ -257,6 +323,7 @@ impl Driver<Nucleo> for HandBench {
         let taken = session.board_mut().take_bytes();
         self.bytes
             .extend(taken.into_iter().map(|(at, byte)| (seconds(at), byte)));
+        self.commands.extend(session.board_mut().take_commands());
         while let Some((at, bytes)) = self.hand.sent.get(self.sent)
             && *at <= seconds(stop.at)
         {

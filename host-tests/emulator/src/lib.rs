@@ -17,6 +17,7 @@ pub mod hand;
 pub mod image;
 pub mod inlined;
 mod ms5837;
+pub mod multiplexer;
 pub mod output;
 pub mod plant;
 pub mod record;

@@ -39,6 +39,21 @@ pub enum Part {
     Spl06(u8),
 }
 
+impl Part {
+    /// The same part at another address of its bus; an analogue one has none.
+    #[must_use]
+    pub fn at(self, address: u8) -> Self {
+        match self {
+            Self::Analogue => Self::Analogue,
+            Self::Dps310(_) => Self::Dps310(address),
+            Self::Abp2(_, counts) => Self::Abp2(address, counts),
+            Self::Ms5837(_) => Self::Ms5837(address),
+            Self::Ms5837ThirtyBar(_) => Self::Ms5837ThirtyBar(address),
+            Self::Spl06(_) => Self::Spl06(address),
+        }
+    }
+}
+
 /// What the transducer does to the board at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ElectricalOutput {

@@ -110,6 +110,8 @@ fn run() -> &'static Run {
         let request = |sequence, command| Request { sequence, command };
         let hand = EmulatedHand {
             tips: plants.clone(),
+            places: vec![],
+            held: None,
             shifted: SHIFTED,
             sent: vec![
                 (0.45, encode_request(2, &request(7, Command::Undo)).to_vec()),
@@ -311,6 +313,8 @@ fn each_tip_starts_with_its_own_stored_calibration() {
     };
     let hand = EmulatedHand {
         tips: plants.clone(),
+        places: vec![],
+        held: None,
         shifted: 9.0..9.0,
         sent: vec![(0.47, encode_request(4, &save).to_vec())],
     };
@@ -395,6 +399,8 @@ fn five_relaxing_tips_cost_an_eighth_of_the_core() {
         .expect("it can be pressed");
     let hand = EmulatedHand {
         tips: (0..TIPS).map(|tip| one.through(scenario(tip))).collect(),
+        places: vec![],
+        held: None,
         shifted: END..END,
         sent: vec![],
     };

@@ -2,6 +2,7 @@
 
 mod budget;
 mod bus;
+mod bus_hand;
 mod cost;
 mod crash;
 mod faults;
