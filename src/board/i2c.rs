@@ -1,5 +1,6 @@
-//! The bus to a transducer, or to those of a hand. It is set up again for every transaction, so that a disturbed line cannot block the peripheral: an I2C
-//! of the STM32F4 that was disturbed reports busy until it is reset. A transaction that takes too long is aborted.
+//! The bus to a transducer, or to those of a hand. It is set up again for every transaction, or once for those that one behind a
+//! multiplexer takes, so that a disturbed line cannot block the peripheral: an I2C of the STM32F4 that was disturbed reports busy until
+//! it is reset. A transaction that takes too long is aborted.
 
 #[cfg(hand)]
 use super::chosen::LINES;
