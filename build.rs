@@ -31,9 +31,6 @@ const SET_UPS: [(&str, u32); 2] = [("nucleo-l432kc", 190), ("nucleo-g474re", 45)
 const CONVERSION: u32 = 10;
 const BLOCK: u32 = 1_000;
 
-/// Bytes of a slot of a loaded tip: a block and its log of activations.
-const SLOT: u32 = 4096 + 512;
-
 fn main() {
     println!("cargo::rerun-if-env-changed=FINGERTIP_DESIGN");
     println!("cargo::rerun-if-changed=build.rs");
@@ -51,7 +48,7 @@ fn main() {
     if env::var_os("CARGO_FEATURE_TIPS").is_some() {
         println!("cargo::rustc-cfg=tips");
     }
-    if env::var_os("CARGO_FEATURE_LOAD_TIP").is_some() {
+    if loads_tips() {
         // A tip that is loaded may have an actuator.
         println!("cargo::rustc-cfg=feedback");
     }
@@ -91,22 +88,25 @@ fn fold_in_the_design(for_the_chip: bool) -> Result<(), String> {
         write("design.rs", tables);
         write("hand.rs", tips);
     } else {
+        if for_the_chip && loads_tips() {
+            // A block is judged on the stack, its tables blended there.
+            println!("cargo::rustc-link-arg-bins=--defsym=_stack_length=0x4000");
+        }
         write("design.rs", tables(Path::new(design))?);
     }
     Ok(())
+}
+
+fn loads_tips() -> bool {
+    env::var_os("CARGO_FEATURE_LOAD_TIP").is_some()
 }
 
 /// The Rust source of the tables of a hand, and of its tips; or the reason why there are none.
 fn hand(path: &Path) -> Result<(String, String), String> {
     let named = |reason: &str| format!("{}: {reason}", path.display());
     let file = HandFile::read(path).map_err(|error| error.to_string())?;
-    if env::var_os("CARGO_FEATURE_LOAD_TIP").is_some() {
-        return Err(named(&format!(
-            "its {} tips would need {} slots of flash that are erased apart, of {SLOT} bytes each, and the boards keep 2: build it \
-             without the feature load-tip",
-            file.tips.len(),
-            2 * file.tips.len()
-        )));
+    if loads_tips() {
+        expect_slots(file.tips.len()).map_err(|reason| named(&reason))?;
     }
     for tip in &file.tips {
         println!("cargo::rerun-if-changed={}", tip.design.display());
@@ -114,14 +114,20 @@ fn hand(path: &Path) -> Result<(String, String), String> {
     let designs = file.designs().map_err(|error| error.to_string())?;
     println!("cargo::rustc-cfg=hand");
     if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
-        // Its tips are made on the stack.
-        println!("cargo::rustc-link-arg-bins=--defsym=_stack_length=0x4000");
+        // Its tips are made on the stack; with `load-tip` a block is judged there too, its tables blended.
+        let length = if loads_tips() { "0x9000" } else { "0x4000" };
+        println!("cargo::rustc-link-arg-bins=--defsym=_stack_length={length}");
     }
     println!("cargo::rustc-cfg=tips");
     let board = chosen_board().map_or(BOARDS[0].0, |(board, ..)| board);
     let other = SET_UPS.iter().find(|(name, _)| *name == board);
     let set_up = other.map_or(SET_UP, |(_, set_up)| *set_up);
     let round = BusRound::of(&file, &designs, set_up).map_err(|error| error.to_string())?;
+    if loads_tips() && round.is_some() {
+        return Err(named(
+            "its parts are on a bus, and the tip files of a hand are of analogue tips: build it without the feature load-tip",
+        ));
+    }
     let of_the_kind = match &round {
         None => scanned(&file),
         Some(round) => on_the_bus(&file, &designs, round),
@@ -142,6 +148,7 @@ fn hand(path: &Path) -> Result<(String, String), String> {
     // Tips of one design share its tables and its code.
     let mut different: Vec<&DesignFile> = Vec::new();
     let (mut list, mut of_tips) = (String::new(), String::new());
+    let mut object = false;
     for (number, (tip, design)) in file.tips.iter().zip(&designs).enumerate() {
         let known = different.iter().position(|other| other.hash() == design.hash());
         let which = known.unwrap_or(different.len());
@@ -151,12 +158,6 @@ fn hand(path: &Path) -> Result<(String, String), String> {
         }
         different.push(design);
         let generated = generated(&tip.design)?;
-        if generated.certified.object.is_some() {
-            return Err(format!(
-                "{}: a hand's designs touch a plate: leave [object] out",
-                tip.design.display()
-            ));
-        }
         if generated.certified.feedback.is_some() {
             return Err(format!(
                 "{}: the frames of a hand have no feedback force: leave actuator.thickness_mm out",
@@ -168,12 +169,24 @@ fn hand(path: &Path) -> Result<(String, String), String> {
         } else {
             "elastic"
         };
-        let _ = writeln!(list, "        Design{which} design_{which} {wall},");
+        let touched = if generated.certified.object.is_some() {
+            object = true;
+            "object"
+        } else {
+            "plate"
+        };
+        let _ = writeln!(
+            list,
+            "        Design{which} Plate{which} design_{which} {wall} {touched},"
+        );
         let _ = write!(
             source,
             "/// A design.\npub mod design_{which} {{\n{}}}\n",
             generated.rust_source()
         );
+    }
+    if object {
+        println!("cargo::rustc-cfg=object");
     }
     let tips = format!("hand! {{\n    designs {{\n{list}    }}\n    tips {{\n{of_tips}    }}\n}}\n");
     Ok((source, tips))
@@ -245,6 +258,29 @@ fn on_the_bus(file: &HandFile, designs: &[DesignFile], round: &BusRound) -> Stri
     )
 }
 
+/// Whether the board can take the tips of a hand while it is measured; why not.
+fn expect_slots(tips: usize) -> Result<(), String> {
+    let slots = match chosen_board() {
+        Ok(("nucleo-l432kc", ..)) => {
+            return Err(
+                "the one bank of the nucleo-l432kc's flash stands still for 75 ms while a slot of three pages is erased, and with it all \
+                 tips: build it without the feature load-tip, or for the nucleo-f429zi"
+                    .to_owned(),
+            );
+        }
+        _ => 10,
+    };
+    if 2 * tips > slots {
+        return Err(format!(
+            "its {tips} tips would need {} slots of flash, two a tip, and the board keeps {slots}: leave {} of them out, or build it \
+             without the feature load-tip",
+            2 * tips,
+            tips - slots / 2
+        ));
+    }
+    Ok(())
+}
+
 /// The design file: what `FINGERTIP_DESIGN` asks for, or the default. The build script runs in the folder of its
 /// package, which is the workspace root.
 fn design_path(asked: Option<&OsStr>) -> Result<&str, String> {
@@ -310,7 +346,7 @@ fn tables(design: &Path) -> Result<String, String> {
     if generated.certified.feedback.is_some() {
         // The force of the feedback actuator, and its place in a reading.
         println!("cargo::rustc-cfg=feedback_tables");
-        if env::var_os("CARGO_FEATURE_LOAD_TIP").is_none() {
+        if !loads_tips() {
             println!("cargo::rustc-cfg=feedback");
         }
     }
@@ -341,10 +377,6 @@ fn link_for_the_chip() -> Result<(), String> {
         // Come first, and so before those of memory.x.
         println!("cargo::rerun-if-changed={sizes}");
         println!("cargo::rustc-link-arg-bins=-T{}", root.join(sizes).display());
-    }
-    if env::var_os("CARGO_FEATURE_LOAD_TIP").is_some() {
-        // A block is judged on the stack, its tables blended there.
-        println!("cargo::rustc-link-arg-bins=--defsym=_stack_length=0x4000");
     }
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");

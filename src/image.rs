@@ -18,9 +18,12 @@ use generated::{DESIGN, TABLES};
 pub const HAS_OBJECT: bool = cfg!(object);
 
 #[cfg(object)]
+#[macro_use]
 mod object;
+
+/// What the firmware runs on.
 #[cfg(object)]
-pub use object::ObjectDesign as FirmwareDesign;
+pub type FirmwareDesign = ObjectDesign;
 
 /// What the firmware runs on.
 #[cfg(not(object))]
@@ -49,6 +52,9 @@ macro_rules! image_design {
 image_design!(elastic);
 #[cfg(relaxation)]
 image_design!(relaxing);
+
+#[cfg(object)]
+object_design!(ObjectDesign, ImageDesign, generated);
 
 impl ImageDesign {
     /// The same, to begin with.

@@ -214,14 +214,14 @@ static enum ft_result read_answer(struct cursor *from, struct ft_frame *frame)
     answer->command_sequence = take_u16(from);
     answer->outcome = take_u8(from);
     answer->findings = take_u16(from);
-    answer->has_known = frame->version == 2 && answer->command == FT_INDENTATION && from->left == 16;
+    answer->has_known = answer->command == FT_INDENTATION && from->left == 16;
     if (answer->has_known) {
         answer->force_un = take_i32(from);
         answer->force_sigma_un = take_i32(from);
         answer->curvature_per_km = take_i32(from);
         answer->curvature_sigma_per_km = take_i32(from);
     }
-    bool load = frame->version == 2 && answer->command >= FT_ARM && answer->command <= FT_READ_BACK;
+    bool load = answer->command >= FT_ARM && answer->command <= FT_READ_BACK;
     bool known = load || (answer->command >= FT_TARE && answer->command <= FT_AIR);
     return known && is_outcome(answer->outcome, load) && answer->tip < FT_MAX_TIPS ? FT_WHOLE : FT_VALUE;
 }
@@ -271,6 +271,9 @@ static enum ft_result read_tip_hello(struct cursor *from, struct ft_frame *frame
 static enum ft_result read_tip_data(struct cursor *from, struct ft_frame *frame)
 {
     struct ft_tip_data *data = &frame->of.tip_data;
+    if (frame->version == 3) {
+        data->tip = take_u8(from);
+    }
     data->command_sequence = take_u16(from);
     data->offset = take_u32(from);
     if (from->left < 1 || from->left > FT_MAX_DATA) {
@@ -280,7 +283,7 @@ static enum ft_result read_tip_data(struct cursor *from, struct ft_frame *frame)
     for (uint8_t i = 0; i < data->length; i++) {
         data->bytes[i] = take_u8(from);
     }
-    return FT_WHOLE;
+    return data->tip < FT_MAX_TIPS ? FT_WHOLE : FT_VALUE;
 }
 
 static enum ft_result read_body(struct cursor from, struct ft_frame *frame)
@@ -313,7 +316,7 @@ static enum ft_result read_body(struct cursor from, struct ft_frame *frame)
         frame->tips = 1;
         frame->of.values[0].fault = take_u8(&from);
         result = is_fault(frame->of.values[0].fault) ? FT_WHOLE : FT_VALUE;
-    } else if (!hand && frame->kind == FT_TIP_DATA) {
+    } else if (frame->kind == FT_TIP_DATA) {
         result = read_tip_data(&from, frame);
     }
     if (from.is_short) {

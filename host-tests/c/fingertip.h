@@ -30,7 +30,7 @@ enum ft_kind {
     FT_ANSWER = 4,   /* of a hand with its tip */
     FT_READINGS = 5, /* version 3: all tips of one instant */
     FT_TIP_HELLO = 6, /* version 3 */
-    FT_TIP_DATA = 7  /* version 2 */
+    FT_TIP_DATA = 7   /* of a hand with its tip */
 };
 
 /* Kinds of commands. */
@@ -115,6 +115,7 @@ struct ft_tip_hello {
 };
 
 struct ft_tip_data {
+    uint8_t tip; /* 0 of a board of one fingertip */
     uint16_t command_sequence;
     uint32_t offset;
     uint8_t length;

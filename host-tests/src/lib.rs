@@ -2,6 +2,7 @@
 //! simulated flash, and a board that takes a tip's data.
 
 pub mod budget;
+pub mod hand_device;
 pub mod nor_flash;
 pub mod real_use;
 pub mod tip_device;

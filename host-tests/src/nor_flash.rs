@@ -104,9 +104,14 @@ impl NorFlashError for FlashFailure {
 impl<const SLOT: usize, const UNIT: usize> SimulatedFlash<SLOT, UNIT> {
     /// Two erased slots; `seed` decides how half-done steps look.
     pub fn erased(seed: u64) -> Self {
+        Self::of_slots(2, seed)
+    }
+
+    /// So many erased slots.
+    pub fn of_slots(slots: usize, seed: u64) -> Self {
         Self {
-            bytes: vec![0xFF; 2 * SLOT],
-            units: vec![Unit::default(); 2 * SLOT / UNIT],
+            bytes: vec![0xFF; slots * SLOT],
+            units: vec![Unit::default(); slots * SLOT / UNIT],
             half_done: HalfDone::default(),
             budget: None,
             powered: true,
@@ -310,7 +315,7 @@ impl<const SLOT: usize, const UNIT: usize> ReadNorFlash for SimulatedFlash<SLOT,
     }
 
     fn capacity(&self) -> usize {
-        2 * SLOT
+        self.bytes.len()
     }
 }
 

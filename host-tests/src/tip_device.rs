@@ -57,8 +57,8 @@ pub fn tip(hash: u64, gain: i32) -> Vec<u8> {
 }
 
 /// The loader of a board with this transducer, its slots from the begin of a flash on.
-pub const fn loader(slot: u32) -> TipLoader {
-    TipLoader::new(TipSlots::new(0, slot), ImageDesign::CONSTANTS.transducer)
+pub const fn loader(slot: u32) -> TipLoader<1> {
+    TipLoader::new([TipSlots::new(0, slot)], [ImageDesign::CONSTANTS.transducer])
 }
 
 /// The board.
@@ -66,7 +66,7 @@ pub const fn loader(slot: u32) -> TipLoader {
 pub struct TipDevice<F> {
     flash: F,
     slot: u32,
-    loader: TipLoader,
+    loader: TipLoader<1>,
     device: Device<TipDesign<'static, FirmwareDesign>>,
     deframer: Deframer,
     outbox: Outbox<'static, WAITING>,
@@ -88,7 +88,7 @@ impl<F: NorFlash> TipDevice<F> {
         let mut loader = loader(slot);
         // A board has one for its whole life; a test has few.
         let block: &'static mut [u8] = Box::leak(vec![0; LARGEST_BLOCK].into_boxed_slice());
-        let (design, calibration, stored) = match block_on(loader.start(&mut flash, block)) {
+        let (design, calibration, stored) = match block_on(loader.start(0, &mut flash, block)) {
             FoundTip::Image => (TipDesign::Image(FirmwareDesign::start()), None, Stored::None),
             FoundTip::Loaded(design, calibration) => (TipDesign::Loaded(design), calibration, Stored::None),
             FoundTip::Refused => (TipDesign::Image(FirmwareDesign::start()), None, Stored::Damaged),
@@ -141,7 +141,7 @@ impl<F: NorFlash> TipDevice<F> {
                 let reply =
                     block_on(
                         self.loader
-                            .request(self.now, &mut self.flash, request, &mut self.buffer),
+                            .request(self.now, &mut self.flash, (0, request), &mut self.buffer),
                     );
                 say(&Message::Load(reply));
             } else if let Ok(request) = command::read_body(&body) {
@@ -216,6 +216,41 @@ impl BadLine {
     }
 }
 
+/// A board that a socket can be put in front of.
+pub trait Served: Send + 'static {
+    /// Bytes that came over the line since the last call, and the next report; gives the bytes of what it says.
+    fn millisecond(&mut self, heard: &[u8]) -> Vec<u8>;
+
+    /// The same board, reset if it asked for that.
+    #[must_use]
+    fn settled(self) -> Self;
+
+    /// The same board, reset.
+    #[must_use]
+    fn reset(self) -> Self;
+
+    /// Resets so far.
+    fn restarts(&self) -> u32;
+}
+
+impl<F: NorFlash + Send + 'static> Served for TipDevice<F> {
+    fn millisecond(&mut self, heard: &[u8]) -> Vec<u8> {
+        TipDevice::millisecond(self, heard)
+    }
+
+    fn settled(self) -> Self {
+        TipDevice::settled(self)
+    }
+
+    fn reset(self) -> Self {
+        TipDevice::reset(self)
+    }
+
+    fn restarts(&self) -> u32 {
+        self.restarts
+    }
+}
+
 /// A board behind a socket, in the pace of the clock on the wall.
 #[derive(Debug)]
 pub struct ServedDevice {
@@ -235,13 +270,20 @@ struct Events {
 }
 
 impl ServedDevice {
-    /// Puts a board behind a free port of this host, with the two ways of its line, to it first.
+    /// Puts a board of one tip behind a free port of this host, with the two ways of its line, to it first.
     ///
     /// # Panics
     /// If there is no such port.
-    pub fn start<F: NorFlash + Send + 'static>(
-        flash: F,
-        slot: u32,
+    pub fn start<F: NorFlash + Send + 'static>(flash: F, slot: u32, lines: [BadLine; 2]) -> Self {
+        Self::serve(move || TipDevice::start(flash, slot), lines)
+    }
+
+    /// The same of any board, which is switched on there.
+    ///
+    /// # Panics
+    /// If there is no such port.
+    pub fn serve<D: Served>(
+        start: impl FnOnce() -> D + Send + 'static,
         [mut to, mut from]: [BadLine; 2],
     ) -> Self {
         let socket = TcpListener::bind("127.0.0.1:0").expect("a free port");
@@ -250,7 +292,7 @@ impl ServedDevice {
         let events = Arc::new(Events::default());
         let told = Arc::clone(&events);
         let thread = std::thread::spawn(move || {
-            let mut device = TipDevice::start(flash, slot);
+            let mut device = start();
             let mut client: Option<TcpStream> = None;
             let mut buffer = [0; 4096];
             let mut heard = Vec::new();
@@ -285,7 +327,7 @@ impl ServedDevice {
                 }
                 device = device.settled();
             }
-            device.restarts
+            device.restarts()
         });
         Self {
             address,

@@ -306,7 +306,7 @@ fn the_header_in_c_takes_and_refuses_the_same_bytes_as_the_firmwares_reader() {
         // Commands are of the other direction.
         .filter(|body| body[1] < 0x80)
         .collect();
-    assert_eq!(bodies.len(), 12);
+    assert_eq!(bodies.len(), 15);
     let mut random = Random(11);
     let mut below = |end: usize| (random.bits() >> 33) as usize % end;
     let mut frames = Vec::new();

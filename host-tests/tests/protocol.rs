@@ -167,6 +167,47 @@ fn the_pages_examples_of_a_hand_are_what_the_reader_in_python_reads() {
             "{what}"
         );
     }
+    let load = |command| LoadRequest { sequence: 5, command };
+    for (command, what) in [
+        (LoadCommand::Arm, "arm"),
+        (
+            LoadCommand::Begin {
+                tip: 3,
+                length: 516,
+                check: 0x0123_4567,
+            },
+            "load begin",
+        ),
+        (
+            LoadCommand::Activate {
+                hash: 0x0123_4567_89AB_CDEF,
+            },
+            "activate",
+        ),
+        (
+            LoadCommand::ReadBack {
+                offset: 448,
+                length: 56,
+            },
+            "read back",
+        ),
+    ] {
+        let bytes = example(&format!("hand: {what} of tip 3"));
+        assert_eq!(tips::encode_load(3, &load(command)).as_slice(), bytes, "{what}");
+    }
+    let object = Request {
+        sequence: 6,
+        command: Command::Object(Touched::Ball(8_000)),
+    };
+    assert_eq!(
+        tips::encode_request(1, &object).as_slice(),
+        example("hand: object of tip 1")
+    );
+    for what in ["answer to a load of tip 3", "data of tip 3", "answer of tip 1"] {
+        let bytes = example(&format!("hand: {what}"));
+        let body = unstuff(&bytes[..bytes.len() - 1]).expect("it is a frame");
+        assert!(tips::read_body(&body).is_ok(), "{what}");
+    }
     let Some(told) = reader_of(HAND_READER, &[], &stream) else {
         return;
     };
@@ -205,7 +246,7 @@ fn the_client_of_a_hand_in_python_is_the_pages() {
         String::from_utf8_lossy(&output.stderr),
     );
     assert!(
-        output.status.success() && told.matches("... ok").count() == 6,
+        output.status.success() && told.matches("... ok").count() == 8,
         "{told}{error}"
     );
 }

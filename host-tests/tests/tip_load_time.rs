@@ -48,11 +48,12 @@ fn four_kibibytes_are_loaded_in_two_seconds_at_full_telemetry() {
     block[4..6].copy_from_slice(&[1, 0]);
     block[8..12].copy_from_slice(&4096_u32.to_le_bytes());
     let mut device = TipDevice::start(SimulatedFlash::<SLOT>::erased(1), SLOT as u32);
-    let mut loading = Loading::new(LoadJob::Load {
-        tip: 0,
+    let job = LoadJob::Load {
         block,
         hash: 1,
-    });
+        name: "tip".to_owned(),
+    };
+    let mut loading = Loading::new(job, None);
     loading.connected();
     // Its first zero is taken: from then on a report has values.
     for _ in 0..1000 {

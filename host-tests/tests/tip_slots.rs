@@ -33,7 +33,7 @@ const SECOND: u64 = 0x2222;
 /// A board with power.
 struct Bench<const U: usize> {
     flash: SimulatedFlash<SLOT, U>,
-    loader: TipLoader,
+    loader: TipLoader<1>,
     buffer: Vec<u8>,
     now: Microseconds,
 }
@@ -47,7 +47,7 @@ impl<const U: usize> Bench<U> {
             buffer: vec![0; LARGEST_BLOCK],
             now: Microseconds(0),
         };
-        let found = match block_on(bench.loader.start(&mut bench.flash, &mut bench.buffer)) {
+        let found = match block_on(bench.loader.start(0, &mut bench.flash, &mut bench.buffer)) {
             FoundTip::Image => Ok((IMAGE, 0)),
             FoundTip::Loaded(design, calibration) => {
                 let gain = calibration.expect("the tips have one").gain;
@@ -63,7 +63,7 @@ impl<const U: usize> Bench<U> {
         let request = LoadRequest { sequence: 1, command };
         match block_on(
             self.loader
-                .request(self.now, &mut self.flash, request, &mut self.buffer),
+                .request(self.now, &mut self.flash, (0, request), &mut self.buffer),
         ) {
             LoadReply::Answer {
                 outcome, findings, ..
@@ -146,11 +146,12 @@ fn a_tip_is_loaded_activated_rolled_back_and_read() {
             length: 16,
         },
     };
-    let reply = block_on(
-        bench
-            .loader
-            .request(Microseconds(9), &mut bench.flash, request, &mut bench.buffer),
-    );
+    let reply = block_on(bench.loader.request(
+        Microseconds(9),
+        &mut bench.flash,
+        (0, request),
+        &mut bench.buffer,
+    ));
     let LoadReply::Data {
         offset,
         bytes,

@@ -8,8 +8,12 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
-/// Longest erasure of a slot: 16 KB take 0.5 s, 8 bits at a time 0.8 s (DS9405 table 48).
-const ERASE: Duration = Duration::from_secs(2);
+/// Longest erasure of a slot: 16 KB take 0.5 s, 8 bits at a time 0.8 s (DS9405 table 48); of a tip of a hand 128 KB, 2 s.
+const ERASE: Duration = Duration::from_secs(if cfg!(all(hand, feature = "load-tip")) {
+    3
+} else {
+    2
+});
 
 /// Longest write of a record: 12 words of 0.1 ms, of a chunk of a tip 16, of the record of twelve tips of a hand 104.
 const WRITE: Duration = Duration::from_millis(if cfg!(hand) { 20 } else { 10 });
@@ -91,6 +95,8 @@ impl<F: NorFlash> NorFlash for RetryingFlash<F> {
     const ERASE_SIZE: usize = F::ERASE_SIZE;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), MemoryFailure> {
+        #[cfg(all(hand, feature = "load-tip", feature = "board-nucleo-f429zi"))]
+        super::chip::erase_by_words();
         let erased = with_timeout(ERASE, self.flash.erase(self.base + from, self.base + to)).await;
         flush_caches();
         erased.map_err(|_| MemoryFailure)?.map_err(|_| MemoryFailure)

@@ -45,8 +45,10 @@ mod chosen;
 pub mod ecc;
 
 pub use chosen::{CLOCK, SLOT};
-#[cfg(feature = "load-tip")]
+#[cfg(all(not(hand), feature = "load-tip"))]
 pub use chosen::{TIP_SLOT, TIPS};
+#[cfg(all(hand, feature = "load-tip"))]
+pub use chosen::{TIP_SLOTS, TIPS};
 pub use common::{Board, Clock, FlashMemory, Line, Port, SerialRx, Watchdog, begin};
 
 #[cfg(not(any(

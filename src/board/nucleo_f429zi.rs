@@ -11,6 +11,7 @@
 //! | serial port | PD8, PD9, USART3 | the ST-LINK's virtual COM port by default (UM1974 6.9) |
 //! | calibration | flash from `0x0810_0000`, two sectors of 16 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
 //! | a loaded tip (`load-tip`) | the two sectors behind it, from `0x0810_8000` | the same |
+//! | loaded tips of a hand | the rest of bank 2, two sectors a tip: two of 16 KB, one of 64, seven of 128 | what is erased apart: five tips |
 //!
 //! The transducer's output reaches A0 at no more than 10 kilo-ohm, as a share of the board's 3.3 V, which are the
 //! converter's reference and supply the transducer too. A transducer with another supply (`supply = "measured"`: 5 V,
@@ -20,7 +21,11 @@
 #[cfg(transducer = "ratiometric")]
 use super::pins::Input;
 use crate::status::ResetCause;
-use embassy_stm32::flash::{self, Bank2Region1, Flash};
+#[cfg(all(hand, feature = "load-tip"))]
+use crate::storage::tip_slots::Slot;
+#[cfg(not(all(hand, feature = "load-tip")))]
+use embassy_stm32::flash::Bank2Region1;
+use embassy_stm32::flash::{self, Flash};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::i2c;
 use embassy_stm32::peripherals::{self, DMA1_CH1, DMA1_CH3, USART3};
@@ -116,16 +121,40 @@ const LOOKS: u32 = 8_000;
 const LOOKS_AFTER_POWER: u32 = 6_000_000;
 
 /// Where the calibration lies: the first sectors of bank 2.
+#[cfg(not(all(hand, feature = "load-tip")))]
 pub(super) type Region = Bank2Region1<'static, flash::Async>;
+
+/// Where calibrations and tips lie: the flash, of which all of bank 2 is theirs.
+#[cfg(all(hand, feature = "load-tip"))]
+pub(super) type Region = Flash<'static, flash::Async>;
 
 /// Bytes of each of its two slots: a sector.
 pub const SLOT: u32 = 16 * 1024;
 
 /// The first of them, from the start of the region.
-pub(super) const CALIBRATION: u32 = 0;
+pub(super) const CALIBRATION: u32 = if cfg!(all(hand, feature = "load-tip")) {
+    0x0010_0000
+} else {
+    0
+};
+
+/// Slots of the loaded tips of a hand, from [`TIPS`] on, two a tip: the sectors 14 to 23 (RM0090 table 6).
+#[cfg(all(hand, feature = "load-tip"))]
+pub const TIP_SLOTS: [Slot; 10] = {
+    const KILOBYTES: [u32; 10] = [16, 16, 64, 128, 128, 128, 128, 128, 128, 128];
+    let mut slots = [Slot { begin: 0, length: 0 }; 10];
+    let (mut begin, mut number) = (0, 0);
+    while number < slots.len() {
+        let length = 1024 * KILOBYTES[number];
+        slots[number] = Slot { begin, length };
+        begin += length;
+        number += 1;
+    }
+    slots
+};
 
 /// Bytes of each slot of a loaded tip: a sector.
-#[cfg(feature = "load-tip")]
+#[cfg(all(not(hand), feature = "load-tip"))]
 pub const TIP_SLOT: u32 = 16 * 1024;
 
 /// The first of them, from the start of the region: behind the calibration.
@@ -135,7 +164,10 @@ pub const TIPS: u32 = CALIBRATION + 2 * SLOT;
 /// The flash of the calibration.
 pub(super) fn region(flash: Peri<'static, peripherals::FLASH>) -> Region {
     steady_bank_2();
-    Flash::new(flash, Interrupts).into_regions().bank2_region1
+    let flash = Flash::new(flash, Interrupts);
+    #[cfg(not(all(hand, feature = "load-tip")))]
+    let flash = flash.into_regions().bank2_region1;
+    flash
 }
 
 /// The clocks, and whether the crystal runs.

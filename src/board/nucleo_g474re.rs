@@ -12,6 +12,7 @@
 //! | serial port | PA2, PA3, LPUART1 | the ST-LINK's virtual COM port by default |
 //! | calibration | flash from `0x0804_0000`, two pages of 2 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
 //! | a loaded tip (`load-tip`) | the six pages behind it | the same |
+//! | loaded tips of a hand | six pages a tip | the same |
 //!
 //! The flash has two banks as the chip is delivered (option `DBANK`); the driver stops the start of a chip that was set to one bank.
 //!
@@ -23,6 +24,8 @@
 #[cfg(transducer = "ratiometric")]
 use super::pins::Input;
 use crate::status::ResetCause;
+#[cfg(all(hand, feature = "load-tip"))]
+use crate::storage::tip_slots::Slot;
 use embassy_stm32::flash::{self, Bank2Region, Flash};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::i2c;
@@ -121,8 +124,23 @@ pub const SLOT: u32 = 2 * 1024;
 /// The first of them, from the start of the region.
 pub(super) const CALIBRATION: u32 = 0;
 
+/// Slots of the loaded tips of a hand, from [`TIPS`] on, two a tip.
+#[cfg(all(hand, feature = "load-tip"))]
+pub const TIP_SLOTS: [Slot; 10] = {
+    let mut slots = [Slot {
+        begin: 0,
+        length: 6 * 1024,
+    }; 10];
+    let mut number = 0;
+    while number < slots.len() {
+        slots[number].begin = slots[number].length * number as u32;
+        number += 1;
+    }
+    slots
+};
+
 /// Bytes of each slot of a loaded tip: three pages, as a block may have two.
-#[cfg(feature = "load-tip")]
+#[cfg(all(not(hand), feature = "load-tip"))]
 pub const TIP_SLOT: u32 = 6 * 1024;
 
 /// The first of them, from the start of the region: behind the calibration.

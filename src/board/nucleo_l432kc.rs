@@ -117,11 +117,11 @@ pub const SLOT: u32 = 2 * 1024;
 pub(super) const CALIBRATION: u32 = 256 * 1024 - 2 * SLOT;
 
 /// Bytes of each slot of a loaded tip: three pages, as a block may have two.
-#[cfg(feature = "load-tip")]
+#[cfg(all(not(hand), feature = "load-tip"))]
 pub const TIP_SLOT: u32 = 6 * 1024;
 
 /// The first of them, from the start of the flash: before the calibration.
-#[cfg(feature = "load-tip")]
+#[cfg(all(not(hand), feature = "load-tip"))]
 pub const TIPS: u32 = CALIBRATION - 2 * TIP_SLOT;
 
 /// The flash of the calibration.

@@ -3,6 +3,8 @@
 
 use crate::device::logic::{Counters, Device, ToStore};
 use crate::link::command::{Command, Request};
+#[cfg(feature = "load-tip")]
+use crate::link::load::LoadReply;
 use crate::link::telemetry::{Answer, Hello, Message};
 use crate::link::tips::{ALL_TIPS, FrameStart};
 use crate::signal::design::Design;
@@ -108,6 +110,9 @@ pub enum HandFrame<'a> {
     Tip(u8, &'static str, Hello),
     /// A tip's answer, with its number.
     Answer(u8, Answer),
+    /// What came of a command that loads a tip, with its number.
+    #[cfg(feature = "load-tip")]
+    Load(u8, LoadReply),
 }
 
 impl HandFrame<'_> {
@@ -128,6 +133,8 @@ impl HandFrame<'_> {
             Self::Board(ref hello, tips) => start.board(hello, tips),
             Self::Tip(tip, name, ref hello) => start.tip(tip, name, hello),
             Self::Answer(tip, ref answer) => start.answer(tip, answer),
+            #[cfg(feature = "load-tip")]
+            Self::Load(tip, ref reply) => start.load(tip, reply),
         }
     }
 }
@@ -304,6 +311,7 @@ fn tell<const TIPS: usize>(
         Message::Answer(answer) => put(&HandFrame::Answer(tip, *answer)),
         // Those of all tips are in a frame.
         Message::Report { .. } => {}
+        // A loader makes them, and no tip.
         #[cfg(feature = "load-tip")]
         Message::Load(_) => {}
     }

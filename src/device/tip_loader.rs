@@ -1,9 +1,9 @@
-//! The policy for the commands that load a tip's data (feature `load-tip`), over the two [slots](TipSlots), without a clock or a
-//! line.
+//! The policy for the commands that load a tip's data (feature `load-tip`), over the two [slots](TipSlots) of each tip, without a clock
+//! or a line.
 //!
 //! The steps are arm, begin, chunks, verify and activate. Each step is refused if the previous one is missing. An activated or
 //! rolled back tip is in use after a restart, because a signal path has one design for its whole life. The caller restarts once the
-//! answer is on the line.
+//! answer is on the line. One tip is loaded at a time: a begin for another one ends the load before it.
 
 use crate::link::load::{CHUNK, LoadCommand, LoadOutcome, LoadReply, LoadRequest, Piece, READ_BACK, refused};
 use crate::signal::calibration::Calibration;
@@ -51,31 +51,50 @@ enum Progress {
 
 /// The commands' state.
 #[derive(Clone, Debug)]
-pub struct TipLoader {
-    slots: TipSlots,
-    transducer: Transducer,
+pub struct TipLoader<const TIPS: usize> {
+    slots: [TipSlots; TIPS],
+    transducers: [Transducer; TIPS],
+    /// The tip that a command is for.
+    tip: usize,
+    /// The one that is loaded.
+    loading: usize,
     progress: Progress,
     /// When loading is no longer allowed.
     armed_until: u64,
     restarting: bool,
 }
 
-impl TipLoader {
-    /// For a board whose image drives this transducer.
-    pub const fn new(slots: TipSlots, transducer: Transducer) -> Self {
+impl<const TIPS: usize> TipLoader<TIPS> {
+    /// For a board whose image drives these transducers, those of its tips.
+    ///
+    /// # Panics
+    /// At compile time, for no tip.
+    pub const fn new(slots: [TipSlots; TIPS], transducers: [Transducer; TIPS]) -> Self {
+        const { assert!(TIPS > 0) };
         Self {
             slots,
-            transducer,
+            transducers,
+            tip: 0,
+            loading: 0,
             progress: Progress::Nothing,
             armed_until: 0,
             restarting: false,
         }
     }
 
-    /// Reads the slots at a start, and the block in use into `buffer`.
-    pub async fn start<'a>(&mut self, flash: &mut impl NorFlash, buffer: &'a mut [u8]) -> FoundTip<'a> {
-        self.slots.scan(flash).await;
-        let Some(block) = self.slots.in_use() else {
+    /// Reads the slots of a tip at a start, and its block in use into `buffer`. A tip that is not there has the image's own tables.
+    pub async fn start<'a>(
+        &mut self,
+        tip: usize,
+        flash: &mut impl NorFlash,
+        buffer: &'a mut [u8],
+    ) -> FoundTip<'a> {
+        if tip >= TIPS {
+            return FoundTip::Image;
+        }
+        self.tip = tip;
+        self.slots().scan(flash).await;
+        let Some(block) = self.slots().in_use() else {
             return FoundTip::Image;
         };
         match self.judge(flash, block, buffer).await {
@@ -89,17 +108,33 @@ impl TipLoader {
         self.restarting
     }
 
-    /// Does what is asked for; `buffer` is for a block that is judged.
+    /// The tip whose design is another one after that restart.
+    pub const fn changed(&self) -> usize {
+        self.loading
+    }
+
+    fn slots(&mut self) -> &mut TipSlots {
+        // There is a tip, and its number is one of theirs.
+        &mut self.slots[self.tip]
+    }
+
+    /// Does what is asked for of a tip; `buffer` is for a block that is judged.
     pub async fn request(
         &mut self,
         now: Microseconds,
         flash: &mut impl NorFlash,
-        request: LoadRequest,
+        (tip, request): (u8, LoadRequest),
         buffer: &mut [u8],
     ) -> LoadReply {
         let LoadRequest { sequence, command } = request;
+        let known = usize::from(tip) < TIPS;
+        if known {
+            self.tip = usize::from(tip);
+        }
         let outcome = if self.restarting {
             Err((LoadOutcome::Busy, 0))
+        } else if !known {
+            Err((LoadOutcome::WrongTip, 0))
         } else if let LoadCommand::ReadBack { offset, length } = command {
             match self.read_back(flash, offset, length).await {
                 Ok(bytes) => {
@@ -155,10 +190,10 @@ impl TipLoader {
         length: u32,
         check: u32,
     ) -> Result<(), LoadOutcome> {
-        if tip != 0 {
+        if usize::from(tip) != self.tip {
             return Err(LoadOutcome::WrongTip);
         }
-        if length as usize > LARGEST_BLOCK || length > self.slots.room() {
+        if length as usize > LARGEST_BLOCK || length > self.slots().room() {
             return Err(LoadOutcome::OutOfBounds);
         }
         let begun = Progress::Begun {
@@ -167,11 +202,12 @@ impl TipLoader {
             blank: true,
         };
         // The answer was lost: once is enough for the memory.
-        if self.progress == begun {
+        if self.progress() == begun {
             return Ok(());
         }
+        self.loading = self.tip;
         self.progress = Progress::Nothing;
-        self.slots
+        self.slots()
             .erase_free(flash)
             .await
             .map_err(|_| LoadOutcome::MemoryFailed)?;
@@ -185,7 +221,7 @@ impl TipLoader {
         offset: u32,
         bytes: &[u8],
     ) -> Result<(), LoadOutcome> {
-        let (length, check) = match self.progress {
+        let (length, check) = match self.progress() {
             Progress::Nothing => return Err(LoadOutcome::OutOfOrder),
             Progress::Begun { length, check, .. } => (length, check),
             Progress::Verified(block) => (block.length, block.check),
@@ -199,7 +235,7 @@ impl TipLoader {
             check,
             blank: false,
         };
-        self.slots
+        self.slots()
             .write_free::<CHUNK>(flash, offset, bytes)
             .await
             .map_err(|_| LoadOutcome::MemoryFailed)
@@ -210,13 +246,13 @@ impl TipLoader {
         flash: &mut impl NorFlash,
         buffer: &mut [u8],
     ) -> Result<(), (LoadOutcome, u16)> {
-        let (length, check) = match self.progress {
+        let (length, check) = match self.progress() {
             Progress::Nothing => return Err(plain(LoadOutcome::OutOfOrder)),
             Progress::Begun { length, check, .. } => (length, check),
             Progress::Verified(block) => (block.length, block.check),
         };
         let mut block = SlotBlock {
-            slot: self.slots.free(),
+            slot: self.slots().free(),
             length,
             check,
             hash: 0,
@@ -230,13 +266,13 @@ impl TipLoader {
     }
 
     async fn activate(&mut self, flash: &mut impl NorFlash, hash: u64) -> Result<(), LoadOutcome> {
-        let Progress::Verified(block) = self.progress else {
+        let Progress::Verified(block) = self.progress() else {
             return Err(LoadOutcome::OutOfOrder);
         };
         if block.hash != hash {
             return Err(LoadOutcome::OtherHash);
         }
-        let activated = self.slots.activate(flash, block).await;
+        let activated = self.slots().activate(flash, block).await;
         // After a failure the slot may hold half an activation: only a new load makes sure.
         self.progress = Progress::Nothing;
         activated.map_err(failed)?;
@@ -250,19 +286,29 @@ impl TipLoader {
         buffer: &mut [u8],
     ) -> Result<(), (LoadOutcome, u16)> {
         let to = self
-            .slots
+            .slots()
             .rolls_back_to()
             .ok_or(plain(LoadOutcome::NothingToRollBack))?;
         if let Some(block) = to {
             self.judge(flash, block, buffer).await?;
         }
+        self.loading = self.tip;
         self.progress = Progress::Nothing;
-        self.slots
+        self.slots()
             .roll_back(flash, to)
             .await
             .map_err(|error| plain(failed(error)))?;
         self.restarting = true;
         Ok(())
+    }
+
+    /// How far the load of the tip has come that a command is for.
+    fn progress(&self) -> Progress {
+        if self.tip == self.loading {
+            self.progress
+        } else {
+            Progress::Nothing
+        }
     }
 
     async fn read_back(
@@ -271,14 +317,14 @@ impl TipLoader {
         offset: u32,
         length: u8,
     ) -> Result<Piece<READ_BACK>, LoadOutcome> {
-        let block = self.slots.in_use().ok_or(LoadOutcome::OutOfOrder)?;
+        let block = self.slots().in_use().ok_or(LoadOutcome::OutOfOrder)?;
         let mut bytes = [0; READ_BACK];
         let within = block.length.saturating_sub(offset).min(u32::from(length));
         let part = bytes
             .get_mut(..within as usize)
             .filter(|part| !part.is_empty())
             .ok_or(LoadOutcome::OutOfBounds)?;
-        self.slots
+        self.slots()
             .read(flash, block.slot, offset, part)
             .await
             .map_err(failed)?;
@@ -287,7 +333,7 @@ impl TipLoader {
 
     /// Reads a block whole, and the design in it, if this image uses it.
     async fn judge<'a>(
-        &self,
+        &mut self,
         flash: &mut impl NorFlash,
         block: SlotBlock,
         buffer: &'a mut [u8],
@@ -296,7 +342,7 @@ impl TipLoader {
         let bytes = buffer
             .get_mut(..block.length as usize)
             .ok_or(refuse(refused::LENGTH))?;
-        self.slots
+        self.slots()
             .read(flash, block.slot, 0, bytes)
             .await
             .map_err(|error| plain(failed(error)))?;
@@ -309,12 +355,8 @@ impl TipLoader {
             kind,
             ..
         } = design.parameters().constants.transducer;
-        let other = (range, quantity, kind)
-            != (
-                self.transducer.range,
-                self.transducer.quantity,
-                self.transducer.kind,
-            );
+        let own = &self.transducers[self.tip];
+        let other = (range, quantity, kind) != (own.range, own.quantity, own.kind);
         let known = block.hash == 0 || block.hash == hash(&design);
         let why = match () {
             () if length != block.length => refused::LENGTH,

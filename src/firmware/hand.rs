@@ -1,27 +1,39 @@
 //! The tasks of a hand's firmware: [`signal`] makes the reports of all tips, [`send`] puts them on the line, [`listen`] takes
 //! commands from it, [`remember`] stores the calibrations. The first one feeds the watchdog, while all report.
 
+#[cfg(feature = "load-tip")]
+use crate::firmware::hand_tips;
 use crate::firmware::line::{listen, send};
 use crate::firmware::queues::{
-    self, IDLE, REFUSED, REMEMBER, REQUESTS, SEND, SENT, STORED, TO_STORE, Waiting, alive, refuse,
+    self, REFUSED, REQUESTS, SEND, SENT, STORED, TO_STORE, Waiting, alive, refuse,
 };
+#[cfg(not(feature = "load-tip"))]
+use crate::firmware::queues::{IDLE, REMEMBER};
 use crate::firmware::retained;
 use crate::firmware::samples::{self, Samples};
 use crate::firmware::watch::{self, NOTES, WATCHDOG_PERIOD, missing, version};
 use core::sync::atomic::Ordering;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
-use embassy_time::{Duration, Ticker, with_timeout};
-use fingertip::board::{self, Board, Clock, FlashMemory, SLOT, Watchdog};
+#[cfg(not(feature = "load-tip"))]
+use embassy_time::with_timeout;
+use embassy_time::{Duration, Ticker};
+use fingertip::board::{self, Board, Clock, SLOT, Watchdog};
 use fingertip::device::hand::Hand;
 use fingertip::device::kept_zeros::ZeroWords;
-use fingertip::device::logic::{Beginning, ToStore};
+use fingertip::device::logic::Beginning;
 use fingertip::device::task_monitor::{CrashRecord, GOOD_RUN, Stage, Start};
-use fingertip::image::{EVERY, IDENTITIES, NAME, NAMES, PERIOD, RECORD, TIPS, Tips};
+use fingertip::image::{EVERY, HandStart, NAME, NAMES, PERIOD, TIPS, Tips};
 use fingertip::signal::report::Report;
 use fingertip::status::{Fault, Status, Stored};
 use fingertip::storage::hand_store::{HandStore, StoredTip};
-use fingertip::storage::log::StoreError;
+#[cfg(not(feature = "load-tip"))]
+use fingertip::{
+    board::FlashMemory,
+    device::logic::ToStore,
+    image::{IDENTITIES, RECORD},
+    storage::log::StoreError,
+};
 
 /// After reset upon reset the flash is left alone.
 const NOT_READ: StoredTip = StoredTip {
@@ -37,9 +49,18 @@ async fn main(spawner: Spawner) {
     let start = CrashRecord::start(retained::read(), reset_cause, NAMES.hash);
     retained::write(&start.crash_record);
     let kept = retained::read_zeros().zeros(NAMES.hash);
+    #[cfg(not(feature = "load-tip"))]
     let board = Board::take(start.give_up, reset_cause);
+    #[cfg(not(feature = "load-tip"))]
+    let identities = IDENTITIES;
+    #[cfg(feature = "load-tip")]
+    let mut board = Board::take(start.give_up, reset_cause);
+    #[cfg(feature = "load-tip")]
+    let (found, loader) = hand_tips::start(&mut board.memory, start.give_up).await;
+    #[cfg(feature = "load-tip")]
+    let identities = found.identities;
     let firmware = version();
-    let mut store = (!start.give_up).then(|| HandStore::new(board.memory, SLOT, IDENTITIES, firmware));
+    let mut store = (!start.give_up).then(|| HandStore::new(board.memory, SLOT, identities, firmware));
     if let Some(store) = &mut store {
         retained::enter(Stage::Store);
         store.load().await;
@@ -48,6 +69,8 @@ async fn main(spawner: Spawner) {
     let mut tip = 0;
     let beginnings = kept.map(|kept| {
         let stored = store.as_ref().map_or(NOT_READ, |store| store.stored(tip));
+        #[cfg(feature = "load-tip")]
+        let stored = found.complete(tip, stored);
         tip += 1;
         Beginning {
             reset_cause,
@@ -71,12 +94,20 @@ async fn main(spawner: Spawner) {
     let waiting = queues::outbox();
     spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
     spawner.spawn(listen(board.serial_rx, clock).expect("spawned once"));
+    #[cfg(not(feature = "load-tip"))]
     spawner.spawn(remember(store, clock).expect("spawned once"));
+    #[cfg(feature = "load-tip")]
+    spawner.spawn(hand_tips::remember(store, loader, clock, waiting).expect("spawned once"));
+    let start = HandStart {
+        beginnings: &beginnings,
+        #[cfg(feature = "load-tip")]
+        loaded: &found.loaded,
+    };
     let samples = match board.port {
         Some(port) => Some(samples::of(port, clock, spawner).await),
         None => None,
     };
-    signal(clock, samples, waiting, board.watchdog, &beginnings).await
+    signal(clock, samples, waiting, board.watchdog, start).await
 }
 
 /// Turns samples into reports, and answers commands. Period: [`PERIOD`]. Deadline: the next one; when late, samples are lost, which is
@@ -87,13 +118,13 @@ async fn signal(
     mut source: Option<Samples>,
     waiting: &'static Waiting,
     mut watchdog: Watchdog,
-    beginnings: &[Beginning; TIPS],
+    start: HandStart<'_>,
 ) -> ! {
-    let mut tips = Tips::new(beginnings);
+    let mut tips = Tips::new(start);
     let mut hand = Hand::new(NAMES, &mut tips.each(), EVERY);
     let mut crash_record = CrashRecord {
         detail: Stage::Running as u32,
-        ..beginnings[0].start.crash_record
+        ..start.beginnings[0].start.crash_record
     };
     let mut log = Log::default();
     let mut pace = Ticker::every(Duration::from_micros(u64::from(PERIOD)));
@@ -160,6 +191,7 @@ async fn signal(
 
 /// Stores the calibrations, one tip at a time. Period: when asked for. Deadline: none; other tasks run meanwhile. Without a store
 /// every save fails.
+#[cfg(not(feature = "load-tip"))]
 #[embassy_executor::task]
 async fn remember(mut store: Option<HandStore<FlashMemory, TIPS, RECORD>>, clock: Clock) {
     loop {

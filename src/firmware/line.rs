@@ -1,8 +1,10 @@
 //! The serial line, both ways: [`send`] puts frames on it, [`listen`] takes commands from it.
 
+#[cfg(all(hand, feature = "load-tip"))]
+use crate::firmware::hand_tips::LOADS;
 use crate::firmware::queues::{IDLE, LISTEN, REQUESTS, Waiting, alive, refuse};
-#[cfg(feature = "load-tip")]
-use crate::firmware::tip;
+#[cfg(all(not(hand), feature = "load-tip"))]
+use crate::firmware::tip::LOADS;
 use embassy_time::with_timeout;
 use fingertip::board::{Clock, Line, SerialRx};
 #[cfg(not(hand))]
@@ -11,6 +13,8 @@ use fingertip::image;
 use fingertip::link::command;
 #[cfg(feature = "load-tip")]
 use fingertip::link::load;
+#[cfg(all(hand, feature = "load-tip"))]
+use fingertip::link::tips::read_load;
 #[cfg(hand)]
 use fingertip::link::tips::read_request;
 use fingertip::link::wire::{Deframer, Encoded};
@@ -65,7 +69,7 @@ pub(super) async fn listen(mut serial_rx: SerialRx, clock: Clock) {
 fn is_taken(body: &[u8]) -> bool {
     #[cfg(feature = "load-tip")]
     if load::is_load(body) {
-        return load::read_body(body).is_ok_and(|request| tip::LOADS.try_send(request).is_ok());
+        return load::read_body(body).is_ok_and(|request| LOADS.try_send(request).is_ok());
     }
     command::read_known_body::<OBJECT>(body).is_ok_and(|request| REQUESTS.try_send(request).is_ok())
 }
@@ -73,5 +77,9 @@ fn is_taken(body: &[u8]) -> bool {
 /// The same of a hand, whose commands have a tip.
 #[cfg(hand)]
 fn is_taken(body: &[u8]) -> bool {
+    #[cfg(feature = "load-tip")]
+    if load::is_load(body) {
+        return read_load(body).is_ok_and(|asked| LOADS.try_send(asked).is_ok());
+    }
     read_request(body).is_ok_and(|asked| REQUESTS.try_send(asked).is_ok())
 }

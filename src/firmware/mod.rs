@@ -3,6 +3,8 @@
 
 #[cfg(hand)]
 mod hand;
+#[cfg(all(hand, feature = "load-tip"))]
+mod hand_tips;
 mod line;
 mod queues;
 mod retained;
@@ -10,7 +12,7 @@ mod retained;
 mod samples;
 #[cfg(not(hand))]
 mod tasks;
-#[cfg(feature = "load-tip")]
+#[cfg(all(not(hand), feature = "load-tip"))]
 mod tip;
 #[cfg(not(hand))]
 mod transducer;

@@ -36,7 +36,7 @@ pub(super) struct Tip {
     /// What is measured with.
     pub(super) design: TipDesign<'static, FirmwareDesign>,
     /// What the flash's slots are known to hold.
-    pub(super) loader: TipLoader,
+    pub(super) loader: TipLoader<1>,
     /// What the block holds of the one fingertip.
     pub(super) known: Option<Calibration>,
     /// A loaded tip cannot be used.
@@ -46,11 +46,11 @@ pub(super) struct Tip {
 /// The tip in use. After reset upon reset the flash is left alone.
 pub(super) async fn start(memory: &mut FlashMemory, gave_up: bool) -> Tip {
     let slots = TipSlots::new(0, TIP_SLOT);
-    let mut loader = TipLoader::new(slots, ImageDesign::CONSTANTS.transducer);
+    let mut loader = TipLoader::new([slots], [ImageDesign::CONSTANTS.transducer]);
     let found = if gave_up {
         FoundTip::Image
     } else {
-        loader.start(&mut memory.at(TIPS), IN_USE.take()).await
+        loader.start(0, &mut memory.at(TIPS), IN_USE.take()).await
     };
     let is_refused = matches!(found, FoundTip::Refused);
     let (design, known) = match found {
@@ -83,7 +83,7 @@ pub(super) fn beginning(beginning: Beginning, known: Option<Calibration>, is_ref
 #[embassy_executor::task]
 pub(super) async fn remember(
     mut store: Option<Store<FlashMemory>>,
-    mut loader: TipLoader,
+    mut loader: TipLoader<1>,
     clock: Clock,
     waiting: &'static Waiting,
 ) {
@@ -105,7 +105,7 @@ pub(super) async fn remember(
                 let reply = match &mut store {
                     Some(store) => {
                         let mut flash = store.flash_mut().at(TIPS);
-                        loader.request(now, &mut flash, request, judged).await
+                        loader.request(now, &mut flash, (0, request), judged).await
                     }
                     None => LoadReply::Answer {
                         time: now,

@@ -2,7 +2,13 @@
 
 use crate::device::hand::{HandNames, HandTip};
 use crate::device::logic::{Beginning, Device};
+#[cfg(feature = "load-tip")]
+use crate::signal::design::Design;
 use crate::signal::design::Parameters;
+#[cfg(feature = "load-tip")]
+use crate::signal::loaded_design::LoadedDesign;
+#[cfg(feature = "load-tip")]
+use crate::signal::tip_design::TipDesign;
 use crate::storage::hand_record::length;
 use crate::storage::hand_store::TipIdentity;
 #[cfg(transducer = "bus")]
@@ -16,6 +22,9 @@ use model_tables::units::PressureRise;
 
 #[macro_use]
 mod folded;
+#[cfg(object)]
+#[macro_use]
+mod object;
 
 /// The build script's words.
 #[allow(clippy::unreadable_literal)] // nobody reads them
@@ -75,8 +84,8 @@ pub const EVERY: u16 = if cfg!(transducer = "bus") { 1 } else { 2 };
 /// Bytes of the record of their calibrations.
 pub const RECORD: usize = length(TIPS);
 
-/// No design of a hand has an `[object]`.
-pub const HAS_OBJECT: bool = false;
+/// Whether a design of a tip has an `[object]`.
+pub const HAS_OBJECT: bool = cfg!(object);
 
 /// What the hand and its tips are called.
 pub const NAMES: HandNames<TIPS> = HandNames {
@@ -110,30 +119,100 @@ macro_rules! of_hand {
     };
 }
 
+/// A design against its plate, or with an `[object]` too.
+macro_rules! touching {
+    (plate $design:ident $plate:ident $module:ident $wall:ident) => {
+        folded_design!($design, generated::$module, $wall, of_hand!($module), {});
+
+        impl $design {
+            /// The same, to begin with.
+            fn start() -> Self {
+                Self
+            }
+        }
+    };
+    (object $design:ident $plate:ident $module:ident $wall:ident) => {
+        folded_design!($plate, generated::$module, $wall, of_hand!($module), {});
+        object_design!($design, $plate, generated::$module);
+    };
+}
+
+/// A tip's design: the one of the image.
+#[cfg(not(feature = "load-tip"))]
+type OfTip<D> = D;
+
+/// A tip's design: the one of the image, or one that was loaded.
+#[cfg(feature = "load-tip")]
+type OfTip<D> = TipDesign<'static, D>;
+
+/// What the tips begin with, in their order.
+#[derive(Clone, Copy, Debug)]
+pub struct HandStart<'a> {
+    /// What the board knows of each.
+    pub beginnings: &'a [Beginning; TIPS],
+    /// The loaded designs in use; `None`: the image's own is.
+    #[cfg(feature = "load-tip")]
+    pub loaded: &'a [Option<&'static LoadedDesign<'static>>; TIPS],
+}
+
+/// A tip that has seen nothing yet, with the design that it begins with.
+macro_rules! first_device {
+    ($of:ident, $beginning:ident, $loaded:ident) => {{
+        #[cfg(not(feature = "load-tip"))]
+        {
+            Device::new($of::start(), $beginning)
+        }
+        #[cfg(feature = "load-tip")]
+        first_device($of::start, $loaded.next().copied().flatten(), $beginning)
+    }};
+}
+
+// Its frame holds copies of the design: once, and not once a tip.
+#[cfg(feature = "load-tip")]
+#[inline(never)]
+fn first_device<D: Design>(
+    image: fn() -> D,
+    loaded: Option<&LoadedDesign<'static>>,
+    beginning: &Beginning,
+) -> Device<TipDesign<'static, D>> {
+    let design = match loaded {
+        Some(loaded) => TipDesign::Loaded(*loaded),
+        None => TipDesign::Image(image()),
+    };
+    Device::new(design, beginning)
+}
+
 /// The designs, and the tips with the design of each.
 macro_rules! hand {
     (
-        designs { $($design:ident $module:ident $wall:ident,)* }
+        designs { $($design:ident $plate:ident $module:ident $wall:ident $touched:ident,)* }
         tips { $($tip:ident $of:ident,)* }
     ) => {
-        $(folded_design!($design, generated::$module, $wall, of_hand!($module), {});)*
+        $(touching!($touched $design $plate $module $wall);)*
 
         /// The transducers of the tips.
         pub const TRANSDUCERS: [Transducer; TIPS] = [$($of::PARAMETERS.constants.transducer,)*];
 
         const TABLE_VERSIONS: [u32; TIPS] = [$($of::PARAMETERS.constants.table_version,)*];
 
+        /// Hashes of the designs of the tips, those of the image.
+        #[cfg(feature = "load-tip")]
+        pub const DESIGN_HASHES: [u64; TIPS] = [$($of::PARAMETERS.constants.hash,)*];
+
         /// The tips.
         #[derive(Debug)]
         pub struct Tips {
-            $($tip: Device<$of>,)*
+            $($tip: Device<OfTip<$of>>,)*
         }
 
         impl Tips {
             /// Tips that have seen nothing yet, from what the board knows of each when it starts.
-            pub fn new([$($tip,)*]: &[Beginning; TIPS]) -> Self {
+            pub fn new(start: HandStart<'_>) -> Self {
+                let [$($tip,)*] = start.beginnings;
+                #[cfg(feature = "load-tip")]
+                let mut loaded = start.loaded.iter();
                 Self {
-                    $($tip: Device::new($of, $tip),)*
+                    $($tip: first_device!($of, $tip, loaded),)*
                 }
             }
 

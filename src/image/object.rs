@@ -1,112 +1,120 @@
 //! The design of an image with `[object]`: tables of the touched object, blended when the object changes.
 
-use super::ImageDesign;
-use super::generated::{BALL, LAW, START, TABLES};
-use crate::signal::design::{Design, NoSuchObject, Parameters};
-use crate::signal::zero::limits::Limits;
-use model_tables::material::series::WallSeries;
-use model_tables::table::Reading;
-use model_tables::table::blend::{blend, last_answered};
-use model_tables::table::known::{KnownContact, Lookups, ReadPair};
-use model_tables::table::law::{Touched, Weights};
-use model_tables::units::{Nanometres, PressureRise};
-
-const WORDS: usize = TABLES.layout.words();
-const SEGMENTS: usize = TABLES.segments.len();
-
-/// The design with the tables of what is touched in memory.
-#[derive(Clone, Debug)]
-pub struct ObjectDesign {
-    /// Last input covered, counts.
-    maximum: i32,
-    segments: [[i32; WORDS]; SEGMENTS],
-    read: Option<ReadPair>,
-}
-
-impl ObjectDesign {
-    /// Touching what the design says.
-    pub fn start() -> Self {
-        let mut design = Self {
-            maximum: TABLES.layout.maximum,
-            segments: TABLES.segments,
-            read: None,
-        };
-        // The generator saw to it that the law allows it.
-        let _ = design.touch(START);
-        design
-    }
-
-    fn weigh(&mut self, weights: &Weights) {
-        blend(
-            &TABLES.layout,
-            TABLES.segments.as_flattened(),
-            BALL.as_flattened(),
-            weights,
-            self.segments.as_flattened_mut(),
-        );
-        self.maximum = last_answered(
-            &TABLES.layout,
-            weights,
-            |rise| TABLES.lookup(rise),
-            |rise| TABLES.layout.lookup_in(&self.segments, rise),
-        );
-    }
-}
-
-impl Design for ObjectDesign {
-    type Wall = <ImageDesign as Design>::Wall;
-    type Around = <ImageDesign as Design>::Around;
-
-    #[inline]
-    fn series(&self) -> Option<&WallSeries> {
-        ImageDesign.series()
-    }
-
-    #[inline]
-    fn limits(&self) -> Limits {
-        ImageDesign.limits()
-    }
-
-    #[inline]
-    fn parameters(&self) -> &Parameters {
-        const { &ImageDesign::PARAMETERS }
-    }
-
-    #[inline]
-    fn lookup(&self, rise: PressureRise) -> Reading {
-        let held = PressureRise(rise.0.min(self.maximum));
-        Reading {
-            saturated: rise.0 > self.maximum,
-            ..TABLES.layout.lookup_in(&self.segments, held)
+/// Implements a [`Design`](crate::signal::design::Design) by the tables of a module, its ball's and its law, over the design of its plate.
+macro_rules! object_design {
+    ($name:ident, $plate:ident, $($module:ident)::+) => {
+        /// A design with the tables of what is touched in memory.
+        #[derive(Clone, Debug)]
+        pub struct $name {
+            /// Last input covered, counts.
+            maximum: i32,
+            segments: [[i32; $($module)::+::TABLES.layout.words()]; $($module)::+::TABLES.segments.len()],
+            read: Option<model_tables::table::known::ReadPair>,
         }
-    }
 
-    #[inline]
-    fn last_rise(&self) -> PressureRise {
-        PressureRise(self.maximum)
-    }
+        impl $name {
+            /// What the signal path needs of it.
+            pub const PARAMETERS: crate::signal::design::Parameters = $plate::PARAMETERS;
 
-    #[inline(never)]
-    fn touch(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
-        let weights = LAW.weights(touched).ok_or(NoSuchObject)?;
-        self.weigh(&weights);
-        self.read = None;
-        Ok(())
-    }
+            /// Touching what the design says.
+            pub fn start() -> Self {
+                use crate::signal::design::Design as _;
+                let mut design = Self {
+                    maximum: $($module)::+::TABLES.layout.maximum,
+                    segments: $($module)::+::TABLES.segments,
+                    read: None,
+                };
+                // The generator saw to it that the law allows it.
+                let _ = design.touch($($module)::+::START);
+                design
+            }
 
-    #[inline]
-    fn note(&mut self, read: Option<ReadPair>) {
-        self.read = read;
-    }
+            fn weigh(&mut self, weights: &model_tables::table::law::Weights) {
+                use $($module)::+::{BALL, TABLES};
+                model_tables::table::blend::blend(
+                    &TABLES.layout,
+                    TABLES.segments.as_flattened(),
+                    BALL.as_flattened(),
+                    weights,
+                    self.segments.as_flattened_mut(),
+                );
+                self.maximum = model_tables::table::blend::last_answered(
+                    &TABLES.layout,
+                    weights,
+                    |rise| TABLES.lookup(rise),
+                    |rise| TABLES.layout.lookup_in(&self.segments, rise),
+                );
+            }
+        }
 
-    #[inline(never)]
-    fn tell(&self, known: Nanometres) -> Option<KnownContact> {
-        let lookups = Lookups {
-            touched: |rise| self.lookup(rise),
-            last: [self.last_rise(), PressureRise(TABLES.layout.maximum)],
-            plate: |rise| TABLES.lookup(rise),
-            ball: |rise| TABLES.layout.lookup_in(&BALL, rise),
-        };
-        Some(lookups.tell(&LAW, self.read.as_ref()?, known))
-    }
+        impl crate::signal::design::Design for $name {
+            type Wall = <$plate as crate::signal::design::Design>::Wall;
+            type Around = <$plate as crate::signal::design::Design>::Around;
+
+            #[inline]
+            fn series(&self) -> Option<&model_tables::material::series::WallSeries> {
+                $plate.series()
+            }
+
+            #[inline]
+            fn limits(&self) -> crate::signal::zero::limits::Limits {
+                $plate.limits()
+            }
+
+            #[inline]
+            fn parameters(&self) -> &crate::signal::design::Parameters {
+                const { &$plate::PARAMETERS }
+            }
+
+            #[inline]
+            fn lookup(&self, rise: model_tables::units::PressureRise) -> model_tables::table::Reading {
+                let held = model_tables::units::PressureRise(rise.0.min(self.maximum));
+                model_tables::table::Reading {
+                    saturated: rise.0 > self.maximum,
+                    ..$($module)::+::TABLES.layout.lookup_in(&self.segments, held)
+                }
+            }
+
+            #[inline]
+            fn last_rise(&self) -> model_tables::units::PressureRise {
+                model_tables::units::PressureRise(self.maximum)
+            }
+
+            #[inline(never)]
+            fn touch(
+                &mut self,
+                touched: model_tables::table::law::Touched,
+            ) -> Result<(), crate::signal::design::NoSuchObject> {
+                let weights = $($module)::+::LAW
+                    .weights(touched)
+                    .ok_or(crate::signal::design::NoSuchObject)?;
+                self.weigh(&weights);
+                self.read = None;
+                Ok(())
+            }
+
+            #[inline]
+            fn note(&mut self, read: Option<model_tables::table::known::ReadPair>) {
+                self.read = read;
+            }
+
+            #[inline(never)]
+            fn tell(
+                &self,
+                known: model_tables::units::Nanometres,
+            ) -> Option<model_tables::table::known::KnownContact> {
+                use $($module)::+::{BALL, LAW, TABLES};
+                let lookups = model_tables::table::known::Lookups {
+                    touched: |rise| self.lookup(rise),
+                    last: [
+                        self.last_rise(),
+                        model_tables::units::PressureRise(TABLES.layout.maximum),
+                    ],
+                    plate: |rise| TABLES.lookup(rise),
+                    ball: |rise| TABLES.layout.lookup_in(&BALL, rise),
+                };
+                Some(lookups.tell(&LAW, self.read.as_ref()?, known))
+            }
+        }
+    };
 }

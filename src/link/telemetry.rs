@@ -172,14 +172,7 @@ pub fn write<const OBJECT: bool>(body: &mut Encoded, sequence: u16, dropped: u16
             body.put([code_of(&Outcome::CODES, answer.outcome)]);
             body.put(answer.findings.to_le_bytes());
             if OBJECT && let Some(known) = &answer.known {
-                for number in [
-                    known.force.0,
-                    known.force_sigma.0,
-                    known.curvature,
-                    known.curvature_sigma,
-                ] {
-                    body.put(number.to_le_bytes());
-                }
+                write_known(body, known);
             }
         }
         #[cfg(feature = "load-tip")]
@@ -192,6 +185,31 @@ pub fn write<const OBJECT: bool>(body: &mut Encoded, sequence: u16, dropped: u16
         }
     }
     body.finish();
+}
+
+/// What a known indentation told.
+#[inline]
+pub(super) fn write_known(body: &mut Encoded, known: &KnownContact) {
+    for number in [
+        known.force.0,
+        known.force_sigma.0,
+        known.curvature,
+        known.curvature_sigma,
+    ] {
+        body.put(number.to_le_bytes());
+    }
+}
+
+/// What a known indentation told, which qualifies it in `doubts`.
+pub(super) fn read_known(fields: &mut Reader<'_>, doubts: u16) -> Result<KnownContact, DecodeError> {
+    let mut number = || fields.take().map(i32::from_le_bytes);
+    Ok(KnownContact {
+        force: Micronewtons(number()?),
+        force_sigma: Micronewtons(number()?),
+        curvature: number()?,
+        curvature_sigma: number()?,
+        doubts,
+    })
 }
 
 pub(super) fn write_hello(body: &mut Encoded, hello: &Hello) {
@@ -297,14 +315,7 @@ pub(super) fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
             let [outcome] = fields.take()?;
             let findings = u16::from_le_bytes(fields.take()?);
             let known = if tells {
-                let mut number = || fields.take().map(i32::from_le_bytes);
-                Some(KnownContact {
-                    force: Micronewtons(number()?),
-                    force_sigma: Micronewtons(number()?),
-                    curvature: number()?,
-                    curvature_sigma: number()?,
-                    doubts: findings,
-                })
+                Some(read_known(&mut fields, findings)?)
             } else {
                 None
             };

@@ -7,6 +7,8 @@ mod deviation;
 mod read;
 
 use crate::link::command::{self, Outcome, Request};
+#[cfg(feature = "load-tip")]
+use crate::link::load::{self, LoadCommand, LoadReply, LoadRequest};
 use crate::link::telemetry::{self, Answer, Frame, Hello};
 use crate::link::wire::{DecodeError, Deframer, Encoded, HAND_VERSION, unstuff};
 use crate::signal::report::Report;
@@ -14,6 +16,8 @@ use crate::status::{Fault, Stored, Touch, code_of};
 use crate::units::Microseconds;
 use heapless::{String, Vec};
 
+#[cfg(feature = "load-tip")]
+pub use read::read_load;
 pub use read::{read_body, read_request};
 
 /// Most tips of a board.
@@ -27,6 +31,10 @@ const BOARD: u8 = 3;
 const ANSWER: u8 = 4;
 const READINGS: u8 = 5;
 const TIP: u8 = 6;
+
+/// Whether the command `object` and what a known indentation tells are there: in an image where a design of a tip has an `[object]`, or may
+/// be loaded with one.
+const OBJECT: bool = cfg!(any(object, not(hand), feature = "load-tip"));
 
 /// Bytes of a tip in a frame of readings.
 const READING_BYTES: usize = 18;
@@ -64,6 +72,14 @@ pub enum TipsMessage {
         /// The answer.
         answer: Answer,
     },
+    /// What came of a command that loads a tip, or data of the tip in use.
+    #[cfg(feature = "load-tip")]
+    Load {
+        /// The tip.
+        tip: u8,
+        /// The answer, or the data.
+        reply: LoadReply,
+    },
 }
 
 /// A tip's greeting.
@@ -97,6 +113,11 @@ impl TipsMessage {
             Self::Board { hello, .. } => hello.time,
             Self::Tip(hello) => hello.time,
             Self::Answer { answer, .. } => answer.time,
+            #[cfg(feature = "load-tip")]
+            Self::Load {
+                reply: LoadReply::Answer { time, .. } | LoadReply::Data { time, .. },
+                ..
+            } => *time,
         }
     }
 }
@@ -184,6 +205,22 @@ impl<'a> FrameStart<'a> {
         body.put(answer.command_sequence.to_le_bytes());
         body.put([code_of(&Outcome::CODES, answer.outcome)]);
         body.put(answer.findings.to_le_bytes());
+        if OBJECT && let Some(known) = &answer.known {
+            telemetry::write_known(body, known);
+        }
+        body.finish();
+    }
+
+    /// What came of a command that loads a tip, or data of the tip in use.
+    #[cfg(feature = "load-tip")]
+    pub fn load(self, tip: u8, reply: &LoadReply) {
+        let (kind, time) = match reply {
+            LoadReply::Answer { time, .. } => (ANSWER, *time),
+            LoadReply::Data { time, .. } => (load::DATA, *time),
+        };
+        let body = self.header(kind, time);
+        body.put([tip]);
+        load::write_reply(body, reply);
         body.finish();
     }
 }
@@ -213,7 +250,26 @@ fn write_reading(body: &mut Encoded, tip: u8, report: &Report, shift: u32) {
 
 /// The bytes of a command to a tip, or to [`ALL_TIPS`].
 pub fn encode_request(tip: u8, request: &Request) -> Encoded {
-    let inner = command::encode(request);
+    with_tip(tip, &command::encode(request))
+}
+
+/// The bytes of a command that loads a tip. `load begin` has its tip where the others have it: once.
+#[cfg(feature = "load-tip")]
+pub fn encode_load(tip: u8, request: &LoadRequest) -> Encoded {
+    let inner = load::encode(request);
+    match request.command {
+        LoadCommand::Begin { .. } => of_version_3(&inner, &[]),
+        _ => with_tip(tip, &inner),
+    }
+}
+
+/// A command of version 2 with its tip.
+fn with_tip(tip: u8, inner: &Encoded) -> Encoded {
+    of_version_3(inner, &[tip])
+}
+
+/// A command of version 2 with these bytes before what goes with it.
+fn of_version_3(inner: &Encoded, tip: &[u8]) -> Encoded {
     let mut body = Encoded::NOTHING;
     body.begin();
     // What was just encoded is a frame.
@@ -223,12 +279,7 @@ pub fn encode_request(tip: u8, request: &Request) -> Encoded {
         .and_then(|(_, stuffed)| unstuff(stuffed).ok());
     if let Some(plain) = plain {
         let (head, payload) = plain.split_at(plain.len().min(4));
-        for &byte in [HAND_VERSION]
-            .iter()
-            .chain(&head[1..])
-            .chain(&[tip])
-            .chain(payload)
-        {
+        for &byte in [HAND_VERSION].iter().chain(&head[1..]).chain(tip).chain(payload) {
             body.put([byte]);
         }
     }

@@ -63,6 +63,22 @@ impl<'a> LoadedDesign<'a> {
         }
         Ok((design, calibration))
     }
+
+    /// The same of a tip of a hand: a sample each `period` microseconds, made of so many codes of the converter.
+    #[cfg(tips)]
+    #[must_use]
+    pub fn of_scan(self, [period, codes]: [u32; 2]) -> Self {
+        let Parameters {
+            constants,
+            pressure_fraction_bits,
+            last_rise,
+            ..
+        } = self.parameters;
+        Self {
+            parameters: Parameters::of_scan(constants, pressure_fraction_bits, last_rise, [period, codes]),
+            ..self
+        }
+    }
 }
 
 impl Design for LoadedDesign<'_> {

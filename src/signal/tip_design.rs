@@ -7,8 +7,9 @@ use crate::signal::zero::surroundings::Surroundings;
 use model_tables::material::relaxation::MAX_TERMS;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
+use model_tables::table::known::{KnownContact, ReadPair};
 use model_tables::table::law::Touched;
-use model_tables::units::{Micronewtons, PressureRise};
+use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// A loaded design, or else the one that is folded into the image.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +69,22 @@ impl<I: Design> Design for TipDesign<'_, I> {
         match self {
             Self::Image(image) => image.touch(touched),
             Self::Loaded(loaded) => loaded.touch(touched),
+        }
+    }
+
+    #[inline]
+    fn note(&mut self, read: Option<ReadPair>) {
+        match self {
+            Self::Image(image) => image.note(read),
+            Self::Loaded(loaded) => loaded.note(read),
+        }
+    }
+
+    #[inline]
+    fn tell(&self, known: Nanometres) -> Option<KnownContact> {
+        match self {
+            Self::Image(image) => image.tell(known),
+            Self::Loaded(loaded) => loaded.tell(known),
         }
     }
 }

@@ -10,6 +10,8 @@ use crate::status::Stored;
 use crate::storage::hand_record::{HandRecord, TipEntry};
 use crate::storage::log::{RecordLog, StoreError};
 use embedded_storage_async::nor_flash::NorFlash;
+#[cfg(feature = "load-tip")]
+use model_tables::constants::DesignConstants;
 
 /// Identity of the tip of an entry.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -20,6 +22,20 @@ pub struct TipIdentity {
     pub table_version: u32,
     /// Its transducer's range, pascals: bounds what can be a zero.
     pub range: [i32; 2],
+}
+
+#[cfg(feature = "load-tip")]
+impl TipIdentity {
+    /// The identity of a tip with a loaded design. `image` is the hash of its design in the image. The identity differs unless the two
+    /// designs are the same.
+    #[must_use]
+    pub const fn with_design(self, image: u64, loaded: &DesignConstants) -> Self {
+        Self {
+            hash: self.hash ^ image ^ loaded.hash,
+            table_version: loaded.table_version,
+            range: loaded.transducer.range,
+        }
+    }
 }
 
 /// Stored data of a tip.

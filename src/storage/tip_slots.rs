@@ -40,6 +40,15 @@ const MAGIC: [u8; 4] = *b"FTA\x01";
 /// Activations are few: no table for speed.
 const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
+/// Where a slot lies, both from the start of the memory: whole units of its erasure.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Slot {
+    /// Its first byte.
+    pub begin: u32,
+    /// Bytes.
+    pub length: u32,
+}
+
 /// A block in a slot.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct SlotBlock {
@@ -66,10 +75,7 @@ struct Activation {
 /// The two slots, whose memory is given to each call: it holds the calibration too.
 #[derive(Clone, Debug)]
 pub struct TipSlots {
-    /// Where the first one begins, bytes from the start of the memory.
-    base: u32,
-    /// Bytes of a slot.
-    slot: u32,
+    slots: [Slot; 2],
     /// The activation in force.
     latest: Option<Activation>,
     /// The last one before it that puts something else in use.
@@ -83,9 +89,22 @@ pub struct TipSlots {
 impl TipSlots {
     /// Two slots of `slot` bytes from `base` on, to be read by [`TipSlots::scan`].
     pub const fn new(base: u32, slot: u32) -> Self {
+        Self::of([
+            Slot {
+                begin: base,
+                length: slot,
+            },
+            Slot {
+                begin: base + slot,
+                length: slot,
+            },
+        ])
+    }
+
+    /// These two slots, to be read by [`TipSlots::scan`].
+    pub const fn of(slots: [Slot; 2]) -> Self {
         Self {
-            base,
-            slot,
+            slots,
             latest: None,
             before: None,
             next: [0; 2],
@@ -94,13 +113,14 @@ impl TipSlots {
     }
 
     /// Bytes that a block may have.
-    pub const fn room(&self) -> u32 {
-        self.slot - LOG
+    pub fn room(&self) -> u32 {
+        let [first, second] = self.slots;
+        first.length.min(second.length) - LOG
     }
 
     /// Reads both logs.
     pub async fn scan(&mut self, flash: &mut impl NorFlash) {
-        *self = Self::new(self.base, self.slot);
+        *self = Self::of(self.slots);
         let mut unknown = 0;
         // Twice: what was before is known only with what is in force.
         for _ in 0..2 {
@@ -142,9 +162,9 @@ impl TipSlots {
         if self.before.is_some_and(|before| before.home == free) {
             self.before = None;
         }
-        let from = self.offset(free);
+        let Slot { begin, length } = self.slot(free);
         flash
-            .erase(from, from + self.slot)
+            .erase(begin, begin + length)
             .await
             .map_err(|_| StoreError::Failed)?;
         self.set_next(free, 0);
@@ -175,7 +195,7 @@ impl TipSlots {
         let wanted = wanted.get(..padded).unwrap_or(&[]);
         let mut found = [0; N];
         let found = found.get_mut(..padded).unwrap_or(&mut []);
-        let at = self.offset(self.free()) + offset;
+        let at = self.slot(self.free()).begin + offset;
         let known = flash.read(at, found).await.is_ok();
         if known && found == wanted {
             return Ok(());
@@ -206,7 +226,7 @@ impl TipSlots {
         if slot > 1 || end > self.room() as usize {
             return Err(StoreError::Failed);
         }
-        let at = self.offset(slot) + offset;
+        let at = self.slot(slot).begin + offset;
         flash.read(at, bytes).await.map_err(|_| StoreError::Failed)
     }
 
@@ -309,12 +329,14 @@ impl TipSlots {
         }
     }
 
-    const fn place(&self, home: u32, place: u32) -> u32 {
-        self.offset(home) + self.room() + place * LENGTH as u32
+    fn place(&self, home: u32, place: u32) -> u32 {
+        let Slot { begin, length } = self.slot(home);
+        begin + length - LOG + place * LENGTH as u32
     }
 
-    const fn offset(&self, slot: u32) -> u32 {
-        self.base + slot * self.slot
+    fn slot(&self, which: u32) -> Slot {
+        let [first, second] = self.slots;
+        if which == 0 { first } else { second }
     }
 }
 

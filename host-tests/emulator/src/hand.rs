@@ -7,6 +7,7 @@ use crate::multiplexer::BusCommand;
 use crate::plant::Plant;
 use crate::record::instant;
 use crate::transducer::{ElectricalOutput, EmulatedTransducer};
+use fingertip::link::load::LoadReply;
 use fingertip::link::telemetry::{Answer, Hello};
 use fingertip::link::tips::{AnyDecoder, AnyFrame, TipHello, TipsMessage};
 use fingertip::link::wire::DecodeError;
@@ -77,6 +78,8 @@ pub struct HandRun {
     pub greetings: Vec<TipHello>,
     /// Answers, with their tips.
     pub answers: Vec<(u8, Answer)>,
+    /// Answers to commands that load a tip, with their tips.
+    pub loads: Vec<(u8, LoadReply)>,
     /// What did not read as a frame.
     pub broken: Vec<DecodeError>,
     /// Frames that the sequence numbers say are missing.
@@ -207,6 +210,7 @@ fn read(bytes: &[(f64, u8)], clock_zero: f64) -> HandRun {
             TipsMessage::Board { hello, tips } => run.boards.push((hello, tips)),
             TipsMessage::Tip(hello) => run.greetings.push(hello),
             TipsMessage::Answer { tip, answer } => run.answers.push((tip, answer)),
+            TipsMessage::Load { tip, reply } => run.loads.push((tip, reply)),
         }
     }
     run

@@ -3,17 +3,22 @@
 //! No line and no clock here: bytes to send come from [`Loading::next`], frames go to [`Loading::hear`]. A line may lose, double or
 //! break frames, and the board may be reset at any time: every command may be repeated, and a load whose begin is gone starts anew.
 
+mod asked;
 mod failure;
+mod target;
 
+use asked::Asked;
 pub use failure::LoadFailure;
-use fingertip::link::command::{self, Command, Request};
+use fingertip::link::command::{Command, Request};
 use fingertip::link::load::{
-    self, CHUNK, LoadCommand, LoadKind, LoadOutcome, LoadReply, LoadRequest, Piece, READ_BACK,
+    CHUNK, LoadCommand, LoadKind, LoadOutcome, LoadReply, LoadRequest, Piece, READ_BACK,
 };
-use fingertip::link::telemetry::{Decoder, Message};
+use fingertip::link::telemetry::Message;
+use fingertip::link::tips::{AnyDecoder, AnyFrame, TipsMessage};
 use model_tables::block::HEAD;
 use model_tables::block::read::stated;
 use std::time::Duration;
+use target::Target;
 
 /// How often a command is sent before it is given up.
 const TRIES: u32 = 20;
@@ -31,12 +36,12 @@ const RESET: u64 = 50_000;
 pub enum LoadJob {
     /// Load and activate a block.
     Load {
-        /// Which tip of the board, from 0.
-        tip: u8,
         /// Its bytes.
         block: Vec<u8>,
         /// Its design's hash.
         hash: u64,
+        /// Its design's name: a board of one tip may be asked for it by that.
+        name: String,
     },
     /// Use what was used before.
     RollBack,
@@ -49,43 +54,20 @@ pub enum LoadJob {
 pub struct Loaded {
     /// The hash of the design in use.
     pub hash: u64,
+    /// The tip's name; `None`: the board is no hand.
+    pub tip: Option<String>,
     /// Bytes that were read back.
     pub block: Vec<u8>,
     /// Commands that were sent more than once.
     pub repeated: u32,
 }
 
-/// What is sent next.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Asked {
-    /// Who is there.
-    Info,
-    Load(LoadCommand),
-}
-
-impl Asked {
-    const fn word(self) -> &'static str {
-        match self {
-            Self::Info => "info",
-            Self::Load(command) => command.kind().word(),
-        }
-    }
-
-    /// How long its answer may take: an erasure takes two seconds at most.
-    const fn patience(self) -> Duration {
-        Duration::from_millis(match self {
-            Self::Load(LoadCommand::Begin { .. }) => 2_500,
-            Self::Load(LoadCommand::Verify | LoadCommand::RollBack | LoadCommand::Activate { .. }) => 1_500,
-            Self::Info | Self::Load(_) => 250,
-        })
-    }
-}
-
 /// A job under way.
 #[derive(Debug)]
 pub struct Loading {
     job: LoadJob,
-    decoder: Decoder,
+    target: Target,
+    decoder: AnyDecoder,
     asked: Asked,
     sequence: u16,
     /// When the command was sent last; nothing: it is to be sent.
@@ -111,11 +93,16 @@ pub struct Loading {
 }
 
 impl Loading {
-    /// Begins a job by asking who is there.
-    pub fn new(job: LoadJob) -> Self {
+    /// Begins a job by asking who is there. `tip` is the tip's number, or its name on a hand; a board of one needs none.
+    pub fn new(job: LoadJob, tip: Option<&str>) -> Self {
+        let own = match &job {
+            LoadJob::Load { name, .. } => Some(name.as_str()),
+            LoadJob::RollBack | LoadJob::ReadBack => None,
+        };
         Self {
+            target: Target::new(tip, own),
             job,
-            decoder: Decoder::default(),
+            decoder: AnyDecoder::default(),
             asked: Asked::Info,
             sequence: 0,
             sent: None,
@@ -165,7 +152,7 @@ impl Loading {
         }
         let waits = self
             .sent
-            .is_some_and(|sent| now.saturating_sub(sent) < self.asked.patience());
+            .is_some_and(|sent| now.saturating_sub(sent) < self.asked.patience(self.target.is_hand()));
         if waits {
             return None;
         }
@@ -179,12 +166,11 @@ impl Loading {
         self.sent = Some(now);
         let sequence = self.sequence;
         Some(match self.asked {
-            Asked::Info => command::encode(&Request {
+            Asked::Info => self.target.encode_info(&Request {
                 sequence,
                 command: Command::Info,
-            })
-            .to_vec(),
-            Asked::Load(command) => load::encode(&LoadRequest { sequence, command }).to_vec(),
+            }),
+            Asked::Load(command) => self.target.encode(&LoadRequest { sequence, command }),
         })
     }
 
@@ -193,7 +179,7 @@ impl Loading {
         self.gone = None;
         self.sent = None;
         self.tries = 0;
-        self.decoder = Decoder::default();
+        self.decoder = AnyDecoder::default();
     }
 
     /// The connection is lost.
@@ -210,35 +196,80 @@ impl Loading {
             if let Some(Ok(frame)) = self.decoder.push(byte)
                 && self.outcome.is_none()
             {
-                self.take(now, &frame.message);
+                match frame {
+                    AnyFrame::One(frame) => self.take(now, &frame.message),
+                    AnyFrame::Tips(frame) => self.take_of_a_hand(now, &frame.message),
+                }
             }
         }
     }
 
     fn take(&mut self, now: Duration, message: &Message) {
-        let time = match message {
-            Message::Report { report, .. } => report.time,
-            Message::Hello(hello) => hello.time,
-            Message::Answer(answer) => answer.time,
-            Message::Load(LoadReply::Answer { time, .. } | LoadReply::Data { time, .. }) => *time,
-        };
-        self.was_reset |= time.0.saturating_add(RESET) < self.board;
-        self.board = time.0;
-        match *message {
-            Message::Hello(hello) => self.greeted(hello.design_hash),
-            Message::Load(LoadReply::Answer {
+        self.tick(match message {
+            Message::Report { report, .. } => report.time.0,
+            Message::Hello(hello) => hello.time.0,
+            Message::Answer(answer) => answer.time.0,
+            Message::Load(LoadReply::Answer { time, .. } | LoadReply::Data { time, .. }) => time.0,
+        });
+        match message {
+            Message::Hello(hello) => {
+                self.target.is_one();
+                // A tip that it has not is the board's to refuse.
+                match self.target.resolve() {
+                    Ok(_) => self.greeted(hello.design_hash),
+                    Err(failure) => self.outcome = Some(Err(failure)),
+                }
+            }
+            Message::Load(reply) => self.replied(now, reply),
+            _ => {}
+        }
+    }
+
+    fn take_of_a_hand(&mut self, now: Duration, message: &TipsMessage) {
+        self.tick(message.time().0);
+        if self.target.is_a_hand() && self.asked == Asked::Info {
+            // It did not understand who was asked.
+            self.sent = None;
+            self.tries = 0;
+        }
+        match message {
+            TipsMessage::Board { tips, .. } => self.target.has(*tips),
+            TipsMessage::Tip(tip) => {
+                self.target.greeted(tip.tip, &tip.name);
+                match self.target.resolve() {
+                    Ok(Some(number)) if number == tip.tip => self.greeted(tip.design_hash),
+                    Ok(_) => {}
+                    Err(failure) => self.outcome = Some(Err(failure)),
+                }
+            }
+            TipsMessage::Load { tip, reply } if self.target.number() == Some(*tip) => {
+                self.replied(now, reply)
+            }
+            _ => {}
+        }
+    }
+
+    /// The board's clock.
+    fn tick(&mut self, time: u64) {
+        self.was_reset |= time.saturating_add(RESET) < self.board;
+        self.board = time;
+    }
+
+    fn replied(&mut self, now: Duration, reply: &LoadReply) {
+        match *reply {
+            LoadReply::Answer {
                 kind,
                 sequence,
                 outcome,
                 findings,
                 ..
-            }) if self.is_asked(kind, sequence) => self.answered(now, kind, outcome, findings),
-            Message::Load(LoadReply::Data {
+            } if self.is_asked(kind, sequence) => self.answered(now, kind, outcome, findings),
+            LoadReply::Data {
                 sequence,
                 offset,
                 bytes,
                 ..
-            }) if self.is_asked(LoadKind::ReadBack, sequence) && offset as usize == self.read.len() => {
+            } if self.is_asked(LoadKind::ReadBack, sequence) && offset as usize == self.read.len() => {
                 self.read.extend(bytes.as_slice());
                 self.done = self.read.len();
                 self.read_on();
@@ -285,6 +316,7 @@ impl Loading {
     fn result(&mut self, hash: u64) -> Loaded {
         Loaded {
             hash,
+            tip: self.target.name(),
             block: std::mem::take(&mut self.read),
             repeated: self.repeated,
         }
@@ -331,13 +363,12 @@ impl Loading {
 
     /// Begins a load; whether there is one to begin.
     fn begin(&mut self) -> bool {
-        let LoadJob::Load { tip, block, .. } = &self.job else {
+        let LoadJob::Load { block, .. } = &self.job else {
             return false;
         };
-        let Some((length, check)) = stated(block) else {
+        let (Some((length, check)), Some(tip)) = (stated(block), self.target.number()) else {
             return false;
         };
-        let tip = *tip;
         self.beginnings += 1;
         self.done = 0;
         self.ask(LoadCommand::Begin { tip, length, check });

@@ -12,6 +12,7 @@ use commands::{
     Command, Document, Shown, assert_names_exist, assert_one_chip, documents, resolved, split, value,
     workspace,
 };
+use host_tests::hand_device::{HandDevice, TIPS};
 use host_tests::nor_flash::SimulatedFlash;
 use host_tests::tip_device::{BadLine, ServedDevice};
 use std::collections::BTreeSet;
@@ -254,9 +255,8 @@ fn a_calibration_finds_the_device_of_its_data() {
 #[test]
 fn a_hand_is_calibrated_without_a_compiler() {
     const SLOT: usize = 16 * 1024;
-    let board = ServedDevice::start(
-        SimulatedFlash::<SLOT>::erased(1),
-        SLOT as u32,
+    let board = ServedDevice::serve(
+        || HandDevice::start(SimulatedFlash::<SLOT>::of_slots(2 * TIPS, 1), SLOT as u32),
         [BadLine::new(1, 0), BadLine::new(2, 0)],
     );
     let port = format!("tcp:{}", board.address);
@@ -276,7 +276,7 @@ fn a_hand_is_calibrated_without_a_compiler() {
         let at_port = |word: &String| word.replace("/dev/ttyACM0", &port);
         let mut words: Vec<String> = command.words[1..].iter().map(at_port).collect();
         if words[0] == "monitor" {
-            words.extend(["--for-s", "1.5", "--format", "csv"].map(str::to_owned));
+            words.extend(["--for-s", "5", "--format", "csv"].map(str::to_owned));
         }
         let begun = Instant::now();
         let mut designer = process::Command::new(env!("CARGO_BIN_EXE_designer"));

@@ -4,6 +4,7 @@ import re
 import socket
 import struct
 import threading
+import zlib
 from pathlib import Path
 
 from fingertip.telemetry import (
@@ -18,12 +19,17 @@ from fingertip.telemetry import (
     Reading,
     Stored,
     TelemetryError,
+    TipData,
+    TipFile,
     TipHello,
     Touch,
     Warnings,
     commands,
     frames,
     hand,
+    load,
+    read_back,
+    roll_back,
     ros,
 )
 
@@ -74,6 +80,24 @@ def test_commands_are_the_pages_bytes():
     assert refused(lambda: hand.encode(12, CommandKind.TARE, 1), TelemetryError) == "`12` is no tip from 0 to 11, nor 255 for all"
 
 
+def test_a_load_is_the_pages_bytes():
+    assert hand.encode(3, CommandKind.ARM, 5, b"LOAD") == example("arm of tip 3")
+    begin = struct.pack("<BII", 3, 516, 0x01234567)
+    assert hand.encode(3, CommandKind.BEGIN, 5, begin) == example("load begin of tip 3")
+    assert hand.encode(3, CommandKind.ACTIVATE, 5, struct.pack("<Q", 0x0123456789ABCDEF)) == example("activate of tip 3")
+    assert hand.encode(3, CommandKind.READ_BACK, 5, struct.pack("<IB", 448, 56)) == example("read back of tip 3")
+    assert hand.encode(1, CommandKind.OBJECT, 6, commands.object_("ball", 8.0)) == example("object of tip 1")
+    [refusal] = decoded(example("answer to a load of tip 3"))
+    assert isinstance(refusal, Answer)
+    assert (refusal.tip, refusal.command, refusal.outcome, refusal.findings) == (3, CommandKind.VERIFY, Outcome.BLOCK_REFUSED, 8)
+    [part] = decoded(example("data of tip 3"))
+    assert isinstance(part, TipData)
+    assert (part.tip, part.command_sequence, part.offset, part.content) == (3, 5, 0, b"FTIP")
+    [known] = decoded(example("answer of tip 1"))
+    assert isinstance(known, Answer)
+    assert (known.tip, known.command, known.findings, known.force_n) == (1, CommandKind.INDENTATION, 1, 1.5)
+
+
 def test_what_no_hand_sends_is_refused():
     body = frames.body_of(example("readings")[:-1])
     assert refused(lambda: hand.decode_hand(body[:-1])) == "version, kind or length"
@@ -90,6 +114,9 @@ class FakeHand:
         self._server = socket.create_server(("127.0.0.1", 0))
         self.address = f"tcp:127.0.0.1:{self._server.getsockname()[1]}"
         self._silent = silent
+        #: Of each tip the design in use, and the bytes that were loaded.
+        self.designs = [9, 9]
+        self.blocks = [b"", b""]
         self._sequence = 0
         threading.Thread(target=self._run, daemon=True).start()
 
@@ -101,8 +128,25 @@ class FakeHand:
         hello = struct.pack("<3BBQIIBBB6I", 0, 1, 0, 1, 7, 5, 2010, 0, 0, 0, 0, 0, 0, 0, 0, 0)
         told = self._frame(3, hello + b"\2")
         for tip, name in enumerate([b"thumb", b"index"]):
-            told += self._frame(6, struct.pack("<BQIIBIIB", tip, 9, 5, 2010, 0, 0, 0, len(name)) + name)
+            told += self._frame(6, struct.pack("<BQIIBIIB", tip, self.designs[tip], 5, 2010, 0, 0, 0, len(name)) + name)
         return told
+
+    def _loaded(self, kind, tip, sequence, rest):
+        """The answer to a command that loads a tip."""
+        if kind == CommandKind.BEGIN:
+            self.blocks[tip] = bytes(struct.unpack("<II", rest)[0])
+        if kind == CommandKind.CHUNK:
+            (offset,) = struct.unpack_from("<I", rest)
+            block = self.blocks[tip]
+            self.blocks[tip] = block[:offset] + rest[4:] + block[offset + len(rest) - 4 :]
+        if kind == CommandKind.ACTIVATE:
+            (self.designs[tip],) = struct.unpack("<Q", rest)
+        if kind == CommandKind.ROLL_BACK:
+            self.designs[tip] = 9
+        if kind == CommandKind.READ_BACK:
+            offset, length = struct.unpack("<IB", rest)
+            return self._frame(7, struct.pack("<BHI", tip, sequence, offset) + self.blocks[tip][offset : offset + length])
+        return self._frame(4, struct.pack("<BBHBH", tip, kind, sequence, 0, 0))
 
     def _readings(self):
         return self._frame(5, b"\2\x08" + (b"\x10" + bytes(17)) + (b"\x11" + bytes(17)))
@@ -114,8 +158,12 @@ class FakeHand:
             splitter = frames.Splitter()
             while read := line.recv(256):
                 for coded in splitter.feed(read):
-                    version, kind, sequence, tip = struct.unpack_from("<BBHB", frames.body_of(coded))
+                    body = frames.body_of(coded)
+                    version, kind, sequence, tip = struct.unpack_from("<BBHB", body)
                     assert version == 3
+                    if kind >= 0x90:
+                        line.sendall(self._readings() + self._loaded(CommandKind(kind), tip, sequence, body[5:]))
+                        continue
                     told = self._readings() + (self._greet() if kind == 0x84 else b"")
                     for own in [tip] if tip < 2 else [0, 1]:
                         if kind == 0x83 and own == 1 and self._silent:
@@ -148,6 +196,22 @@ def test_a_hand_is_asked_tip_by_tip_or_as_a_whole():
 def test_a_tip_that_is_silent_is_left_out():
     with HandClient(FakeHand(silent=True).address) as client:
         assert client.command_all(CommandKind.SAVE, commands.save(None), timeout=0.5) == {0: Outcome.DONE}
+
+
+def test_one_tip_is_loaded_read_back_and_rolled_back():
+    body = b"FTIP" + struct.pack("<HHI", 1, 0, 150), struct.pack("<Q", 0x1234) + bytes(range(126))
+    block = body[0] + struct.pack("<I", zlib.crc32(body[0] + body[1])) + body[1]
+    tip_file = TipFile.of(block)
+    fake = FakeHand()
+    with HandClient(fake.address, tip=1) as client:
+        told = []
+        assert load(client, tip_file, progress=lambda done, whole: told.append((done, whole))).design_hash == 0x1234
+        assert (fake.designs, fake.blocks, told[-1]) == ([9, 0x1234], [b"", block], (150, 150))
+        assert read_back(client).content == block
+        assert roll_back(client).design_hash == 9
+        assert "give the client that tip" in refused(lambda: load(client, tip_file, tip=0), TelemetryError)
+        client.tip = ALL_TIPS
+        assert "must be that of one tip" in refused(lambda: load(client, tip_file), TelemetryError)
 
 
 def test_readings_are_ros_messages_and_faults_none():

@@ -2,9 +2,11 @@
 
 use super::deviation::of_eighths;
 use super::{
-    ANSWER, BOARD, FAULTY, MAX_TIPS, READING_BYTES, READINGS, TIP, TipHello, TipsFrame, TipsMessage,
+    ANSWER, BOARD, FAULTY, MAX_TIPS, OBJECT, READING_BYTES, READINGS, TIP, TipHello, TipsFrame, TipsMessage,
 };
 use crate::link::command::{self, CommandKind, Outcome, Request};
+#[cfg(feature = "load-tip")]
+use crate::link::load::{self, LoadKind, LoadRequest};
 use crate::link::telemetry::{self, Answer, HEADER};
 use crate::link::wire::{DecodeError, HAND_VERSION, PROTOCOL_VERSION, Reader};
 use crate::signal::report::{Feedback, Measurement, Report, Sigma};
@@ -13,16 +15,17 @@ use crate::units::Microseconds;
 use heapless::{String, Vec};
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
+/// Bytes of an answer to a command that loads a tip, behind the tip.
+#[cfg(feature = "load-tip")]
+const LOAD_ANSWER: usize = 6;
+
 /// The tip and the request of a body.
 ///
 /// # Errors
 /// [`DecodeError`] if the body is not a command of version 3.
 pub fn read_request(body: &[u8]) -> Result<(u8, Request), DecodeError> {
     let [HAND_VERSION, kind, low, high, tip, payload @ ..] = body else {
-        return Err(match body {
-            [HAND_VERSION, ..] | [] => DecodeError::Short,
-            [version, ..] => DecodeError::Version(*version),
-        });
+        return Err(no_command(body));
     };
     // As in version 2, where the tip is left out.
     let mut plain: Vec<u8, 16> = Vec::new();
@@ -30,8 +33,35 @@ pub fn read_request(body: &[u8]) -> Result<(u8, Request), DecodeError> {
     if plain.extend_from_slice(&head).is_err() || plain.extend_from_slice(payload).is_err() {
         return Err(DecodeError::Length);
     }
-    let request = command::read_known_body::<false>(&plain)?;
+    let request = command::read_known_body::<OBJECT>(&plain)?;
     Ok((*tip, request))
+}
+
+/// What is wrong with a body that is too short for a command, or of another version.
+fn no_command(body: &[u8]) -> DecodeError {
+    match body {
+        [HAND_VERSION, ..] | [] => DecodeError::Short,
+        [version, ..] => DecodeError::Version(*version),
+    }
+}
+
+/// The tip and the request of a body that loads a tip.
+///
+/// # Errors
+/// [`DecodeError`] for what is no such command of version 3.
+#[cfg(feature = "load-tip")]
+pub fn read_load(body: &[u8]) -> Result<(u8, LoadRequest), DecodeError> {
+    let [HAND_VERSION, kind, low, high, tip, payload @ ..] = body else {
+        return Err(no_command(body));
+    };
+    // As in version 2, where `load begin` alone has a tip.
+    let mut plain: Vec<u8, { 8 + load::CHUNK }> = Vec::new();
+    let begins = named_by(&LoadKind::CODES, *kind) == Some(LoadKind::Begin);
+    let own: &[u8] = if begins { core::slice::from_ref(tip) } else { &[] };
+    for part in [&[PROTOCOL_VERSION, *kind, *low, *high], own, payload] {
+        plain.extend_from_slice(part).map_err(|_| DecodeError::Length)?;
+    }
+    Ok((*tip, load::read_body(&plain)?))
 }
 
 /// The frame in a body.
@@ -61,21 +91,13 @@ pub fn read_body(body: &[u8]) -> Result<TipsFrame, DecodeError> {
             TipsMessage::Board { hello, tips }
         }
         TIP => TipsMessage::Tip(read_tip(&mut fields, time)?),
-        ANSWER => {
-            let [tip, command] = fields.take()?;
-            let command_sequence = u16::from_le_bytes(fields.take()?);
-            let [outcome] = fields.take()?;
-            let findings = u16::from_le_bytes(fields.take()?);
-            TipsMessage::Answer {
+        ANSWER => read_answer(&mut fields, time)?,
+        #[cfg(feature = "load-tip")]
+        load::DATA => {
+            let [tip] = fields.take()?;
+            TipsMessage::Load {
                 tip: numbered(tip, 14)?,
-                answer: Answer {
-                    time,
-                    command: CommandKind::from_code(command).ok_or(DecodeError::Field(15))?,
-                    command_sequence,
-                    outcome: named_by(&Outcome::CODES, outcome).ok_or(DecodeError::Field(18))?,
-                    findings,
-                    known: None,
-                },
+                reply: load::read_data(Reader(core::mem::take(&mut fields.0)), time)?,
             }
         }
         _ => return Err(DecodeError::Kind(kind)),
@@ -88,6 +110,38 @@ pub fn read_body(body: &[u8]) -> Result<TipsFrame, DecodeError> {
         dropped,
         message,
     })
+}
+
+fn read_answer(fields: &mut Reader<'_>, time: Microseconds) -> Result<TipsMessage, DecodeError> {
+    let [tip] = fields.take()?;
+    let tip = numbered(tip, 14)?;
+    #[cfg(feature = "load-tip")]
+    if fields.0.len() == LOAD_ANSWER
+        && let Some(reply) = load::read_answer(Reader(fields.0), time)
+    {
+        fields.0 = &[];
+        return Ok(TipsMessage::Load { tip, reply: reply? });
+    }
+    let [command] = fields.take()?;
+    let command_sequence = u16::from_le_bytes(fields.take()?);
+    let [outcome] = fields.take()?;
+    let findings = u16::from_le_bytes(fields.take()?);
+    let command = CommandKind::from_code(command).ok_or(DecodeError::Field(15))?;
+    // What a known indentation told, where it told something.
+    let known = match fields.0 {
+        [] => None,
+        _ if command == CommandKind::Indentation => Some(telemetry::read_known(fields, findings)?),
+        _ => return Err(DecodeError::Length),
+    };
+    let answer = Answer {
+        time,
+        command,
+        command_sequence,
+        outcome: named_by(&Outcome::CODES, outcome).ok_or(DecodeError::Field(18))?,
+        findings,
+        known,
+    };
+    Ok(TipsMessage::Answer { tip, answer })
 }
 
 fn numbered(tip: u8, offset: u8) -> Result<u8, DecodeError> {

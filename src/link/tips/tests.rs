@@ -2,6 +2,8 @@ use super::*;
 use crate::link::command::{Command, CommandKind};
 use crate::signal::report::{Feedback, Measurement, Sigma};
 use crate::status::{LastFault, ResetCause, Warnings};
+use model_tables::table::known::KnownContact;
+use model_tables::table::law::Touched;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 use proptest::prelude::*;
 
@@ -27,6 +29,32 @@ const TIP: &[u8] = &[
 const ANSWER: &[u8] = &[
     0x04, 0x03, 0x04, 0x09, 0x04, 0x80, 0x84, 0x1e, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x06, 0x04, 0x81,
     0x04, 0x03, 0x01, 0x01, 0x03, 0xac, 0x73, 0x00,
+];
+#[cfg(feature = "load-tip")]
+const LOAD_ANSWER: &[u8] = &[
+    0x04, 0x03, 0x04, 0x08, 0x04, 0x80, 0x84, 0x1e, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x03, 0x93,
+    0x05, 0x03, 0x0c, 0x08, 0x03, 0x46, 0xdf, 0x00,
+];
+#[cfg(feature = "load-tip")]
+const DATA: &[u8] = &[
+    0x04, 0x03, 0x07, 0x08, 0x04, 0x80, 0x84, 0x1e, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x03, 0x03, 0x05,
+    0x01, 0x01, 0x01, 0x01, 0x07, 0x46, 0x54, 0x49, 0x50, 0xb7, 0x87, 0x00,
+];
+#[cfg(feature = "load-tip")]
+const BEGIN: &[u8] = &[
+    0x04, 0x03, 0x91, 0x05, 0x04, 0x03, 0x04, 0x02, 0x01, 0x07, 0x67, 0x45, 0x23, 0x01, 0xdf, 0x0f, 0x00,
+];
+#[cfg(feature = "load-tip")]
+const ACTIVATE: &[u8] = &[
+    0x04, 0x03, 0x94, 0x05, 0x0c, 0x03, 0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01, 0x32, 0xf3, 0x00,
+];
+const KNOWN: &[u8] = &[
+    0x04, 0x03, 0x04, 0x09, 0x04, 0x80, 0x84, 0x1e, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x01, 0x89,
+    0x05, 0x01, 0x02, 0x01, 0x04, 0x60, 0xe3, 0x16, 0x04, 0x90, 0x5f, 0x01, 0x04, 0x48, 0xe8, 0x01, 0x03,
+    0xa0, 0x0f, 0x01, 0x03, 0x68, 0xe1, 0x00,
+];
+const OBJECT_COMMAND: &[u8] = &[
+    0x04, 0x03, 0x88, 0x06, 0x05, 0x01, 0x01, 0x40, 0x1f, 0x01, 0x03, 0x4f, 0xa8, 0x00,
 ];
 const RATE: &[u8] = &[0x04, 0x03, 0x86, 0x01, 0x03, 0xff, 0x04, 0x03, 0x7b, 0xd9, 0x00];
 const TARE: &[u8] = &[0x08, 0x03, 0x81, 0x02, 0x01, 0x04, 0x87, 0x49, 0x00];
@@ -201,9 +229,98 @@ fn greetings_and_answers_are_the_documented_bytes() {
     assert_eq!(read(ANSWER).message, TipsMessage::Answer { tip: 4, answer });
 }
 
+/// What a known indentation told of a tip.
+#[test]
+fn what_an_indentation_told_is_the_documented_bytes() {
+    let known = KnownContact {
+        force: Micronewtons(1_500_000),
+        force_sigma: Micronewtons(90_000),
+        curvature: 125_000,
+        curvature_sigma: 4_000,
+        doubts: 1,
+    };
+    let answer = Answer {
+        time: Microseconds(2_000_000),
+        command: CommandKind::Indentation,
+        command_sequence: 5,
+        outcome: Outcome::Done,
+        findings: 1,
+        known: Some(known),
+    };
+    let frame = written([9, 0], |start| start.answer(1, &answer));
+    assert_eq!(frame.as_slice(), KNOWN);
+    assert_eq!(read(KNOWN).message, TipsMessage::Answer { tip: 1, answer });
+}
+
+#[cfg(feature = "load-tip")]
+#[test]
+fn a_load_is_the_documented_bytes() {
+    use crate::link::load::{LoadCommand, LoadKind, LoadOutcome, Piece, READ_BACK};
+
+    let time = Microseconds(2_000_000);
+    let refused = LoadReply::Answer {
+        time,
+        kind: LoadKind::Verify,
+        sequence: 5,
+        outcome: LoadOutcome::BlockRefused,
+        findings: 8,
+    };
+    let data = LoadReply::Data {
+        time,
+        sequence: 5,
+        offset: 0,
+        bytes: Piece::of(b"FTIP").expect("not empty"),
+    };
+    for (reply, bytes) in [(refused, LOAD_ANSWER), (data, DATA)] {
+        let frame = written([8, 0], |start| start.load(3, &reply));
+        assert_eq!(frame.as_slice(), bytes);
+        assert_eq!(read(bytes).message, TipsMessage::Load { tip: 3, reply });
+    }
+    let begin = LoadCommand::Begin {
+        tip: 3,
+        length: 516,
+        check: 0x0123_4567,
+    };
+    let activate = LoadCommand::Activate {
+        hash: 0x0123_4567_89AB_CDEF,
+    };
+    for (command, bytes) in [(begin, BEGIN), (activate, ACTIVATE)] {
+        let request = LoadRequest { sequence: 5, command };
+        assert_eq!(encode_load(3, &request).as_slice(), bytes);
+        let body = unstuff(&bytes[..bytes.len() - 1]).expect("it is a frame");
+        assert_eq!(read_load(&body), Ok((3, request)));
+        // No other command resembles it.
+        assert!(read_request(&body).is_err());
+    }
+    // The longest one fits, a longer one is none.
+    let chunk = LoadCommand::Chunk {
+        offset: 64,
+        bytes: Piece::of(&[7; load::CHUNK]).expect("as many"),
+    };
+    let request = LoadRequest {
+        sequence: 9,
+        command: chunk,
+    };
+    let frame = encode_load(11, &request);
+    let body = unstuff(&frame[..frame.len() - 1]).expect("it is a frame");
+    assert_eq!(read_load(&body), Ok((11, request)));
+    let longer = [&body[..], &[0]].concat();
+    assert_eq!(read_load(&longer), Err(DecodeError::Length));
+    let piece: Piece<READ_BACK> = Piece::of(&[1; READ_BACK]).expect("as many");
+    let data = LoadReply::Data {
+        time,
+        sequence: 1,
+        offset: 448,
+        bytes: piece,
+    };
+    let frame = written([8, 0], |start| start.load(11, &data));
+    assert_eq!(read(&frame).message, TipsMessage::Load { tip: 11, reply: data });
+}
+
 #[test]
 fn commands_are_the_documented_bytes() {
     for (tip, sequence, command, bytes) in [
+        (1, 6, Command::Object(Touched::Ball(8_000)), OBJECT_COMMAND),
         (4, 0x0102, Command::Tare, TARE),
         (ALL_TIPS, 1, Command::Rate { every: 4 }, RATE),
     ] {
@@ -262,5 +379,7 @@ proptest! {
         }
         let _ = read_body(&body);
         let _ = read_request(&body);
+        #[cfg(feature = "load-tip")]
+        let _ = read_load(&body);
     }
 }

@@ -23,7 +23,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-const TIPS: usize = 5;
+pub(crate) const TIPS: usize = 5;
 /// Scans of a block, each with one code of a tip: (5 * 10 + 17) us * 15 = 1005 us.
 const CODES: f64 = 15.0;
 const PERIOD: f64 = 1005e-6;
@@ -46,13 +46,13 @@ const SHIFTED: std::ops::Range<f64> = 1.75..1.80;
 const END: f64 = 2.0;
 
 /// The shipped hand: five fingertips of the default design.
-fn hand_file() -> PathBuf {
+pub(crate) fn hand_file() -> PathBuf {
     host_tests::workspace().join("model-tables/hands/hand.toml")
 }
 
-const NAMES: [&str; TIPS] = ["thumb", "index", "middle", "ring", "little"];
+pub(crate) const NAMES: [&str; TIPS] = ["thumb", "index", "middle", "ring", "little"];
 
-fn phase(name: &str, duration_ms: f64, to_percent: Option<f64>) -> Phase {
+pub(crate) fn phase(name: &str, duration_ms: f64, to_percent: Option<f64>) -> Phase {
     Phase {
         name: name.to_owned(),
         duration_ms,

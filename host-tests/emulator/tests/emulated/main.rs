@@ -8,6 +8,7 @@ mod crash;
 mod faults;
 mod feedback;
 mod hand;
+mod hand_tips;
 mod hold;
 mod integers;
 mod kernels;

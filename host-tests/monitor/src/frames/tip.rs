@@ -81,6 +81,7 @@ impl TipChoice {
             TipsMessage::Answer { tip, answer } => {
                 (self.number() == Some(tip)).then_some(Message::Answer(answer))
             }
+            TipsMessage::Load { tip, reply } => (self.number() == Some(tip)).then_some(Message::Load(reply)),
         }
     }
 

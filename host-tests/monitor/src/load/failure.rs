@@ -12,6 +12,20 @@ pub enum LoadFailure {
     NoConnection(String),
     /// The board refused.
     Refused(LoadKind, LoadOutcome, u16),
+    /// A board of one tip was asked for another than that.
+    NoNumber {
+        /// What was asked for.
+        wanted: String,
+        /// The name of the design in the file.
+        own: Option<String>,
+    },
+    /// The hand has no such tip, or was asked for none.
+    NoSuchTip {
+        /// What was asked for.
+        wanted: Option<String>,
+        /// What its tips are called.
+        names: Vec<String>,
+    },
     /// The board did not come back, or with another design than was to be in use.
     NotInUse {
         /// The hash of its last hello.
@@ -34,6 +48,20 @@ impl fmt::Display for LoadFailure {
             }
             Self::Refused(kind, outcome, findings) => {
                 write!(f, "the board refused `{}`: {}", kind.word(), label(*kind, *outcome, *findings))
+            }
+            Self::NoNumber { wanted, own } => {
+                write!(f, "--tip {wanted} is no number, and the board has one tip")?;
+                match own {
+                    Some(own) => write!(f, ", the file `{own}`: give 0, or the file of that tip"),
+                    None => f.write_str(": give 0"),
+                }
+            }
+            Self::NoSuchTip { wanted, names } => {
+                let names = names.join(", ");
+                match wanted {
+                    Some(wanted) => write!(f, "the hand has no tip `{wanted}`: give --tip with one of {names}"),
+                    None => write!(f, "the board is a hand: give --tip with one of {names}"),
+                }
             }
             Self::NotInUse { found: Some(found) } => write!(
                 f,

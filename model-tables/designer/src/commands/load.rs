@@ -16,9 +16,6 @@ use std::time::{Duration, Instant};
 
 const COLUMNS: &[&str] = &["action", "tip", "design_hash", "size_bytes", "seconds"];
 
-/// Tips that a command can name.
-const TIPS: u8 = 16;
-
 /// From one look at the time to the next.
 const LOOK: Duration = Duration::from_millis(2);
 
@@ -27,10 +24,12 @@ pub(super) const HELP: &str = "\
 The firmware must be built with the feature load-tip. The load ends with a restart of the board. After it, the new tip is in use, with a
 new zero. If the line breaks during a load, the command waits until it is back and continues.
 
---tip is the number of the tip on the board (0 on a board with one tip), or the name of the design in the file. Another name is refused.
+--tip is the name of the tip on a hand (thumb, index), or its number. A board with one tip needs none, and takes 0 or the name of the
+design in the file. The other tips of a hand keep their zeros.
 
 Examples:
   cargo designer load /dev/ttyACM0 tip.bin --tip 0
+  cargo designer load /dev/ttyACM0 tip.bin --tip index --baud 1000000
   cargo designer load tcp:127.0.0.1:4000 tip.bin --tip index-fingertip
   cargo designer load /dev/ttyACM0 --roll-back
   cargo designer load /dev/ttyACM0 --read-back in-use.bin";
@@ -42,8 +41,8 @@ pub(super) struct Arguments {
     /// The tip file that `designer tip` wrote
     #[arg(required_unless_present_any = ["roll_back", "read_back"], conflicts_with_all = ["roll_back", "read_back"])]
     file: Option<PathBuf>,
-    /// Tip of the board: its number, or the name of the design in the file
-    #[arg(long = "tip", value_name = "NAME", requires = "file")]
+    /// Tip of the board: its name on a hand, its number, or the name of the design in the file
+    #[arg(long = "tip", value_name = "NAME")]
     name: Option<String>,
     /// Return to the tip that was in use before the last load
     #[arg(long, conflicts_with = "read_back")]
@@ -61,14 +60,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     if let Address::Serial { baud, .. } = &mut port {
         *baud = arguments.baud;
     }
+    let name = arguments.name.as_deref();
     if let Some(file) = &arguments.file {
-        return load(port, file, arguments.name.as_deref());
+        return load(port, file, name);
     }
     if let Some(out) = &arguments.read_back {
-        return read_back(port, out);
+        return read_back(port, out, name);
     }
-    let (loaded, seconds) = carry(port, LoadJob::RollBack)?;
-    let rows = row("rolled back", "0", loaded.hash, 0, seconds);
+    let (loaded, seconds) = carry(port, LoadJob::RollBack, name)?;
+    let tip = loaded.tip.as_deref().unwrap_or("0");
+    let rows = row("rolled back", tip, loaded.hash, 0, seconds);
     Ok(answer(rows, &loaded))
 }
 
@@ -76,49 +77,38 @@ fn load(port: Address, file: &Path, name: Option<&str>) -> Result<CommandAnswer,
     let block = tip::needed(file)?;
     let held = TipBlock::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let (hash, own) = (held.constants.hash, held.name.to_owned());
-    let tip = number(file, name, &own)?;
     let length = block.len();
-    let (loaded, seconds) = carry(port, LoadJob::Load { tip, block, hash })?;
-    let rows = row("loaded", &own, loaded.hash, length, seconds);
+    let job = LoadJob::Load {
+        block,
+        hash,
+        name: own.clone(),
+    };
+    let (loaded, seconds) = carry(port, job, name)?;
+    let tip = loaded.tip.as_ref().unwrap_or(&own);
+    let rows = row("loaded", tip, loaded.hash, length, seconds);
     Ok(answer(rows, &loaded))
 }
 
-/// The number of the tip that is named.
-fn number(file: &Path, name: Option<&str>, own: &str) -> Result<u8, Refusal> {
-    let Some(name) = name.filter(|name| *name != own) else {
-        return Ok(0);
-    };
-    match name.parse::<u8>() {
-        Ok(number) if number < TIPS => Ok(number),
-        _ => Err(Refusal::about(
-            file,
-            &format!(
-                "--tip {name} is no number from 0 to {}, and the file holds the tip `{own}`: give the number, or the file of that tip",
-                TIPS - 1
-            ),
-        )),
-    }
-}
-
-fn read_back(port: Address, out: &Path) -> Result<CommandAnswer, Refusal> {
+fn read_back(port: Address, out: &Path, name: Option<&str>) -> Result<CommandAnswer, Refusal> {
     files::expect_room(out)?;
     let address = port.to_string();
-    let (mut loaded, seconds) = carry(port, LoadJob::ReadBack)?;
+    let (mut loaded, seconds) = carry(port, LoadJob::ReadBack, name)?;
     let block = std::mem::take(&mut loaded.block);
     let held = TipBlock::read(&block).map_err(|error| {
         Refusal(format!(
             "{address}: what was read back cannot be used: {error}; read it again"
         ))
     })?;
-    let (name, hash) = (held.name.to_owned(), held.constants.hash);
+    let (own, hash) = (held.name.to_owned(), held.constants.hash);
     let length = block.len();
     files::write_one(out, block)?;
-    let rows = row("read back", &name, hash, length, seconds);
+    let tip = loaded.tip.as_ref().unwrap_or(&own);
+    let rows = row("read back", tip, hash, length, seconds);
     Ok(answer(rows, &loaded))
 }
 
 /// Carries a job over the line to its end; how long it took, seconds.
-fn carry(port: Address, job: LoadJob) -> Result<(Loaded, f64), Refusal> {
+fn carry(port: Address, job: LoadJob, tip: Option<&str>) -> Result<(Loaded, f64), Refusal> {
     let address = port.to_string();
     let whole = match &job {
         LoadJob::Load { block, .. } => block.len(),
@@ -126,7 +116,7 @@ fn carry(port: Address, job: LoadJob) -> Result<(Loaded, f64), Refusal> {
     };
     let start = Instant::now();
     let link = Link::start(port);
-    let mut loading = Loading::new(job);
+    let mut loading = Loading::new(job, tip);
     let done = Arc::new(AtomicUsize::new(0));
     let shown = Arc::clone(&done);
     let tell = move || {

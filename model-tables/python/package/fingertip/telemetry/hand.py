@@ -71,11 +71,11 @@ def decode_hand(body: bytes) -> list[Frame]:
         if not isinstance(hello, Hello) or not 1 <= body[61] <= MAX_TIPS:
             raise FrameError("field")
         return [replace(hello, tips=body[61])]
-    if kind == 4 and len(body) == 21:
-        answer = decode(bytes([2]) + body[1:14] + body[15:])
+    if kind in (4, 7) and len(body) > 15:
+        own = decode(bytes([2]) + body[1:14] + body[15:])
         if body[14] >= MAX_TIPS:
             raise FrameError("field")
-        return [replace(answer, tip=body[14])]
+        return [replace(own, tip=body[14])]
     raise FrameError("version, kind or length")
 
 
@@ -127,7 +127,9 @@ def encode(tip: int, kind: CommandKind, sequence: int, payload: bytes = b"") -> 
     if not (0 <= tip < MAX_TIPS or tip == ALL_TIPS):
         raise TelemetryError(f"`{tip}` is no tip from 0 to {MAX_TIPS - 1}, nor {ALL_TIPS} for all")
     plain = body_of(commands.encode(kind, sequence, payload)[:-1])
-    return framed(bytes([VERSION]) + plain[1:4] + bytes([tip]) + plain[4:])
+    # Of version 2 `load begin` alone has a tip, in that place.
+    own = plain[5:] if kind == CommandKind.BEGIN else plain[4:]
+    return framed(bytes([VERSION]) + plain[1:4] + bytes([tip]) + own)
 
 
 class HandClient(Client):

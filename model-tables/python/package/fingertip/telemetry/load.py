@@ -18,6 +18,7 @@ from ..errors import TelemetryError
 from .client import RESET, Client
 from .codes import CommandKind, Outcome
 from .frames import Answer, Frame, Hello, TipData
+from .hand import ALL_TIPS, MAX_TIPS, HandClient, TipHello
 
 __all__ = ["Loaded", "TipFile", "load", "read_back", "roll_back"]
 
@@ -31,8 +32,8 @@ GONE = 30.0
 RESTART = 10.0
 #: Bytes of a chunk, and of a part that is read back.
 CHUNK, READ_BACK = 64, 56
-#: How long an answer may take, s: an erasure takes two seconds at most.
-_PATIENCE = {CommandKind.BEGIN: 2.5, CommandKind.VERIFY: 1.5, CommandKind.ROLL_BACK: 1.5, CommandKind.ACTIVATE: 1.5}
+#: How long an answer may take, s: an erasure takes two seconds at most, and the board waits three for it.
+_PATIENCE = {CommandKind.BEGIN: 3.5, CommandKind.VERIFY: 1.5, CommandKind.ROLL_BACK: 1.5, CommandKind.ACTIVATE: 1.5}
 _USUAL_PATIENCE = 0.25
 
 _HEAD = struct.Struct("<4sHHIIQ")
@@ -118,6 +119,8 @@ class _Job:
 
     def __init__(self, client: Client) -> None:
         self.client = client
+        #: The tip that answers.
+        self.tip = client.tip if isinstance(client, HandClient) else 0
         self.repeated = 0
         self._clock = 0
         #: Resets of the board that were seen.
@@ -184,15 +187,20 @@ class _Job:
             )
         raise self.refuse(f"the board no longer answers (`{kind.word}`); see to the line and load again")
 
-    def hello(self) -> Hello:
-        hello = self.ask(CommandKind.INFO, b"", lambda frame, _: isinstance(frame, Hello))
-        assert isinstance(hello, Hello)
+    def hello(self) -> Hello | TipHello:
+        """Asks for the greeting of the board, of a hand of the tip."""
+        if isinstance(self.client, HandClient):
+            hello = self.ask(CommandKind.INFO, b"", lambda frame, _: isinstance(frame, TipHello) and frame.tip == self.tip)
+        else:
+            hello = self.ask(CommandKind.INFO, b"", lambda frame, _: isinstance(frame, Hello))
+        assert isinstance(hello, (Hello, TipHello))
         self.design_hash = hello.design_hash
         return hello
 
     def answer(self, kind: CommandKind, payload: bytes) -> Answer:
         def wanted(frame: Frame, sequence: int) -> bool:
-            return isinstance(frame, Answer) and (frame.command, frame.command_sequence) == (kind, sequence)
+            own = isinstance(frame, Answer) and (frame.command, frame.command_sequence) == (kind, sequence)
+            return own and frame.tip == self.tip
 
         answer = self.ask(kind, payload, wanted)
         assert isinstance(answer, Answer)
@@ -217,7 +225,7 @@ class _Job:
             raise self.refused(kind, answer.outcome, answer.findings)
         raise self.refused(kind, Outcome.NOT_ARMED)
 
-    def restart(self, kind: CommandKind, payload: bytes = b"", wanted: int | None = None) -> Hello:
+    def restart(self, kind: CommandKind, payload: bytes = b"", wanted: int | None = None) -> Hello | TipHello:
         """Sends what ends in a restart, and waits for the board to come back, with the design that is wanted of it if one is."""
         before = self.resets
         for _ in range(BEGINNINGS):
@@ -242,13 +250,13 @@ class _Job:
             raise self.refused(kind, answer.outcome, answer.findings)
         raise self.refused(kind, Outcome.NOT_ARMED)
 
-    def _back(self, resets: int, wanted: int | None) -> Hello:
+    def _back(self, resets: int, wanted: int | None) -> Hello | TipHello:
         """Waits for the board, which had so many resets before; another design in use is a sign of one too.
 
         Where a design is wanted, another one ends the wait only when its time is over: a reset of before the command may be noticed late.
         """
         until = time.monotonic() + RESTART
-        back: Hello | None = None
+        back: Hello | TipHello | None = None
         while time.monotonic() < until:
             before = self.design_hash
             hello = self.hello()
@@ -267,20 +275,23 @@ def load(
     client: Client,
     tip_file: TipFile | str | os.PathLike[str],
     *,
-    tip: int = 0,
+    tip: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Loaded:
     """Loads a tip file and has the board use it; the load ends with the board's restart.
 
     Args:
         client: a client of a board whose firmware has the feature ``load-tip``.
-        tip: which tip of the board, from 0.
+        tip: which tip of the board, from 0; ``None``: the client's, of a hand, and else the one there is.
         progress: is called with the bytes written and the bytes of the file.
 
     Raises:
         TelemetryError: the file is no tip, or the board refused or went, with the remedy.
     """
     block = tip_file if isinstance(tip_file, TipFile) else TipFile.read(tip_file)
+    _one(client, tip)
+    if tip is None:
+        tip = client.tip if isinstance(client, HandClient) else 0
     if not 0 <= tip <= 15:
         raise TelemetryError(f"tip is {tip}: must be 0 to 15")
     content = block.content
@@ -314,12 +325,23 @@ def load(
         raise job.refused(kind, outcome)
 
 
+def _one(client: Client, tip: int | None = None) -> None:
+    """Refuses a hand's client that does not name the one tip that the job is for."""
+    if not isinstance(client, HandClient):
+        return
+    if not 0 <= client.tip < MAX_TIPS:
+        raise TelemetryError(f"the client's tip is {client.tip}: must be that of one tip, 0 to {MAX_TIPS - 1}, and not {ALL_TIPS}")
+    if tip is not None and tip != client.tip:
+        raise TelemetryError(f"tip is {tip}, and the client's is {client.tip}: give the client that tip, or leave tip out")
+
+
 def roll_back(client: Client) -> Loaded:
-    """Has the board use what was in use before the last load; ends with its restart.
+    """Has the board use what was in use before the last load; ends with its restart. Of a hand the client's tip.
 
     Raises:
         TelemetryError: nothing was loaded, or the board refused or went, with the remedy.
     """
+    _one(client)
     with _Job(client) as job:
         job.hello()
         job.arm()
@@ -331,11 +353,12 @@ def roll_back(client: Client) -> Loaded:
 
 
 def read_back(client: Client) -> TipFile:
-    """The tip that is in use.
+    """The tip that is in use, of a hand the client's.
 
     Raises:
         TelemetryError: the image's own tables are in use, or the board went, with the remedy.
     """
+    _one(client)
     content = b""
     length = _HEAD.size
     with _Job(client) as job:
@@ -345,6 +368,8 @@ def read_back(client: Client) -> TipFile:
             asked = struct.pack("<IB", start, min(length - start, READ_BACK))
 
             def wanted(frame: Frame, sequence: int, start: int = start) -> bool:
+                if frame.tip != job.tip:
+                    return False
                 if isinstance(frame, Answer):
                     return (frame.command, frame.command_sequence) == (CommandKind.READ_BACK, sequence)
                 return isinstance(frame, TipData) and (frame.command_sequence, frame.offset) == (sequence, start)
