@@ -17,7 +17,10 @@
 //!
 //! `F = phi A P + (1 - phi) g * F_e` with `A = F_e / P_e`.
 //!
-//! `kappa`, `P_2`, `phi_0` and `P_1` belong to the design: its tables' generator fits them to a press of the solid in time.
+//! A wall that is touched again before it has recovered is still pressed in: the contact begins with no area, at the settled pressure `P_l` where the
+//! force was last 0. There the force is less by `rho P_l / P_e`. The contact grows beyond the old one, and forgets it within seconds.
+//!
+//! `kappa`, `P_2`, `phi_0`, `P_1` and `rho` belong to the design: its tables' generator fits them to a press of the solid in time.
 //!
 //! A plate cannot pull: there is no force below zero.
 //!
@@ -68,6 +71,8 @@ pub struct Relaxing<const TERMS: usize> {
     forces: [i64; TERMS],
     /// The largest force, forgotten with the slowest term.
     peak_force: i64,
+    /// `P_l`, which a new contact forgets: counts with [`FORCE_BITS`].
+    left: i64,
 }
 
 /// What the tables have at an elastic pressure, between two counts.
@@ -109,6 +114,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         settled: 0,
         forces: [0; TERMS],
         peak_force: 0,
+        left: 0,
     };
 
     /// It has been at a pressure for ever.
@@ -142,10 +148,18 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         let most = WHOLE - wall.fluid_least.min(WHOLE);
         let by_wall = share(((u64::from(by_wall) * u64::from(most)) >> 16) as u32);
         let force = by_fluid + scaled(by_wall, convolved - by_fluid);
-        let force = (force >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
         if let Some(slowest) = step.terms().last() {
             self.peak_force -= scaled(slowest.lost, self.peak_force);
         }
+        let place = i64::from(at.elastic.0) << FORCE_BITS;
+        self.left -= scaled(step.forgets, self.left);
+        if force <= 0 || place < self.left {
+            self.left = place;
+        }
+        let again = part((self.left >> FORCE_BITS) as i32, at.elastic.0);
+        let less = share(((u64::from(again) * u64::from(wall.retouch.min(WHOLE))) >> 16) as u32);
+        let force = force - scaled(less, force);
+        let force = (force >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
         self.peak_force = self.peak_force.max(i64::from(force) << FORCE_BITS);
 
         let recovering = pressed_before && force == 0 && rise.0 < 0;

@@ -58,11 +58,13 @@ pub const RELAXATION: model_tables::material::series::WallSeries = model_tables:
     fluid_half: 925880,
     weight_gain: 20722,
     weight_half: 67294,
+    retouch: 17359,
     temperature_gain: 25493,
     step: model_tables::material::series::SeriesStep {
         count: 7,
         stiffness: 26814138,
         settled: model_tables::material::series::Factor { mantissa: 2687298560, shift: 8 },
+        forgets: model_tables::material::series::Factor { mantissa: 2198473591, shift: 10 },
         terms: [
             model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 2714937127, shift: 0 }, share: model_tables::material::series::Factor { mantissa: 2924943324, shift: 0 } },
             model_tables::material::series::TermStep { lost: model_tables::material::series::Factor { mantissa: 3269761419, shift: 3 }, share: model_tables::material::series::Factor { mantissa: 2187692539, shift: 1 } },

@@ -151,8 +151,10 @@ fn relaxation(mut own: Cursor<'_>) -> Result<WallSeries, BlockError> {
     if wall.remaining_permille > 1000 {
         return Err(value("remaining_permille"));
     }
-    if wall.fluid_least > 1 << 16 {
-        return Err(value("fluid_least"));
+    for (field, share) in [("fluid_least", wall.fluid_least), ("retouch", wall.retouch)] {
+        if share > 1 << 16 {
+            return Err(value(field));
+        }
     }
     if wall.weight_gain > WallSeries::LARGEST_GAIN {
         return Err(value("weight_gain"));

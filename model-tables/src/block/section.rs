@@ -151,9 +151,11 @@ pub fn relaxation<V: Visit>(value: &mut WallSeries, visit: &mut V) -> Result<(),
     visit.field("fluid_half", &mut value.fluid_half)?;
     visit.field("weight_gain", &mut value.weight_gain)?;
     visit.field("weight_half", &mut value.weight_half)?;
+    visit.field("retouch", &mut value.retouch)?;
     visit.field("temperature_gain", &mut value.temperature_gain)?;
     visit.field("stiffness", &mut value.step.stiffness)?;
-    visit.field("settled", &mut value.step.settled)
+    visit.field("settled", &mut value.step.settled)?;
+    visit.field("forgets", &mut value.step.forgets)
 }
 
 /// Of the objects: what is touched at the start, and the law of the weights; the words of the reference ball follow.

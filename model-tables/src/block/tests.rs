@@ -91,6 +91,7 @@ const DATA: TipData<'_> = TipData {
 fn wall(terms: usize) -> WallSeries {
     let mut step = SeriesStep {
         settled: Factor::nearest(0.1),
+        forgets: Factor::nearest(0.01),
         stiffness: 10 << SeriesStep::STIFFNESS_BITS,
         count: terms,
         ..SeriesStep::default()
@@ -108,6 +109,7 @@ fn wall(terms: usize) -> WallSeries {
         fluid_half: 5_000,
         weight_gain: 40_000,
         weight_half: 700,
+        retouch: 10_000,
         temperature_gain: 20_000,
     }
 }
@@ -189,6 +191,9 @@ fn a_wall_in_time_that_cannot_be_is_refused() {
     let mut odd = wall(2);
     odd.weight_gain = 7 << 16;
     assert_eq!(refused(odd), value("weight_gain"));
+    let mut odd = wall(2);
+    odd.retouch = (1 << 16) + 1;
+    assert_eq!(refused(odd), value("retouch"));
     let mut odd = wall(2);
     odd.temperature_gain = 1 << 16;
     assert_eq!(refused(odd), value("temperature_gain"));

@@ -92,6 +92,7 @@ impl Generated {
             fluid_half: counts(rules.fluid_half),
             weight_gain: sixteen_bits(rules.weight_gain).min(WallSeries::LARGEST_GAIN),
             weight_half: counts(rules.weight_half),
+            retouch: sixteen_bits(rules.retouch).min(1 << 16),
             temperature_gain: sixteen_bits(rules.temperature_gain).min((1 << 16) - 1),
         })
     }
@@ -197,6 +198,7 @@ fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
          \x20   fluid_half: {},\n\
          \x20   weight_gain: {},\n\
          \x20   weight_half: {},\n\
+         \x20   retouch: {},\n\
          \x20   temperature_gain: {},\n\
          \x20   step: {OF}::SeriesStep {{\n\
          \x20       count: {},\n\
@@ -206,12 +208,14 @@ fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
         wall.fluid_half,
         wall.weight_gain,
         wall.weight_half,
+        wall.retouch,
         wall.temperature_gain,
         wall.step.count,
         wall.step.stiffness
     )?;
     let mut source = Source { out, indent: 8 };
     source.field("settled", &mut wall.step.settled)?;
+    source.field("forgets", &mut wall.step.forgets)?;
     writeln!(out, "        terms: [")?;
     for term in &wall.step.terms {
         write!(out, "            ")?;

@@ -59,6 +59,8 @@ pub struct SeriesStep {
     pub settled: Factor,
     /// `1 + sum c`, in `1 / 2^`[`SeriesStep::STIFFNESS_BITS`]: the stress of a change over the settled wall's.
     pub stiffness: u32,
+    /// What is lost over the step of where a wall was left: see [`LEFT_TIME`].
+    pub forgets: Factor,
     /// How many terms it has.
     pub count: usize,
     /// The terms, the slowest last; those beyond the count are 0.
@@ -76,6 +78,7 @@ impl SeriesStep {
         let scaled = libm::ldexp(stiffness, Self::STIFFNESS_BITS as i32);
         let mut step = Self {
             settled: Factor::nearest(1.0 / stiffness),
+            forgets: Factor::nearest(-libm::expm1(-seconds / LEFT_TIME)),
             // The end of the word stands for more: no design of that has tables.
             stiffness: libm::round(scaled) as u32,
             count: relaxation.terms().len(),
@@ -139,6 +142,10 @@ impl SeriesStep {
 /// Temperature difference between a wall and its series if it is not measured: one standard deviation, kelvin.
 pub const WALL_TEMPERATURE: f64 = 2.0;
 
+/// In so many seconds of a new contact a wall forgets where it was left, to 1/e: solids of four domes that are tapped, pressed again as fast, faster
+/// and slower, and held.
+pub const LEFT_TIME: f64 = 2.0;
+
 /// A wall in time, as the chip knows it.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct WallSeries {
@@ -156,6 +163,9 @@ pub struct WallSeries {
     pub weight_gain: u32,
     /// `P_2` of it, counts of the tables' pressure: 1 to `i32::MAX`.
     pub weight_half: u32,
+    /// What the force of a wall that is touched again before it has recovered is less by, over `P_l / P_e`, `P_l` being the settled pressure where
+    /// it last bore nothing, in 1/65536: to 65536.
+    pub retouch: u32,
     /// What [`WALL_TEMPERATURE`] moves the settled pressure by, over `P_e (1 - P_e / P)`, in 1/65536: below 65536, 0 of a wall that is the same at
     /// every temperature.
     pub temperature_gain: u32,

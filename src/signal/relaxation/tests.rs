@@ -15,6 +15,7 @@ fn agilus30(seconds: f64) -> WallSeries {
         fluid_half: 4_000 << 8,
         weight_gain: 0,
         weight_half: 1_000 << 8,
+        retouch: 0,
         temperature_gain: 0,
     }
 }
@@ -223,6 +224,7 @@ proptest! {
         let [fluid_least, fluid_half, weight_gain, weight_half] = any_rules;
         let any_series = WallSeries {
             step: any_series, remaining_permille: 30, fluid_least, fluid_half, weight_gain, weight_half,
+            retouch: stiffness,
             temperature_gain: 0,
         };
         let mut any_wall = Relaxing::<4>::NEW;

@@ -18,6 +18,7 @@ impl InTime {
             fluid_half: 4_000 << 8,
             weight_gain: 1 << 16,
             weight_half: 1_000 << 8,
+            retouch: 0,
             temperature_gain: 0,
         };
         Self(Linear::NEW, wall)

@@ -1,7 +1,8 @@
-//! The five numbers of a design that the chip's rules for a relaxing wall need, fitted to one press of the solid in time.
+//! The six numbers of a design that the chip's rules for a relaxing wall need, fitted to one press of the solid in time.
 //!
 //! The rules are those of the firmware's `signal::relaxation`, here in `f64`. First the weight is fitted to the indentation, then
-//! the fluid's share to the force, during press, hold and release.
+//! the fluid's share to the force, during press, hold and release, then the reduction of the force on
+//! renewed contact to a second press.
 //!
 //! A wall that is warmer by `dT` than its series passes through the same states `exp(shift dT)` times as fast. The settled pressure
 //! for a pressure `P` applied at once, `P_e = J(t) P`, therefore moves by `shift dT t dJ/dt P`. If `J` rises from near 0 to 1 as
@@ -13,7 +14,7 @@ use crate::curve::{Contact, Curve};
 use crate::design::Design;
 use crate::design_file::{Accuracy, Axes, DesignFile, ShapeSection};
 use crate::material::relaxation::{Decay, MAX_TERMS, Relaxation};
-use crate::material::series::WALL_TEMPERATURE;
+use crate::material::series::{LEFT_TIME, WALL_TEMPERATURE};
 use crate::model::{Fingertip, Kind};
 use crate::solid::history::{Drive, History, HistoryError};
 use crate::solid::mesh::Elements;
@@ -26,8 +27,8 @@ const ELEMENTS: Elements = Elements {
 /// How deep is pressed at most, over the height; half as deep, and a quarter, where the solid finds no state there.
 const DEEP: f64 = 0.25;
 const DEPTHS: [f64; 3] = [1.0, 0.5, 0.25];
-/// Pressed, held and let go in so many seconds, and in so many instants.
-const SECONDS: [f64; 3] = [1.0, 3.0, 1.0];
+/// Pressed, held, let go, left alone and pressed again in so many seconds, and in so many instants.
+const SECONDS: [f64; 5] = [1.0, 3.0, 1.0, 5.0, 0.5];
 const INSTANTS: u32 = 100;
 /// Settled states, from a part of the depth to a little beyond it.
 const STATES: u32 = 32;
@@ -46,6 +47,8 @@ const MIN_STIFFENING: f64 = 0.5;
 /// Bounds of the fit: logarithms of `P_2` and `P_1` over the pressure at the depth, of `1 + kappa`, and the least share.
 const WEIGHT: [[f64; 2]; 2] = [[-4.2, 1.5], [0.0, 2.0]];
 const SHARE: [[f64; 2]; 2] = [[-4.2, 4.2], [0.0, 1.0]];
+/// Largest share that a wall touched again may bear less.
+const MOST_RETOUCH: f64 = 0.75;
 /// Steps of the first look, and halvings of them.
 const LOOK: u32 = 7;
 const HALVINGS: u32 = 8;
@@ -61,6 +64,9 @@ pub struct InTime {
     pub weight_gain: f64,
     /// `P_2` of it, pascals, > 0.
     pub weight_half: f64,
+    /// Reduction of the force on a wall that is touched again before it has recovered, over `P_l / P_e`, where `P_l` is the settled pressure
+    /// where the force was last 0: 0 to [`MOST_RETOUCH`].
+    pub retouch: f64,
     /// Change of the settled pressure by [`WALL_TEMPERATURE`], over `P_e (1 - P_e / P)`, >= 0.
     pub temperature_gain: f64,
 }
@@ -89,7 +95,7 @@ struct Step {
     truth: [f64; 2],
     /// Pascals.
     pressure: f64,
-    /// Pressed, held or let go.
+    /// Of [`SECONDS`].
     phase: usize,
     touches: bool,
 }
@@ -135,6 +141,7 @@ pub(super) fn fitted(
         fluid_half,
         weight_gain,
         weight_half,
+        retouch: press.retouch(&elastic, [fluid_half, fluid_least]),
         temperature_gain: press.temperature_gain(relaxation, weight, &elastic),
     })
 }
@@ -174,9 +181,10 @@ impl Press {
             .map_err(|error| GenerateError::Curve(crate::curve::CurveFailure::Shape(error)))?;
         let second = relaxation.terms().iter().map(|term| term.over(1.0).taken);
         let little = second.sum::<f64>().min(1.0);
+        let first = steps.iter().filter(|step| step.phase < 3);
         Ok(Self {
             terms: relaxation.terms().len(),
-            peak: steps.iter().map(|step| step.truth[0]).fold(0.0, f64::max),
+            peak: first.map(|step| step.truth[0]).fold(0.0, f64::max),
             steps,
             end: settled.at_indentation(depth).pressure_rise,
             settled,
@@ -269,9 +277,10 @@ impl Press {
         self.error(1, self.height, read)
     }
 
-    fn force_error(&self, elastic: &[f64], [half, least]: [f64; 2]) -> f64 {
+    /// The force at each instant, a wall touched again as one that was never touched.
+    fn forces(&self, elastic: &[f64], [half, least]: [f64; 2]) -> impl Iterator<Item = f64> {
         let (mut settled, mut held) = (0.0, [0.0; MAX_TERMS]);
-        let read = self.steps.iter().zip(elastic).map(|(step, &elastic)| {
+        self.steps.iter().zip(elastic).map(move |(step, &elastic)| {
             let positive = elastic.max(1e-6 * self.end).min(self.settled.end().pressure_rise);
             let area = self.settled.at_pressure_rise(positive).force / positive;
             let change = area * elastic - core::mem::replace(&mut settled, area * elastic);
@@ -282,8 +291,31 @@ impl Press {
             }
             let fluid = least + (1.0 - least) * elastic.max(0.0) / (half + elastic.max(0.0));
             f64::max(fluid * area * step.pressure + (1.0 - fluid) * convolved, 0.0)
-        });
-        self.error(0, self.peak, read)
+        })
+    }
+
+    fn force_error(&self, elastic: &[f64], share: [f64; 2]) -> f64 {
+        self.error(0, self.peak, self.forces(elastic, share))
+    }
+
+    /// Least squares of what the second press is read too high.
+    fn retouch(&self, elastic: &[f64], share: [f64; 2]) -> f64 {
+        let (mut left, mut above, mut square) = (0.0, 0.0, 0.0);
+        let read = self.forces(elastic, share);
+        for ((step, read), &elastic) in self.steps.iter().zip(read).zip(elastic) {
+            left *= libm::exp(-step.seconds / LEFT_TIME);
+            left = if read > 0.0 {
+                f64::min(left, elastic)
+            } else {
+                elastic
+            };
+            if step.phase == 4 && left > 0.0 {
+                let less = read * left / elastic;
+                above += less * (read - step.truth[0]);
+                square += less * less;
+            }
+        }
+        (above / f64::max(square, f64::MIN_POSITIVE)).clamp(0.0, MOST_RETOUCH)
     }
 
     /// Mean fourth powers of what is read of force (0) or indentation (1) off the truth, over what counts as one; on the release over a whole.
@@ -296,8 +328,8 @@ impl Press {
             let (part, off) = match step.phase {
                 0 | 1 if is_small => continue,
                 0 | 1 => (0, off / step.truth[output] / self.pressed[output]),
-                _ if !step.touches => continue,
-                _ => (1, off / whole / LEFT[output]),
+                2 if step.touches => (1, off / whole / LEFT[output]),
+                _ => continue,
             };
             sums[part] += off * off * off * off;
             counts[part] += 1.0;
@@ -306,19 +338,24 @@ impl Press {
     }
 }
 
-/// Pressed, held and let go in time.
+/// Pressed, held and let go in time, and pressed again where the solid can be.
 fn history(design: &Design, relaxation: &Relaxation, depth: f64) -> Result<Vec<Step>, HistoryError> {
     let mut history = History::new(design, relaxation, ELEMENTS, 0.0, 0.0)?;
     let mut steps = Vec::new();
     let (mut begin, mut before) = (0.0, 0.0);
     for (phase, seconds) in SECONDS.into_iter().enumerate() {
-        let [from, to] = [[0.0, depth], [depth, depth], [depth, 0.0]][phase];
+        let turns = [0.0, depth, depth, 0.0, 0.0, depth];
+        let [from, to] = [turns[phase], turns[phase + 1]];
         for k in 1..=INSTANTS {
             // Denser after a turn.
             let part = f64::from(k) / f64::from(INSTANTS);
             let part = part * libm::sqrt(part);
             let time = begin + part * seconds;
-            let now = history.advance(time, Drive::Indentation(from + part * (to - from)))?;
+            let now = match history.advance(time, Drive::Indentation(from + part * (to - from))) {
+                Ok(now) => now,
+                Err(_) if phase > 2 => return Ok(steps),
+                Err(error) => return Err(error),
+            };
             let (decays, stiffness) = over(relaxation, time - before);
             steps.push(Step {
                 seconds: time - before,
