@@ -48,7 +48,7 @@ const MIN_STIFFENING: f64 = 0.5;
 const WEIGHT: [[f64; 2]; 2] = [[-4.2, 1.5], [0.0, 2.0]];
 const SHARE: [[f64; 2]; 2] = [[-4.2, 4.2], [0.0, 1.0]];
 /// Largest share that a wall touched again may bear less.
-const MOST_RETOUCH: f64 = 0.75;
+const MAX_RETOUCH: f64 = 0.75;
 /// Steps of the first look, and halvings of them.
 const LOOK: u32 = 7;
 const HALVINGS: u32 = 8;
@@ -65,7 +65,7 @@ pub struct InTime {
     /// `P_2` of it, pascals, > 0.
     pub weight_half: f64,
     /// Reduction of the force on a wall that is touched again before it has recovered, over `P_l / P_e`, where `P_l` is the settled pressure
-    /// where the force was last 0: 0 to [`MOST_RETOUCH`].
+    /// where the force was last 0: 0 to [`MAX_RETOUCH`].
     pub retouch: f64,
     /// Change of the settled pressure by [`WALL_TEMPERATURE`], over `P_e (1 - P_e / P)`, >= 0.
     pub temperature_gain: f64,
@@ -315,7 +315,7 @@ impl Press {
                 square += less * less;
             }
         }
-        (above / f64::max(square, f64::MIN_POSITIVE)).clamp(0.0, MOST_RETOUCH)
+        (above / f64::max(square, f64::MIN_POSITIVE)).clamp(0.0, MAX_RETOUCH)
     }
 
     /// Mean fourth powers of what is read of force (0) or indentation (1) off the truth, over what counts as one; on the release over a whole.
