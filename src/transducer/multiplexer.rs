@@ -41,9 +41,13 @@ impl BusBranch {
     /// [`PortError`] of the bus where the multiplexer does not answer, and where it answers with another register.
     async fn open<B: I2c>(self, bus: &mut B) -> Result<(), PortError> {
         let wanted = [1 << (self.number & 7)];
-        bus.write(self.multiplexer, &wanted).await.map_err(of_it)?;
+        bus.write(self.multiplexer, &wanted)
+            .await
+            .map_err(|error| of_it(&error))?;
         let mut found = [0];
-        bus.read(self.multiplexer, &mut found).await.map_err(of_it)?;
+        bus.read(self.multiplexer, &mut found)
+            .await
+            .map_err(|error| of_it(&error))?;
         if found == wanted {
             Ok(())
         } else {
@@ -56,7 +60,9 @@ impl BusBranch {
     /// # Errors
     /// [`PortError`] of the bus where the multiplexer does not answer.
     async fn close<B: I2c>(self, bus: &mut B) -> Result<(), PortError> {
-        bus.write(self.multiplexer, &[0]).await.map_err(of_it)
+        bus.write(self.multiplexer, &[0])
+            .await
+            .map_err(|error| of_it(&error))
     }
 }
 
@@ -71,7 +77,7 @@ impl Error for PortError {
 }
 
 /// A multiplexer that does not answer is a fault of the bus: of the part behind it nothing is known.
-fn of_it(error: impl Error) -> PortError {
+fn of_it(error: &impl Error) -> PortError {
     PortError(match error.kind() {
         ErrorKind::NoAcknowledge(_) => ErrorKind::Other,
         kind => kind,

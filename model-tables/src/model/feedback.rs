@@ -288,7 +288,7 @@ impl Loop {
         let is_off = |other: f64| (other - simpson).abs() > SMOOTH * simpson.abs();
         let is_counted = difference.abs() > COUNTED * self.actuator.wall_volume();
         // Two sums may agree by chance.
-        let is_smooth = !is_off(trapezium) && !(is_counted && is_off(difference));
+        let is_smooth = !(is_off(trapezium) || is_counted && is_off(difference));
         Ok(if is_smooth { simpson } else { difference })
     }
 

@@ -248,12 +248,16 @@ const TIMES: RoundTimes<3> = RoundTimes {
     halves: [2_500; 3],
 };
 
-const fn branch(multiplexer: u8, number: u8) -> Option<BusBranch> {
-    Some(BusBranch { multiplexer, number })
+const fn branch(multiplexer: u8, number: u8) -> BusBranch {
+    BusBranch { multiplexer, number }
 }
 
 /// Two parts of one address on two branches, and one of another on the bus itself.
-const PLACES: [(u8, Option<BusBranch>); 3] = [(0x28, branch(0x70, 0)), (0x28, branch(0x71, 7)), (0x18, None)];
+const PLACES: [(u8, Option<BusBranch>); 3] = [
+    (0x28, Some(branch(0x70, 0))),
+    (0x28, Some(branch(0x71, 7))),
+    (0x18, None),
+];
 
 /// The samples of a round, and when they were read.
 type Round = (u64, [Result<Sample, Fault>; 3]);

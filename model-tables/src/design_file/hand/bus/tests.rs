@@ -1,4 +1,5 @@
 use super::*;
+use std::fmt::Write as _;
 
 /// A design of a kind of part.
 fn design(kind: &str) -> DesignFile {
@@ -16,7 +17,10 @@ fn round(tips: &[(&str, &str)]) -> Result<BusRound, String> {
 fn round_on(set_up: u32, tips: &[(&str, &str)]) -> Result<BusRound, String> {
     let mut text = "name = \"h\"\n".to_owned();
     for (number, (_, keys)) in tips.iter().enumerate() {
-        text += &format!("[[tip]]\nname = \"t{number}\"\ndesign = \"design.toml\"\nbus = 1\n{keys}\n");
+        let _ = writeln!(
+            text,
+            "[[tip]]\nname = \"t{number}\"\ndesign = \"design.toml\"\nbus = 1\n{keys}"
+        );
     }
     let file = HandFile::parse(&text, "hand.toml").map_err(|error| error.to_string())?;
     let designs: Vec<DesignFile> = tips.iter().map(|(kind, _)| design(kind)).collect();
