@@ -49,7 +49,7 @@ async fn main(spawner: Spawner) {
     #[cfg(not(feature = "load-tip"))]
     let design = FirmwareDesign::start();
     #[cfg(feature = "load-tip")]
-    let mut board = Board::take(start.give_up);
+    let mut board = Board::take(start.give_up, reset_cause);
     #[cfg(feature = "load-tip")]
     let tip::Tip {
         design,

@@ -243,7 +243,7 @@ impl Loading {
                 }
             }
             TipsMessage::Load { tip, reply } if self.target.number() == Some(*tip) => {
-                self.replied(now, reply)
+                self.replied(now, reply);
             }
             _ => {}
         }

@@ -102,9 +102,10 @@ fn hand_file() -> PathBuf {
     let mut text = "name = \"on-a-bus\"\n".to_owned();
     for ((name, kind), place) in NAMES.iter().zip(KINDS).zip(&PLACES) {
         let design = design_of_kind(kind).path;
-        let _ = write!(
+        let design = design.to_str().expect("a path of this test");
+        let _ = writeln!(
             text,
-            "[[tip]]\nname = {name:?}\ndesign = {design:?}\nbus = 1\naddress = {}\n",
+            "[[tip]]\nname = {name:?}\ndesign = {design:?}\nbus = 1\naddress = {}",
             place.address
         );
         if let Some(branch) = place.branch {
