@@ -517,7 +517,7 @@ static enum ft_tip_result read_section(struct ft_tip *tip, uint16_t kind, struct
         return read_name(tip, from);
     case RELAXATION:
         tip->has_relaxation = true;
-        return from.left >= 48 && (from.left - 32) % 16 == 0 ? FT_TIP_OK : FT_TIP_FIELD;
+        return from.left >= 64 && (from.left - 48) % 16 == 0 ? FT_TIP_OK : FT_TIP_FIELD;
     case OBJECT:
         tip->has_object = true;
         return from.left > 80 ? FT_TIP_OK : FT_TIP_FIELD;
