@@ -28,7 +28,8 @@ pub struct RunAccuracy {
     pub pressure_error: f64,
     /// Share of the readings whose pressure rise is within two standard deviations of the transducer's noise.
     pub pressure_within: f64,
-    /// Share of the readings whose force a pressure within two standard deviations and the tables' accuracy explain.
+    /// Share of the readings whose force a pressure within two standard deviations and the tables' accuracy explain. Not a number of a
+    /// press in time, where no curve explains it.
     pub force_within: f64,
     /// The same of the indentation, relative.
     pub indentation_within: f64,
@@ -65,6 +66,14 @@ pub fn within(row: &Row, plant: &Plant, deviations: f64) -> Option<[bool; 3]> {
 /// accurate as the design asks.
 fn explained(reported: Contact, rises: [f64; 2], plant: &Plant) -> [bool; 3] {
     let [low, high] = rises.map(|rise| plant.curve().at_pressure_rise(rise));
+    if plant.timed().is_some() {
+        // No curve of pressure explains force and indentation in time.
+        return [
+            (rises[0]..=rises[1]).contains(&reported.pressure_rise),
+            true,
+            true,
+        ];
+    }
     let [force, indentation] = plant.tables_allowed();
     let between = |low: f64, reported: f64, high: f64, tables: f64| {
         (low * (1.0 - tables)..=high * (1.0 + tables)).contains(&reported)
@@ -93,6 +102,22 @@ pub fn is_wrong(row: &Row, plant: &Plant) -> bool {
     explained(reported, [low - allowed, high + allowed], plant) != [true; 3]
 }
 
+/// Mean magnitude of the force's error of a press in time, percent of its peak force: of the firmware, and of tables of the settled wall on
+/// a plate at the pressure that the firmware reports. `None` without a reading, or where the press is none in time.
+pub fn force_errors<'a>(rows: impl IntoIterator<Item = &'a Row>, plant: &Plant) -> Option<[f64; 2]> {
+    let peak = plant.timed()?.peak_force();
+    let (mut count, mut sums) = (0_u32, [0.0; 2]);
+    for row in rows {
+        let Some(reported) = row.reported else { continue };
+        let tables = plant.curve().at_pressure_rise(reported.pressure_rise);
+        count += 1;
+        for (sum, force) in sums.iter_mut().zip([reported.force, tables.force]) {
+            *sum += (force - row.truth.force).abs();
+        }
+    }
+    (count > 0).then(|| sums.map(|sum| 100.0 * sum / (f64::from(count) * peak)))
+}
+
 impl RunAccuracy {
     /// Over all rows with values that the firmware vouches for.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a Row>, plant: &Plant) -> Self {
@@ -118,14 +143,21 @@ impl RunAccuracy {
             .filter_map(|row| Some(row.reported?.pressure_rise - row.truth.pressure_rise))
             .map(|error| error * error)
             .sum();
+        let of_curve = |which: usize| {
+            if plant.timed().is_some() {
+                f64::NAN
+            } else {
+                inside(which)
+            }
+        };
         Self {
             readings,
             force_median: of_rows(force_error),
             indentation_median: of_rows(indentation_error),
             pressure_error: libm::sqrt(squares / readings.max(1) as f64),
             pressure_within: inside(0),
-            force_within: inside(1),
-            indentation_within: inside(2),
+            force_within: of_curve(1),
+            indentation_within: of_curve(2),
         }
     }
 }

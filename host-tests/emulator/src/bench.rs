@@ -223,7 +223,7 @@ impl<L> Bench<L> {
                     session.board_mut().send(&bytes);
                 }
                 _ => {
-                    if let Some(command) = event.is.command().filter(|_| begins) {
+                    if let Some(command) = event.command().filter(|_| begins) {
                         let sequence = number as u16;
                         session
                             .board_mut()

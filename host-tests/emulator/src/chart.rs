@@ -4,7 +4,7 @@
 use crate::accuracy::{force_error, indentation_error};
 use crate::record::Row;
 use fingertip::status::{Fault, Status};
-use model_tables::curve::Contact;
+use model_tables::curve::{Contact, Curve};
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::{
@@ -60,6 +60,8 @@ pub struct Caption {
     pub subtitle: String,
     /// The contact at the end of the range: errors are shown from 5 % of it up.
     pub full_scale: Contact,
+    /// Tables of the settled wall on a plate, shown beside the report; `None`: not shown.
+    pub static_tables: Option<Curve>,
     /// Largest error that the median may have, percent of reading: the band in the lowest panel.
     pub target_percent: f64,
 }
@@ -85,6 +87,8 @@ struct Quantity {
     label: &'static str,
     /// Truth and report of a row.
     of: fn(&Row) -> [Option<f64>; 2],
+    /// It of a contact of the static tables, where they have it.
+    of_static: Option<fn(&Contact) -> f64>,
 }
 
 /// A quantity of the contact, true and reported.
@@ -96,20 +100,24 @@ const QUANTITIES: [Quantity; 3] = [
     Quantity {
         label: "pressure rise / kPa",
         of: |row| pair(row, |contact| contact.pressure_rise * 1e-3),
+        of_static: None,
     },
     Quantity {
         label: "force / N",
         of: |row| pair(row, |contact| contact.force),
+        of_static: Some(|contact| contact.force),
     },
     Quantity {
         label: "indentation / mm",
         of: |row| pair(row, |contact| contact.indentation * 1e3),
+        of_static: Some(|contact| contact.indentation * 1e3),
     },
 ];
 /// Where there is an actuator.
 const FEEDBACK: Quantity = Quantity {
     label: "feedback force / N",
     of: |row| [row.feedback.truth, row.feedback.reported],
+    of_static: None,
 };
 
 /// The chart as SVG.
@@ -145,10 +153,26 @@ fn draw(root: &Area<'_>, rows: &[Row], caption: &Caption) -> Result<(), ChartErr
     let panels = body.split_evenly((quantities.len() + 1, 1));
     let spells = spells(rows);
     for (quantity, area) in quantities.iter().zip(&panels) {
-        let values = rows.iter().flat_map(quantity.of).flatten();
-        let top = values.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-        let mut panel = panel(area, quantity.label, time.clone(), -0.04 * top..1.08 * top, "")?;
-        shade(&mut panel, &spells, -0.04 * top..1.08 * top)?;
+        let beside = |row: &Row| -> Option<f64> {
+            let (tables, of) = (caption.static_tables.as_ref()?, quantity.of_static?);
+            Some(of(&tables.at_pressure_rise(row.reported?.pressure_rise)))
+        };
+        let values = rows
+            .iter()
+            .flat_map(quantity.of)
+            .chain(rows.iter().map(beside))
+            .flatten();
+        let (low, top) = values.fold((0.0_f64, f64::MIN_POSITIVE), |(low, top), value| {
+            (low.min(value), top.max(value))
+        });
+        let scale = low - 0.04 * (top - low)..top + 0.08 * (top - low);
+        let mut panel = panel(area, quantity.label, time.clone(), scale.clone(), "")?;
+        shade(&mut panel, &spells, scale)?;
+        line(
+            &mut panel,
+            thinned(rows).map(|row| (row.time, beside(row))),
+            SECOND,
+        )?;
         let truth: Vec<(f64, f64)> = thinned(rows)
             .filter_map(|row| Some((row.time, (quantity.of)(row)[0]?)))
             .collect();
@@ -197,13 +221,16 @@ fn heading(area: &Area<'_>, caption: &Caption) -> Result<(), ChartError> {
             .map_err(drawing)?;
         y += SUBTITLE as i32 + 6;
     }
-    let entries = [
+    let mut entries = vec![
         Entry::line("truth: full model", TRUTH, 6),
         Entry::line("reported by the firmware", REPORT, 3),
         Entry::area("zeroing", ZEROING.mix(SHADE)),
         Entry::area("warning", WARNING.mix(SHADE)),
         Entry::area("fault: no values", FAULT.mix(SHADE)),
     ];
+    if caption.static_tables.is_some() {
+        entries.push(Entry::line("static plate tables", SECOND, 3));
+    }
     key(area, (MARGIN as i32, y + 18), &entries)
 }
 
@@ -452,6 +479,7 @@ mod tests {
             title: "press-hold-release on index-fingertip-elastic".to_owned(),
             subtitle: "median error: force 0.1 %, indentation 0.1 %".to_owned(),
             full_scale,
+            static_tables: None,
             target_percent: 0.5,
         }
     }

@@ -2,16 +2,23 @@
 
 use crate::plant::Plant;
 use crate::scenario::{Scenario, WireFault};
+use crate::timed::TimedPress;
 use crate::transducer::{EmulatedTransducer, Part, Wiring};
 use model_tables::curve::CurveFailure;
 use model_tables::curve::{Contact, Curve};
-use model_tables::design_file::{DesignFile, DesignFileError, Supply, TransducerKindSection, Transfer};
+use model_tables::design_file::{
+    Calibration, DesignFile, DesignFileError, ObjectSection, ShapeSection, Supply, TransducerKindSection,
+    Transfer,
+};
 use model_tables::generate::feedback::FeedbackCurve;
 use model_tables::generate::{self, GenerateError};
 use model_tables::model::Fingertip;
 use model_tables::model::ModelError;
+use model_tables::model::choice::elements_in_time;
 use model_tables::model::feedback::{Loop, LoopError};
+use model_tables::object::Friction;
 use model_tables::solid::disc::DISC;
+use model_tables::solid::history::{History, HistoryError};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -40,6 +47,10 @@ pub enum FingertipDesignError {
     Press(CurveFailure<ModelError>),
     /// Fingertip and actuator do not, together.
     Loop(LoopError),
+    /// The scenario cannot be played with this design, and why.
+    InTime(PathBuf, &'static str),
+    /// The solid in time does not go through the scenario.
+    History(PathBuf, HistoryError),
     /// The data of a design from data do not.
     Data(PathBuf, Box<GenerateError>),
 }
@@ -58,6 +69,8 @@ impl fmt::Display for FingertipDesignError {
             Self::Rest(error) => error.fmt(f),
             Self::Press(error) => error.fmt(f),
             Self::Loop(error) => error.fmt(f),
+            Self::InTime(path, why) => write!(f, "{}: {why}", path.display()),
+            Self::History(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Data(path, error) => write!(f, "{}: {error}", path.display()),
         }
     }
@@ -169,6 +182,7 @@ impl FingertipDesign {
             return Err(FingertipDesignError::NoSuchFault(self.path.clone(), fault.is));
         }
         let (rest_pressure, curve, feedback) = self.press()?;
+        let timed = self.timed(&scenario, &curve)?;
         let allowed = self.file.accuracy.map_or([0.0; 2], |accuracy| {
             [
                 accuracy.force_percent_of_reading / 100.0,
@@ -183,7 +197,67 @@ impl FingertipDesign {
             scenario,
         )
         .with_tables_allowed(allowed)
-        .with_feedback(feedback))
+        .with_feedback(feedback)
+        .with_timed(timed))
+    }
+
+    /// The press in time where the scenario needs one: the solid in time of a wall that relaxes, otherwise the elastic press onto each
+    /// object.
+    fn timed(&self, scenario: &Scenario, plate: &Curve) -> Result<Option<TimedPress>, FingertipDesignError> {
+        if !scenario.is_in_time() {
+            return Ok(None);
+        }
+        let refused = |why| FingertipDesignError::InTime(self.path.clone(), why);
+        if self.file.calibration != Calibration::default() || self.file.actuator.is_some() {
+            return Err(refused(
+                "a scenario by force or with objects needs a design without [calibration] and [actuator]: leave them out",
+            ));
+        }
+        if let Some(relaxation) = &self.file.relaxation {
+            if scenario.phase.iter().any(|phase| phase.radius_mm.is_some()) {
+                return Err(refused(
+                    "phase.radius_mm needs an elastic wall: leave [material.relaxation] out, or take a scenario of a plate",
+                ));
+            }
+            let elements = elements_in_time(self.file.model)
+                .ok_or_else(|| refused("a press in time needs model.kind = \"solid\" or \"auto\""))?;
+            let failed = |error| FingertipDesignError::History(self.path.clone(), error);
+            let history =
+                History::new(&self.file.design(), relaxation, elements, 0.0, 0.0).map_err(failed)?;
+            return TimedPress::relaxing(history, scenario, self.max_indentation)
+                .map(Some)
+                .map_err(failed);
+        }
+        let mut solved: Vec<(Option<f64>, Curve)> = vec![(None, plate.clone())];
+        let mut onto = vec![];
+        for phase in &scenario.phase {
+            let known = solved.iter().find(|(radius, _)| *radius == phase.radius_mm);
+            let curve = if let Some((_, curve)) = known {
+                curve.clone()
+            } else {
+                let curve = self.curve_onto(phase.radius_mm)?;
+                solved.push((phase.radius_mm, curve.clone()));
+                curve
+            };
+            onto.push(curve);
+        }
+        Ok(Some(TimedPress::elastic(&onto, scenario, self.max_indentation)))
+    }
+
+    /// The press onto a ball of a radius in millimetres; negative: a cup.
+    fn curve_onto(&self, radius_mm: Option<f64>) -> Result<Curve, FingertipDesignError> {
+        let file = DesignFile {
+            object: Some(ObjectSection {
+                shape: radius_mm.map_or(ShapeSection::Plate, |radius_mm| ShapeSection::Ball { radius_mm }),
+                friction: Friction::NONE,
+                unknown: false,
+            }),
+            ..self.file.clone()
+        };
+        let mut press = Fingertip::new(&file).map_err(FingertipDesignError::Rest)?;
+        press
+            .curve(self.max_indentation)
+            .map_err(FingertipDesignError::Press)
     }
 
     /// Rest pressure and press as the transducer reads them, and the force of the actuator that shares the fluid.

@@ -24,4 +24,5 @@ pub mod record;
 pub mod scenario;
 mod sensor;
 pub mod serve;
+pub mod timed;
 pub mod transducer;

@@ -1,10 +1,12 @@
 //! The fingertip, the plate that presses it and the transducer in its fluid: time to a voltage.
 
 use crate::scenario::Scenario;
+use crate::timed::TimedPress;
 use crate::transducer::{ElectricalOutput, EmulatedTransducer, Part, Wiring};
 use model_tables::curve::{Contact, Curve};
 use model_tables::generate::feedback::FeedbackCurve;
 use model_tables::random::Random;
+use std::sync::Arc;
 
 /// A report is made of samples up to one period before and after its time, and a part takes up to a period to measure one.
 const REACH: f64 = 1.5;
@@ -24,6 +26,8 @@ pub struct Plant {
     tables_allowed: [f64; 2],
     /// The feedback actuator at the other end of the line; `None`: there is none that presses.
     feedback: Option<FeedbackCurve>,
+    /// The contact in time, where the scenario is not a travel on an elastic plate's curve.
+    timed: Option<Arc<TimedPress>>,
     /// A share of the largest indentation and its pressure rise: most of the time the plate stands still.
     last: (f64, f64),
 }
@@ -47,6 +51,7 @@ impl Plant {
             noise,
             tables_allowed: [0.0; 2],
             feedback: None,
+            timed: None,
             last: (0.0, 0.0),
         }
     }
@@ -66,12 +71,27 @@ impl Plant {
         Self { feedback, ..self }
     }
 
-    /// The same fingertip going through another scenario.
+    /// The same with a contact in time that its scenario gives.
+    #[must_use]
+    pub fn with_timed(self, timed: Option<TimedPress>) -> Self {
+        Self {
+            timed: timed.map(Arc::new),
+            ..self
+        }
+    }
+
+    /// The contact in time, where the scenario is a press by force or onto other objects.
+    pub fn timed(&self) -> Option<&TimedPress> {
+        self.timed.as_deref()
+    }
+
+    /// The same fingertip going through another scenario, which is a travel on its curve.
     #[must_use]
     pub fn through(&self, scenario: Scenario) -> Self {
         Self {
             noise: Random(scenario.seed),
             scenario,
+            timed: None,
             last: (0.0, 0.0),
             ..self.clone()
         }
@@ -95,6 +115,9 @@ impl Plant {
 
     /// The contact at a time in seconds.
     pub fn truth(&self, time: f64) -> Contact {
+        if let Some(timed) = &self.timed {
+            return timed.at(self.scenario.place(time));
+        }
         self.curve
             .at_indentation(self.scenario.indentation_share(time) * self.max_indentation)
     }
@@ -131,6 +154,9 @@ impl Plant {
     pub fn pressure_rises(&self, time: f64) -> [f64; 2] {
         let reach = REACH * self.transducer.period();
         let (from, until) = (time - reach, time + reach);
+        if let Some(timed) = &self.timed {
+            return timed.pressure_rises(from, until);
+        }
         // Between two phases' ends the plate moves one way.
         self.scenario
             .phase_ends()
@@ -147,7 +173,9 @@ impl Plant {
         // Drawn in every case, so that a fault leaves the noise after it as it would have been.
         let noise = self.transducer.noise * self.noise.normal();
         let share = self.scenario.indentation_share(time);
-        if share.to_bits() != self.last.0.to_bits() {
+        if self.timed.is_some() {
+            self.last.1 = self.truth(time).pressure_rise;
+        } else if share.to_bits() != self.last.0.to_bits() {
             self.last = (share, self.truth(time).pressure_rise);
         }
         let gauge = self.rest_pressure + self.last.1 + noise;
@@ -210,11 +238,14 @@ pub(crate) mod tests {
             name: name.to_owned(),
             duration_ms,
             to_percent,
+            to_force_n: None,
+            radius_mm: None,
         };
         Scenario {
             about: "a ramp".to_owned(),
             seed: 3,
             air_kpa: 101.325,
+            design: None,
             phase: vec![
                 phase("rest", 100.0, None),
                 phase("press", 400.0, Some(100.0)),

@@ -6,7 +6,7 @@ use fingertip::link::telemetry::{Answer, Decoder, Frame, Hello, Message};
 use fingertip::link::wire::DecodeError;
 use fingertip::signal::report::Report;
 use fingertip::status::{Status, Touch};
-use model_tables::curve::Contact;
+use model_tables::curve::{Contact, Curve};
 use std::io::Write;
 use std::ops::ControlFlow;
 
@@ -179,16 +179,24 @@ pub const COLUMNS: [&str; 8] = [
 /// What follows them where there is a feedback actuator.
 pub const FEEDBACK_COLUMNS: [&str; 2] = ["true_feedback_force_n", "feedback_force_n"];
 
-/// Writes the rows as CSV with [`COLUMNS`], and with [`FEEDBACK_COLUMNS`] where there is an actuator; what is reported is empty where there is no
-/// reading.
+/// What follows them where static tables are compared: what they give for the pressure reported.
+pub const STATIC_COLUMNS: [&str; 2] = ["static_force_n", "static_indentation_mm"];
+
+/// Writes the rows as CSV with [`COLUMNS`], with [`FEEDBACK_COLUMNS`] where there is an actuator, and with [`STATIC_COLUMNS`] where there are static
+/// tables; what is reported is empty where there is no reading.
 ///
 /// # Errors
 /// What the writer answers.
-pub fn write_csv(rows: &[Row], to: impl Write) -> csv::Result<()> {
+pub fn write_csv(rows: &[Row], static_tables: Option<&Curve>, to: impl Write) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(to);
     let feels = rows.iter().any(|row| row.feedback.truth.is_some());
     let beside = if feels { &FEEDBACK_COLUMNS[..] } else { &[] };
-    writer.write_record(COLUMNS.iter().chain(beside))?;
+    let compared = if static_tables.is_some() {
+        &STATIC_COLUMNS[..]
+    } else {
+        &[]
+    };
+    writer.write_record(COLUMNS.iter().chain(beside).chain(compared))?;
     for row in rows {
         let reported = row.reported.map_or([const { String::new() }; 3], |reported| {
             [
@@ -211,7 +219,14 @@ pub fn write_csv(rows: &[Row], to: impl Write) -> csv::Result<()> {
         let feedback = [(force, 12), (felt, 6)]
             .map(|(value, decimals)| value.map_or_else(String::new, |value| format!("{value:.decimals$}")));
         let beside = if feels { &feedback[..] } else { &[] };
-        writer.write_record(truth.iter().chain(&reported).chain(beside))?;
+        let of_static = static_tables.map(|tables| {
+            row.reported.map_or([const { String::new() }; 2], |reported| {
+                let contact = tables.at_pressure_rise(reported.pressure_rise);
+                [contact.force, contact.indentation * 1e3].map(|value| format!("{value:.6}"))
+            })
+        });
+        let compared = of_static.as_ref().map_or(&[][..], |values| &values[..]);
+        writer.write_record(truth.iter().chain(&reported).chain(beside).chain(compared))?;
     }
     writer.flush()?;
     Ok(())
@@ -309,7 +324,7 @@ mod tests {
             frame(1, 90_000, Err(Fault::SensorOpen)),
         ]);
         let mut file = vec![];
-        write_csv(&record.rows, &mut file).expect("a vector takes everything");
+        write_csv(&record.rows, None, &mut file).expect("a vector takes everything");
         let text = String::from_utf8(file).expect("it is text");
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(

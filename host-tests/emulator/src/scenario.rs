@@ -2,6 +2,7 @@
 
 use crate::transducer::Wiring;
 use fingertip::link::command::Command;
+use model_tables::table::law::Touched;
 use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -18,6 +19,9 @@ pub struct Scenario {
     /// Pressure of the air around the board, kilopascals: what a barometer measures, 30 .. 120.
     #[serde(default = "standard_air_kpa")]
     pub air_kpa: f64,
+    /// The design that it is made for, relative to the workspace; `None`: the default design.
+    #[serde(default)]
+    pub design: Option<String>,
     /// The plate's travel, one phase after another.
     pub phase: Vec<Phase>,
     /// What happens to the transducer's wire, in any order; it is sound at other times.
@@ -46,6 +50,8 @@ pub struct Event {
     pub is: Happening,
     /// How long it lasts, milliseconds; `None` of what happens at an instant.
     pub for_ms: Option<f64>,
+    /// Of the command `object`: radius of a ball, millimetres; negative: of a cup; `None`: a plate.
+    pub radius_mm: Option<f64>,
 }
 
 /// What happens.
@@ -70,13 +76,35 @@ pub enum Happening {
     SelfTest,
     /// Another: every hundredth report.
     Rate,
+    /// Another: what is touched from now on.
+    Object,
+}
+
+/// What a radius in millimetres stands for: a ball; negative: a cup; `None`: a plate.
+fn touched(radius_mm: Option<f64>) -> Touched {
+    let micrometres = |millimetres: f64| libm::round(1e3 * millimetres) as i32;
+    match radius_mm {
+        None => Touched::Plate,
+        Some(radius) if radius < 0.0 => Touched::Cup(micrometres(-radius)),
+        Some(radius) => Touched::Ball(micrometres(radius)),
+    }
+}
+
+impl Event {
+    /// The command it is, if it is one.
+    pub fn command(&self) -> Option<Command> {
+        match self.is {
+            Happening::Object => Some(Command::Object(touched(self.radius_mm))),
+            other => other.command(),
+        }
+    }
 }
 
 impl Happening {
-    /// The command it is, if it is one.
-    pub fn command(self) -> Option<Command> {
+    /// The command it is by itself, if it is one.
+    fn command(self) -> Option<Command> {
         match self {
-            Self::Hang | Self::PinReset | Self::Flood => None,
+            Self::Hang | Self::PinReset | Self::Flood | Self::Object => None,
             Self::Tare => Some(Command::Tare),
             Self::Undo => Some(Command::Undo),
             Self::Save => Some(Command::Save { gain: None }),
@@ -103,6 +131,10 @@ pub struct Phase {
     /// Indentation at its end, percent of the largest the design is made for, 0 .. 100; `None`: the plate stays where
     /// it is.
     pub to_percent: Option<f64>,
+    /// Force at its end, newtons, 0 .. 100; the plate keeps it until it is given another goal. `None`: `to_percent` has the goal.
+    pub to_force_n: Option<f64>,
+    /// What touches in this phase: a ball of this radius, millimetres; negative: a cup; `None`: a plate.
+    pub radius_mm: Option<f64>,
 }
 
 /// The transducer's wire broken or shorted for a while.
@@ -205,12 +237,19 @@ impl Scenario {
     }
 
     /// The place in the story at a time in seconds.
-    fn place(&self, time: f64) -> f64 {
+    pub(crate) fn place(&self, time: f64) -> f64 {
         if self.repeats {
             time % self.duration()
         } else {
             time
         }
+    }
+
+    /// Whether its truth is a press in time: it has a force to press with, or an object other than a plate.
+    pub fn is_in_time(&self) -> bool {
+        self.phase
+            .iter()
+            .any(|phase| phase.to_force_n.is_some() || phase.radius_mm.is_some())
     }
 
     /// Indentation at a time in seconds, as a share of the largest, 0 .. 1.
@@ -260,6 +299,32 @@ impl Scenario {
             .map_or(Wiring::Sound, |fault| fault.is)
     }
 
+    /// Refuses a new object while the last one presses.
+    fn check_changes(
+        &self,
+        demand: impl Fn(bool, String, f64, &'static str) -> Result<(), ScenarioError>,
+    ) -> Result<(), ScenarioError> {
+        let (mut pressed, mut last) = (false, None);
+        for (i, phase) in self.phase.iter().enumerate() {
+            if phase.radius_mm != last {
+                let key = format!("phase[{i}].radius_mm");
+                let found = phase.radius_mm.unwrap_or(f64::INFINITY);
+                demand(
+                    !pressed,
+                    key,
+                    found,
+                    "that of the phase before, until it ends at 0",
+                )?;
+            }
+            last = phase.radius_mm;
+            pressed = phase
+                .to_force_n
+                .or(phase.to_percent)
+                .map_or(pressed, |goal| goal > 0.0);
+        }
+        Ok(())
+    }
+
     /// Refuses values that mean nothing.
     fn check(&self) -> Result<(), ScenarioError> {
         let demand = |holds: bool, key: String, found: f64, allowed: &'static str| {
@@ -292,7 +357,18 @@ impl Scenario {
                 let key = format!("phase[{i}].to_percent");
                 demand((0.0..=100.0).contains(&found), key, found, "from 0 to 100")?;
             }
+            if let Some(found) = phase.to_force_n {
+                let key = format!("phase[{i}].to_force_n");
+                let alone = phase.to_percent.is_none();
+                demand(alone, key.clone(), found, "left out where there is to_percent")?;
+                demand((0.0..=100.0).contains(&found), key, found, "from 0 to 100")?;
+            }
+            if let Some(found) = phase.radius_mm {
+                let key = format!("phase[{i}].radius_mm");
+                demand(is_radius(found), key, found, RADIUS)?;
+            }
         }
+        self.check_changes(demand)?;
         for (i, event) in self.event.iter().enumerate() {
             let key = format!("event[{i}].at_ms");
             demand(event.at_ms >= 0.0, key, event.at_ms, "0 or more")?;
@@ -304,6 +380,16 @@ impl Scenario {
                 (event.for_ms.is_none(), "left out for what does not last")
             };
             demand(holds, key, found, allowed)?;
+            if let Some(found) = event.radius_mm {
+                let key = format!("event[{i}].radius_mm");
+                demand(
+                    event.is == Happening::Object,
+                    key.clone(),
+                    found,
+                    "left out but for object",
+                )?;
+                demand(is_radius(found), key, found, RADIUS)?;
+            }
         }
         for (i, fault) in self.wire.iter().enumerate() {
             let key = format!("wire[{i}].from_ms");
@@ -319,6 +405,14 @@ impl Scenario {
         }
         Ok(())
     }
+}
+
+/// What a radius must be.
+const RADIUS: &str = "from 1 to 1000, or from -1000 to -1 for a cup";
+
+/// Whether a radius in millimetres is that of an object.
+fn is_radius(millimetres: f64) -> bool {
+    (1.0..=1000.0).contains(&millimetres.abs())
 }
 
 /// The names of the scenarios in [`folder`], in order.

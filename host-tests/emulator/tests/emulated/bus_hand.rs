@@ -62,6 +62,8 @@ fn phase(name: &str, until: f64, to_percent: Option<f64>, from: f64) -> Phase {
         name: name.to_owned(),
         duration_ms: 1e3 * (until - from),
         to_percent,
+        to_force_n: None,
+        radius_mm: None,
     }
 }
 
@@ -76,6 +78,7 @@ fn scenario(tip: usize) -> Scenario {
         about: format!("tip {tip}"),
         seed: 70 + tip as u64,
         air_kpa: 101.325,
+        design: None,
         phase: if PRESSED.contains(&tip) {
             vec![
                 phase_of("rest", 0.0..PRESS.start, None),

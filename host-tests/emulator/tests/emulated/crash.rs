@@ -64,6 +64,7 @@ fn hello_with(address: u64, instructions: [u16; 2], over: f64, cause: ResetCause
             at_ms: over * 1e3 + f64::from(100 * tenth),
             is,
             for_ms: None,
+            radius_mm: None,
         })
         .collect();
     let plant = design()

@@ -57,6 +57,8 @@ pub(crate) fn phase(name: &str, duration_ms: f64, to_percent: Option<f64>) -> Ph
         name: name.to_owned(),
         duration_ms,
         to_percent,
+        to_force_n: None,
+        radius_mm: None,
     }
 }
 
@@ -66,6 +68,7 @@ fn scenario(tip: usize) -> Scenario {
         about: format!("tip {tip}"),
         seed: 40 + tip as u64,
         air_kpa: 101.325,
+        design: None,
         phase: vec![phase("rest", 1e3 * END, None)],
         wire: vec![],
         event: vec![],

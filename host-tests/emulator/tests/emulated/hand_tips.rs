@@ -197,6 +197,7 @@ fn scenario(tip: usize) -> Scenario {
         about: format!("tip {tip}"),
         seed: 70 + tip as u64,
         air_kpa: 101.325,
+        design: None,
         phase: vec![
             phase("rest", 600.0, None),
             phase("press", 400.0, Some(50.0 + 10.0 * tip as f64)),

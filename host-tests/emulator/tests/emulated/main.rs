@@ -10,6 +10,7 @@ mod feedback;
 mod hand;
 mod hand_tips;
 mod hold;
+mod in_time;
 mod integers;
 mod kernels;
 mod lookup;

@@ -112,6 +112,7 @@ impl Story {
                 at_ms: hold + HANG_AFTER,
                 is: Happening::Hang,
                 for_ms: Some(HANG),
+                radius_mm: None,
             });
         }
         scenario

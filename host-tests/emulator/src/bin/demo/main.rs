@@ -54,7 +54,7 @@ fn main() -> ExitCode {
 
 fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
     let scenario = Scenario::named(&options.scenario)?;
-    let design = FingertipDesign::read(&options.design)?;
+    let design = FingertipDesign::read(&options.design(&scenario))?;
     let mut csv = Output::create(&options.csv)?;
     let mut svg = Output::create(&options.chart)?;
 
@@ -101,9 +101,10 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
             accuracy.indentation_median * 100.0
         ),
         full_scale: plant.full_scale(),
+        static_tables: plant.timed().map(|_| plant.curve().clone()),
         target_percent: TARGET_PERCENT,
     };
-    write_csv(&record.rows, &mut csv)?;
+    write_csv(&record.rows, caption.static_tables.as_ref(), &mut csv)?;
     svg.write_all(chart::svg(&record.rows, &caption)?.as_bytes())?;
     let files: [PathBuf; 2] = [svg.finish()?, csv.finish()?];
 
@@ -125,7 +126,7 @@ fn serve(options: &Options, address: &str) -> Result<(), Box<dyn Error>> {
         repeats: true,
         ..Scenario::named(&options.scenario)?
     };
-    let design = FingertipDesign::read(&options.design)?;
+    let design = FingertipDesign::read(&options.design(&scenario))?;
     let server = Server::bind(address)
         .map_err(|error| format!("--serve {address}: {error}; take another HOST:PORT"))?;
     let address = server.address()?;

@@ -2,6 +2,7 @@
 
 use clap::Parser;
 use emulator::fingertip_design::{default_path, workspace};
+use emulator::scenario::Scenario;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -12,11 +13,11 @@ use std::process::ExitCode;
     name = "cargo demo",
     bin_name = "cargo demo",
     version,
-    after_help = "Examples:\n  cargo demo\n  cargo demo --scenario staircase --design my.toml --out demo\n  \
+    after_help = "Examples:\n  cargo demo\n  cargo demo --scenario regrasp\n  cargo demo --scenario staircase --design my.toml --out demo\n  \
                   cargo demo --serve 127.0.0.1:4000    (and in another terminal: cargo designer monitor tcp:127.0.0.1:4000)"
 )]
 struct Arguments {
-    /// Design file of the fingertip [default: `FINGERTIP_DESIGN`, or the index fingertip]
+    /// Design file of the fingertip [default: the scenario's own, `FINGERTIP_DESIGN`, or the index fingertip]
     #[arg(long, value_name = "FILE")]
     design: Option<PathBuf>,
     /// Scenario: a name in host-tests/scenarios, or a file
@@ -36,8 +37,8 @@ struct Arguments {
 /// What to do.
 #[derive(Clone, Debug)]
 pub(crate) struct Options {
-    /// The design file.
-    pub(crate) design: PathBuf,
+    /// The design file asked for.
+    design: Option<PathBuf>,
     /// The scenario's name or file.
     pub(crate) scenario: String,
     /// Where the chart goes.
@@ -46,6 +47,14 @@ pub(crate) struct Options {
     pub(crate) csv: PathBuf,
     /// Where the serial wire is served instead.
     pub(crate) serve: Option<String>,
+}
+
+impl Options {
+    /// The design file: the one asked for, else the scenario's own, else the default.
+    pub(crate) fn design(&self, scenario: &Scenario) -> PathBuf {
+        let own = scenario.design.as_ref().map(|design| workspace().join(design));
+        self.design.clone().or(own).unwrap_or_else(default_path)
+    }
 }
 
 /// The options given, or the exit code after saying in one line what is wrong with them.
@@ -74,7 +83,7 @@ pub(crate) fn parse() -> Result<Options, ExitCode> {
         .to_string_lossy()
         .into_owned();
     Ok(Options {
-        design: arguments.design.unwrap_or_else(default_path),
+        design: arguments.design,
         scenario: arguments.scenario,
         serve: arguments.serve,
         chart: out.join(format!("{stem}.svg")),

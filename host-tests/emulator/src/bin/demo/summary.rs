@@ -1,7 +1,7 @@
 //! What the run comes to.
 
 use crate::say::say;
-use emulator::accuracy::{RunAccuracy, is_wrong};
+use emulator::accuracy::{RunAccuracy, force_errors, is_wrong};
 use emulator::plant::Plant;
 use emulator::record::{Recording, Row};
 use fingertip::status::{Fault, Status, Warnings};
@@ -25,6 +25,9 @@ pub(crate) fn print(record: &Recording, plant: &Plant, accuracy: &RunAccuracy) {
     }
     print_line("all", accuracy);
     say!("(median errors: percent of reading, from 5 % of full scale up)");
+    if plant.timed().is_some() {
+        print_comparison(record, plant);
+    }
     let count = |wanted: fn(&Status) -> bool| record.rows.iter().filter(|row| wanted(&row.status)).count();
     let ok = count(|status| *status == Status::Ok);
     say!(
@@ -43,6 +46,19 @@ pub(crate) fn print(record: &Recording, plant: &Plant, accuracy: &RunAccuracy) {
         say!(
             "note: the fingertip was not confirmed to be unloaded: this zero needs a tare (cargo demo --scenario long-rest)"
         );
+    }
+}
+
+/// Prints what static tables of a plate make of the same pressure.
+fn print_comparison(record: &Recording, plant: &Plant) {
+    say!("\nmean error of the force / % of the peak force");
+    say!("phase       firmware  static plate tables");
+    for phase in phases(plant) {
+        let of_phase = |row: &&Row| plant.scenario().phase_at(row.time) == phase;
+        let rows = record.rows.iter().filter(of_phase);
+        if let Some([firmware, tables]) = force_errors(rows, plant) {
+            say!("{phase:<10} {firmware:>9.2}  {tables:>19.2}");
+        }
     }
 }
 
