@@ -13,6 +13,7 @@ mod probe {
     use embassy_executor::Spawner;
     use embassy_time::Timer;
     use fingertip::board::Board;
+    use fingertip::status::ResetCause;
     use panic_probe as _;
     use probes::lookup_ways::{INPUTS, SIZES};
 
@@ -33,7 +34,7 @@ mod probe {
         searched();
         others();
         tables();
-        let Board { mut watchdog, .. } = Board::take(false);
+        let Board { mut watchdog, .. } = Board::take(false, ResetCause::Unknown);
         loop {
             watchdog.pet();
             Timer::after_millis(10).await;

@@ -26,7 +26,7 @@ mod probe {
             mut line,
             mut watchdog,
             ..
-        } = Board::take(false);
+        } = Board::take(false, reset_cause);
         let mut sequence = 0_u16;
         for rise in lookup_sweep::inputs(&ImageDesign::PARAMETERS) {
             let report = Report {

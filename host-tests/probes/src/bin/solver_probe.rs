@@ -9,6 +9,7 @@ mod probe {
     use embassy_executor::Spawner;
     use embassy_time::Timer;
     use fingertip::board::Board;
+    use fingertip::status::ResetCause;
     use panic_probe as _;
     use probes::solver_states::{self, DESIGN, INDENTATIONS, LENGTH, Room, SolverState};
     use static_cell::ConstStaticCell;
@@ -30,7 +31,7 @@ mod probe {
             mut line,
             mut watchdog,
             ..
-        } = Board::take(false);
+        } = Board::take(false, ResetCause::Unknown);
         for state in states {
             // The line has no receiver that could refuse.
             let _ = line.write(&state.to_bytes()).await;
