@@ -65,7 +65,7 @@ pub struct InTime {
     /// `P_2` of it, pascals, > 0.
     pub weight_half: f64,
     /// Reduction of the force on a wall that is touched again before it has recovered, over `P_l / P_e`, where `P_l` is the settled pressure
-    /// where the force was last 0: 0 to [`MAX_RETOUCH`].
+    /// where the force was last 0: 0 to `MAX_RETOUCH`.
     pub retouch: f64,
     /// Change of the settled pressure by [`WALL_TEMPERATURE`], over `P_e (1 - P_e / P)`, >= 0.
     pub temperature_gain: f64,
