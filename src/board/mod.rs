@@ -7,6 +7,8 @@ mod converter;
 #[cfg(not(transducer = "ratiometric"))]
 mod i2c;
 mod memory;
+#[cfg(not(feature = "board-nucleo-f429zi"))]
+mod reset_flags;
 #[macro_use]
 mod pins;
 #[cfg(all(transducer = "ratiometric", not(feature = "board-nucleo-f429zi")))]
@@ -31,7 +33,7 @@ mod chip;
 #[path = "nucleo_l432kc.rs"]
 mod chosen;
 #[cfg(feature = "board-nucleo-l432kc")]
-#[path = "ecc_stm32l4.rs"]
+#[path = "ecc_double_word.rs"]
 pub mod ecc;
 
 #[cfg(feature = "board-nucleo-g474re")]
@@ -41,7 +43,7 @@ mod chip;
 #[path = "nucleo_g474re.rs"]
 mod chosen;
 #[cfg(feature = "board-nucleo-g474re")]
-#[path = "ecc_stm32g4.rs"]
+#[path = "ecc_double_word.rs"]
 pub mod ecc;
 
 pub use chosen::{CLOCK, SLOT};

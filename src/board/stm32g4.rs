@@ -10,33 +10,21 @@ use super::chosen::CHANNELS;
 use super::chosen::{OUTPUT, SUPPLY};
 #[cfg(transducer = "ratiometric")]
 use super::pins::Input;
+pub(super) use super::reset_flags::reset_cause;
 #[cfg(transducer = "ratiometric")]
 pub(super) use super::ring::{conversions_left, converter_runs, restart_converter};
-use crate::status::ResetCause;
 #[cfg(transducer = "ratiometric")]
 use embassy_stm32::adc::{Adc, AdcConfig, SampleTime};
 use embassy_stm32::pac;
 #[cfg(transducer = "ratiometric")]
 use embassy_stm32::{Peri, peripherals::ADC1};
 
-/// Why the chip was reset; clears the flags. Every internal reset also pulls the pin, so that one is asked last, and a
-/// brown-out is a power-on too (RM0440 7.1.1).
-pub(super) fn reset_cause() -> ResetCause {
-    let flags = pac::RCC.csr().read();
-    pac::RCC.csr().modify(|register| register.set_rmvf(true));
-    if flags.iwdgrstf() || flags.wwdgrstf() {
-        ResetCause::Watchdog
-    } else if flags.lpwrrstf() {
-        ResetCause::LowPower
-    } else if flags.sftrstf() {
-        ResetCause::Software
-    } else if flags.borrstf() {
-        ResetCause::PowerOn
-    } else if flags.pinrstf() {
-        ResetCause::Pin
-    } else {
-        ResetCause::Unknown
-    }
+/// Start of the region of the calibration, from the start of the flash: its second bank.
+pub(super) const REGION: u32 = 256 * 1024;
+
+/// Start of the bank that a failed read was in, from the start of the flash.
+pub(super) fn failed_bank(register: pac::flash::regs::Eccr) -> u32 {
+    if register.bk_ecc() { REGION } else { 0 }
 }
 
 /// Powers, clocks and calibrates the converter.

@@ -1,11 +1,12 @@
-//! The error correction of the STM32L4's flash, from the manuals alone: nothing here was tried on hardware.
+//! The error correction of the flash of the STM32L4 and the STM32G4, from the manuals alone: nothing here was tried on hardware.
 //!
-//! Each double word has a code beside it. One error is corrected. With two errors, as after an interrupted programming or erasure,
-//! the read gives arbitrary data, `FLASH_ECCR` keeps ECCD and the address, and the flash raises the non-maskable interrupt until
-//! ECCD is cleared (RM0351 3.3.2; RM0394 is taken to say the same for the STM32L432). The interrupt comes some cycles after the
-//! read, and the code continues behind the read. So the reader asks afterwards ([`failed`]), when the handler ([`take_failure`])
-//! has run or is pending.
+//! Each double word has a code beside it. One error is corrected. With two errors, as a double word has whose programming or erasure was
+//! cut, the read gives arbitrary data, `FLASH_ECCR` keeps ECCD and the address, and the flash raises the non-maskable interrupt until ECCD
+//! is cleared (RM0351 3.3.2, and RM0394 is taken to say the same for the STM32L432; RM0440 3.3.4). The interrupt comes some cycles after
+//! the read, and the code continues behind the read. So the reader asks afterwards ([`failed`]), when the handler ([`take_failure`]) has
+//! run or is pending.
 
+use super::chip::{REGION, failed_bank};
 use super::chosen::{CALIBRATION, SLOT};
 use core::sync::atomic::{AtomicBool, Ordering};
 use embassy_stm32::flash::FLASH_BASE;
@@ -40,9 +41,10 @@ pub fn take_failure() -> Result<(), u32> {
     if !register.eccd() {
         return Err(0);
     }
-    let offset = register.addr_ecc();
-    if register.sysf_ecc() || !(CALIBRATION..CALIBRATION + 2 * SLOT).contains(&offset) {
-        return Err(FLASH_BASE as u32 + offset);
+    let place = failed_bank(register) + register.addr_ecc();
+    let calibration = REGION + CALIBRATION;
+    if register.sysf_ecc() || !(calibration..calibration + 2 * SLOT).contains(&place) {
+        return Err(FLASH_BASE as u32 + place);
     }
     MET.store(true, Ordering::Relaxed);
     FLASH.eccr().write(|w| {
