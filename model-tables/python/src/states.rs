@@ -141,7 +141,8 @@ pub(crate) fn table<'py>(
     ))
 }
 
-/// What the chip's tables say at pressure rises: force and indentation column after column, and whether each is beyond them.
+/// What the chip's tables say at pressure rises: force and indentation column after column, then the feedback force where the design's
+/// actuator presses; and whether each is beyond them.
 #[pyfunction]
 pub(crate) fn estimate<'py>(
     python: Python<'py>,
@@ -165,7 +166,13 @@ pub(crate) fn estimate<'py>(
         .collect();
     let force = readings.iter().map(|reading| reading.force.newtons());
     let indentation = readings.iter().map(|reading| reading.indentation.metres() * 1e3);
-    let columns: Vec<f64> = force.chain(indentation).collect();
+    let mut columns: Vec<f64> = force.chain(indentation).collect();
+    if let Some(feedback) = &generated.certified.feedback {
+        let forces = pressure_rise_pa
+            .iter()
+            .map(|&pascals| feedback.lookup(PressureRise::from_pascals(pascals, bits)).newtons());
+        columns.extend(forces);
+    }
     let saturated = readings.iter().map(|reading| reading.saturated).collect();
     Ok((bytes(python, &columns), saturated))
 }

@@ -72,6 +72,16 @@ def test_tables_hold_what_was_asked_and_estimates_are_theirs():
     assert fingertip.estimate(PAPER, 1e6).saturated.all()
 
 
+def test_a_design_with_an_actuator_has_its_force_too():
+    # What `designer loop` gives at 1 mm, solved without tables.
+    estimates = fingertip.estimate(DESIGNS / "haptic-loop.toml", [5471.26963801538, 0.0])
+    assert estimates.force_n[0] == pytest.approx(0.572143163700004, rel=2e-3)
+    assert estimates.indentation_mm[0] == pytest.approx(1.0, rel=2e-3)
+    assert estimates.feedback_force_n is not None
+    assert estimates.feedback_force_n.tolist() == pytest.approx([0.0888814296620953, 0.0], rel=2e-3, abs=1e-6)
+    assert fingertip.estimate(PAPER, [1000.0]).feedback_force_n is None
+
+
 def test_a_wall_that_relaxes_loses_force_while_it_is_held():
     design = fingertip.Design(
         DESIGNS / "index-fingertip.toml", model={"kind": "solid", "through": 1, "along": 24}

@@ -180,6 +180,8 @@ class Estimates:
     indentation_mm: Floats
     #: Whether the pressure is beyond the tables: force and indentation are then lower bounds.
     saturated: Bools
+    #: Force of the feedback actuator, N; None of a design whose actuator does not press, or that has none.
+    feedback_force_n: Floats | None = None
 
 
 def design_of(design: DesignLike) -> Design:
@@ -288,5 +290,6 @@ def estimate(design: DesignLike, pressure_rise_pa: ArrayLike, *, allow_worse: bo
     design = design_of(design)
     rises = _floats(pressure_rise_pa, "pressure_rise_pa")
     raw, saturated = _fingertip.estimate(design.text, design.name, rises, allow_worse)
-    force, depth = columns(raw, 2)
-    return Estimates(np.array(rises), force, depth, np.array(saturated, dtype=np.bool_))
+    outputs = len(raw) // (8 * len(rises)) if rises else 2
+    force, depth, *feedback = columns(raw, outputs)
+    return Estimates(np.array(rises), force, depth, np.array(saturated, dtype=np.bool_), feedback[0] if feedback else None)
