@@ -31,7 +31,7 @@ pub type FirmwareDesign = ImageDesign;
 
 const PARAMETERS: Parameters = Parameters::of(
     DESIGN,
-    TABLES.layout.pressure_fraction_bits,
+    TABLES.layout.fraction_bits,
     PressureRise(TABLES.layout.maximum),
 );
 

@@ -6,6 +6,7 @@
 use fingertip::signal::uncertainty::averaged;
 use fingertip::signal::zero::estimator::WINDOW;
 use model_tables::generate::Generated;
+use model_tables::table::ContactLookup as _;
 use model_tables::table::Reading;
 use model_tables::units::PressureRise;
 use std::fmt::Write as _;
@@ -52,12 +53,12 @@ impl Budget {
         let tables = &generated.certified.tables;
         let transducer = &generated.transducer;
         let constants = generated.transducer();
-        let bits = tables.layout.pressure_fraction_bits;
+        let bits = tables.layout.fraction_bits;
         // Percent of reading that a pascal is worth, from the tables over a hundredth of the rise on either side.
         let sensitivity = rises.map(|rise| {
             let near = (rise / 100).max(1);
             let read = |rise: i32| {
-                let reading = tables.lookup(PressureRise(rise));
+                let reading = tables.contact_at(PressureRise(rise));
                 [f64::from(reading.force.0), f64::from(reading.indentation.0)]
             };
             let above = (rise + near).min(tables.layout.maximum);
@@ -154,7 +155,7 @@ pub(crate) fn rise_where(generated: &Generated, reached: impl Fn(Reading) -> boo
     let (mut low, mut high) = (0, tables.layout.maximum);
     while low < high {
         let middle = low + (high - low) / 2;
-        if reached(tables.lookup(PressureRise(middle))) {
+        if reached(tables.contact_at(PressureRise(middle))) {
             high = middle;
         } else {
             low = middle + 1;

@@ -6,6 +6,7 @@ use fingertip::signal::zero::limits::Limits;
 use model_tables::generate::Generated;
 use model_tables::generate::object::quoted;
 use model_tables::model::own_error::OwnError;
+use model_tables::table::ContactLookup as _;
 use model_tables::units::PressureRise;
 use std::fmt::Write as _;
 
@@ -46,8 +47,8 @@ impl RealUse {
     /// Of a design.
     pub fn of(generated: &Generated) -> Self {
         let tables = &generated.certified.tables;
-        let bits = tables.layout.pressure_fraction_bits;
-        let last = tables.lookup(PressureRise(tables.layout.maximum));
+        let bits = tables.layout.fraction_bits;
+        let last = tables.contact_at(PressureRise(tables.layout.maximum));
         let rises = FORCES.map(|force| {
             rise_where(generated, |reading| {
                 f64::from(reading.force.0) >= 1e6 * force.min(last.force.newtons())
@@ -55,7 +56,7 @@ impl RealUse {
         });
         let budget = Budget::at(generated, rises);
         let read = |pascals: f64| {
-            let reading = tables.lookup(PressureRise::from_pascals(pascals, bits));
+            let reading = tables.contact_at(PressureRise::from_pascals(pascals, bits));
             [reading.force.newtons(), reading.indentation.metres()]
         };
         let pascals = rises.map(|rise| PressureRise(rise).pascals(bits));

@@ -409,7 +409,7 @@ fn the_header_in_c_reads_a_tip_file() {
         format!(
             "tables to {} counts of 1/2^{} Pa, {} words; relaxation 0 object 0 zero {}",
             layout.maximum,
-            layout.pressure_fraction_bits,
+            layout.fraction_bits,
             golden::paper::TABLES.segments.as_flattened().len(),
             u8::from(lines[2].ends_with('1'))
         )

@@ -20,6 +20,7 @@ use model_tables::design_file::DesignFile;
 use model_tables::generate::{self, Generated};
 use model_tables::material::series::WallSeries;
 use model_tables::random::Random;
+use model_tables::table::ContactLookup as _;
 use model_tables::table::Reading;
 use model_tables::table::law::Touched;
 use model_tables::units::PressureRise;
@@ -51,7 +52,7 @@ struct RelaxingImage;
 impl RelaxingImage {
     const PARAMETERS: Parameters = Parameters::of(
         golden::DESIGN,
-        golden::TABLES.layout.pressure_fraction_bits,
+        golden::TABLES.layout.fraction_bits,
         PressureRise(golden::TABLES.layout.maximum),
     );
 }
@@ -69,7 +70,7 @@ impl Design for RelaxingImage {
     }
 
     fn lookup(&self, rise: PressureRise) -> Reading {
-        golden::TABLES.lookup(rise)
+        golden::TABLES.contact_at(rise)
     }
 }
 
@@ -200,13 +201,17 @@ fn what_is_touched_changes_the_answers_bit_for_bit() {
         let expected = objects.blended(plate, touched).expect("an object that it has");
         for count in (0..plate.layout.maximum).step_by(997) {
             let rise = PressureRise(count);
-            assert_eq!(loaded.lookup(rise), expected.lookup(rise), "{touched} {count}");
+            assert_eq!(
+                loaded.lookup(rise),
+                expected.contact_at(rise),
+                "{touched} {count}"
+            );
         }
     }
     // A pen and a ball of one radius are not the same, nor is a ball a plate.
     let force = |touched| {
         let tables = objects.blended(plate, touched).expect("an object that it has");
-        tables.lookup(PressureRise(plate.layout.maximum / 4)).force
+        tables.contact_at(PressureRise(plate.layout.maximum / 4)).force
     };
     let [ball, pen, flat] = [Touched::Ball(5_000), Touched::Cylinder(5_000), Touched::Plate].map(force);
     assert!(ball < pen && pen < flat, "{ball:?} {pen:?} {flat:?}");

@@ -27,7 +27,7 @@
 //!
 //! [`design`] (what the fingertip is) of a [`material`], and the [`object`] that it touches -> [`membrane`] (thin walls) or [`solid`] (walls that bend), with the
 //! [`solver`], which knows no physics -> `model` (either of them behind one interface, and which of them a design needs) ->
-//! [`curve`] (pressure rise -> force and indentation) -> `generate` (fits and certifies) -> [`table`] (integers for the
+//! [`curve`] (pressure rise -> force and indentation) -> `generate` (tables and certificate, by [`certified_lookup`]) -> [`table`] (integers for the
 //! chip, in the quantities of [`units`], beside the [`constants`] of the design), or a [`block`] of bytes that is loaded. A design comes from a file by
 //! `design_file`. Beside it all stands the feedback [`actuator`].
 //!

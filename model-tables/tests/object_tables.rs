@@ -5,6 +5,7 @@ use model_tables::design_file::{Axes, DesignFile};
 use model_tables::generate::from_design;
 use model_tables::model::Fingertip;
 use model_tables::object::{Friction, Object, Shape};
+use model_tables::table::ContactLookup as _;
 use model_tables::table::law::Touched;
 use model_tables::units::PressureRise;
 
@@ -35,11 +36,11 @@ fn tables_of_a_stated_cup_give_its_force_and_indentation() {
         (Touched::Cup(20_000), Touched::Cup(20_000))
     );
     let plate = &generated.certified.tables;
-    let bits = plate.layout.pressure_fraction_bits;
+    let bits = plate.layout.fraction_bits;
     let cup = object.blended(plate, object.start).expect("it begins with it");
     for [kilopascals, percent, millimetres, off, by] in IN_A_CUP {
         let rise = PressureRise::from_pascals(1e3 * kilopascals, bits);
-        let (flat, hollow) = (plate.lookup(rise), cup.lookup(rise));
+        let (flat, hollow) = (plate.contact_at(rise), cup.contact_at(rise));
         let by_force = 100.0 * (flat.force.newtons() / hollow.force.newtons() - 1.0);
         let by_depth = 1e3 * (flat.indentation.metres() - hollow.indentation.metres());
         println!("{kilopascals}: {by_force:+.2} % ({percent:+}), {by_depth:+.3} mm ({millimetres:+})");
@@ -101,7 +102,7 @@ fn a_cylinder_reads_as_quoted() {
     let generated = from_design(against("shape = \"cylinder\"\nradius_mm = 5.0")).expect("tables");
     let object = generated.certified.object.as_ref().expect("of balls");
     let plate = &generated.certified.tables;
-    let bits = plate.layout.pressure_fraction_bits;
+    let bits = plate.layout.fraction_bits;
     let pen = object
         .blended(plate, Touched::Cylinder(5_000))
         .expect("it begins with it");
@@ -110,13 +111,13 @@ fn a_cylinder_reads_as_quoted() {
         let (mut low, mut high) = (0, pen.layout.maximum);
         while high - low > 1 {
             let middle = i32::midpoint(low, high);
-            if pen.lookup(PressureRise(middle)).indentation.metres() < 1e-3 * millimetres {
+            if pen.contact_at(PressureRise(middle)).indentation.metres() < 1e-3 * millimetres {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        let [read, flat] = [&pen, plate].map(|tables| tables.lookup(PressureRise(low)).force.newtons());
+        let [read, flat] = [&pen, plate].map(|tables| tables.contact_at(PressureRise(low)).force.newtons());
         let truth = flat / (1.0 + percent / 100.0);
         let found = 100.0 * (read / truth - 1.0);
         println!(
@@ -155,7 +156,7 @@ fn blends_hold_on_other_domes() {
             ];
         }
         let plate = &generated.certified.tables;
-        let bits = plate.layout.pressure_fraction_bits;
+        let bits = plate.layout.fraction_bits;
         let tables = object
             .blended(plate, Touched::Ball(6_000))
             .expect("a ball that it has");
@@ -173,7 +174,7 @@ fn blends_hold_on_other_domes() {
             if truth.pressure_rise < object.from {
                 continue;
             }
-            let read = tables.lookup(PressureRise::from_pascals(truth.pressure_rise, bits));
+            let read = tables.contact_at(PressureRise::from_pascals(truth.pressure_rise, bits));
             let percent = |read: f64, truth: f64| 100.0 * (read / truth - 1.0).abs();
             let own = [
                 percent(read.force.newtons(), truth.force),

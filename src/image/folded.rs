@@ -54,7 +54,7 @@ macro_rules! folded_design {
 
             #[inline]
             fn lookup(&self, rise: model_tables::units::PressureRise) -> model_tables::table::Reading {
-                $($module)::+::TABLES.lookup(rise)
+                $($module)::+::TABLES.lookup(rise.0).into()
             }
 
             $($more)*

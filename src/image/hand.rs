@@ -99,7 +99,7 @@ macro_rules! of_hand {
     ($module:ident) => {
         Parameters::of_scan(
             generated::$module::DESIGN,
-            generated::$module::TABLES.layout.pressure_fraction_bits,
+            generated::$module::TABLES.layout.fraction_bits,
             PressureRise(generated::$module::TABLES.layout.maximum),
             [PERIOD, SCANS as u32],
         )
@@ -112,7 +112,7 @@ macro_rules! of_hand {
     ($module:ident) => {
         Parameters::of_rounds(
             generated::$module::DESIGN,
-            generated::$module::TABLES.layout.pressure_fraction_bits,
+            generated::$module::TABLES.layout.fraction_bits,
             PressureRise(generated::$module::TABLES.layout.maximum),
             PERIOD,
         )

@@ -41,8 +41,8 @@ macro_rules! object_design {
                 self.maximum = model_tables::table::blend::last_answered(
                     &TABLES.layout,
                     weights,
-                    |rise| TABLES.lookup(rise),
-                    |rise| TABLES.layout.lookup_in(&self.segments, rise),
+                    |rise| TABLES.lookup(rise.0).into(),
+                    |rise| TABLES.layout.lookup_in(&self.segments, rise.0).into(),
                 );
             }
         }
@@ -68,10 +68,11 @@ macro_rules! object_design {
 
             #[inline]
             fn lookup(&self, rise: model_tables::units::PressureRise) -> model_tables::table::Reading {
-                let held = model_tables::units::PressureRise(rise.0.min(self.maximum));
+                let held = rise.0.min(self.maximum);
+                let outputs = $($module)::+::TABLES.layout.lookup_in(&self.segments, held);
                 model_tables::table::Reading {
                     saturated: rise.0 > self.maximum,
-                    ..$($module)::+::TABLES.layout.lookup_in(&self.segments, held)
+                    ..outputs.into()
                 }
             }
 
@@ -110,8 +111,8 @@ macro_rules! object_design {
                         self.last_rise(),
                         model_tables::units::PressureRise(TABLES.layout.maximum),
                     ],
-                    plate: |rise| TABLES.lookup(rise),
-                    ball: |rise| TABLES.layout.lookup_in(&BALL, rise),
+                    plate: |rise| TABLES.lookup(rise.0).into(),
+                    ball: |rise| TABLES.layout.lookup_in(&BALL, rise.0).into(),
                 };
                 Some(lookups.tell(&LAW, self.read.as_ref()?, known))
             }

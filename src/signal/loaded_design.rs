@@ -9,12 +9,12 @@ use model_tables::block::read::TipBlock;
 use model_tables::block::section::SectionKind;
 use model_tables::material::relaxation::MAX_TERMS;
 use model_tables::material::series::WallSeries;
+use model_tables::table::LoadedTables;
 use model_tables::table::Reading;
 use model_tables::table::blend::BlendedTables;
 use model_tables::table::feedback::LoadedFeedback;
 use model_tables::table::known::{KnownContact, ReadPair};
 use model_tables::table::law::Touched;
-use model_tables::table::loaded::LoadedTables;
 use model_tables::table::objects::LoadedObjects;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
@@ -48,7 +48,7 @@ impl<'a> LoadedDesign<'a> {
         let layout = tip.tables.layout();
         let end = PressureRise(layout.maximum);
         let mut design = Self {
-            parameters: Parameters::of(tip.constants, layout.pressure_fraction_bits, end),
+            parameters: Parameters::of(tip.constants, layout.fraction_bits, end),
             tables: tip.tables,
             relaxation: tip.relaxation,
             objects: tip.objects,
@@ -96,7 +96,7 @@ impl Design for LoadedDesign<'_> {
     fn lookup(&self, rise: PressureRise) -> Reading {
         match &self.blended {
             Some(tables) => tables.lookup(rise),
-            None => self.tables.lookup(rise),
+            None => self.tables.lookup(rise.0).into(),
         }
     }
 

@@ -12,6 +12,7 @@ use model_tables::membrane::TensionField;
 use model_tables::membrane::press::{CURVE, Press, SWEEP};
 use model_tables::solid;
 use model_tables::solid::mesh::Elements;
+use model_tables::table::ContactLookup as _;
 use model_tables::units::PressureRise;
 use std::hint::black_box;
 use std::path::Path;
@@ -127,12 +128,12 @@ fn main() {
     let fitted = || generate::tables(&curve, curve.end(), &accuracy, resolution).expect("a shipped design");
     figure("paper-prestretched: curve to certified tables", 1, fitted);
     let tables = fitted().tables;
-    let bits = tables.layout.pressure_fraction_bits;
+    let bits = tables.layout.fraction_bits;
     let last = PressureRise::from_pascals(curve.end().pressure_rise, bits).0;
     figure("paper-prestretched: a lookup", LOOKUPS as usize, || {
         (0..LOOKUPS).fold(0_i64, |sum, k| {
             let rise = PressureRise((i64::from(last) * i64::from(k) / i64::from(LOOKUPS)) as i32);
-            let reading = tables.lookup(black_box(rise));
+            let reading = tables.contact_at(black_box(rise));
             sum + i64::from(reading.force.0) + i64::from(reading.indentation.0)
         })
     });

@@ -26,7 +26,7 @@ pub type DesignTables = model_tables::table::Tables<14, 4>;
 /// Pressure rise -> force and indentation.
 pub const TABLES: DesignTables = model_tables::table::Tables {
     layout: model_tables::table::Layout {
-        pressure_fraction_bits: 5,
+        fraction_bits: 5,
         maximum: 1941504,
         bias: 192,
         octaves: 1,
@@ -34,8 +34,7 @@ pub const TABLES: DesignTables = model_tables::table::Tables {
         powers: model_tables::table::Powers::Four,
         constant: model_tables::table::Constant::Half,
         first_index: 11,
-        force_shift: 0,
-        indentation_shift: 0,
+        shifts: [0, 0],
     },
     segments: [
         [127081731, 69337476, 154599022, 207879503],

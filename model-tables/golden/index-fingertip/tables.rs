@@ -26,7 +26,7 @@ pub type DesignTables = model_tables::table::Tables<10, 4>;
 /// Pressure rise -> force and indentation.
 pub const TABLES: DesignTables = model_tables::table::Tables {
     layout: model_tables::table::Layout {
-        pressure_fraction_bits: 6,
+        fraction_bits: 6,
         maximum: 5308416,
         bias: 16,
         octaves: 2,
@@ -34,8 +34,7 @@ pub const TABLES: DesignTables = model_tables::table::Tables {
         powers: model_tables::table::Powers::Six,
         constant: model_tables::table::Constant::Half,
         first_index: 4,
-        force_shift: 0,
-        indentation_shift: 3,
+        shifts: [0, 3],
     },
     segments: [
         [490879020, 632408918, -472743935, 2147450879],

@@ -26,7 +26,7 @@ pub type DesignTables = model_tables::table::Tables<7, 4>;
 /// Pressure rise -> force and indentation.
 pub const TABLES: DesignTables = model_tables::table::Tables {
     layout: model_tables::table::Layout {
-        pressure_fraction_bits: 5,
+        fraction_bits: 5,
         maximum: 3194880,
         bias: 576,
         octaves: 2,
@@ -34,8 +34,7 @@ pub const TABLES: DesignTables = model_tables::table::Tables {
         powers: model_tables::table::Powers::Four,
         constant: model_tables::table::Constant::Half,
         first_index: 5,
-        force_shift: 0,
-        indentation_shift: 0,
+        shifts: [0, 0],
     },
     segments: [
         [480660739, 70386266, 312868580, 55245110],

@@ -26,7 +26,7 @@ pub type DesignTables = model_tables::table::Tables<8, 4>;
 /// Pressure rise -> force and indentation.
 pub const TABLES: DesignTables = model_tables::table::Tables {
     layout: model_tables::table::Layout {
-        pressure_fraction_bits: 6,
+        fraction_bits: 6,
         maximum: 524287,
         bias: 44,
         octaves: 2,
@@ -34,8 +34,7 @@ pub const TABLES: DesignTables = model_tables::table::Tables {
         powers: model_tables::table::Powers::Four,
         constant: model_tables::table::Constant::Half,
         first_index: 6,
-        force_shift: 0,
-        indentation_shift: 0,
+        shifts: [0, 0],
     },
     segments: [
         [117314243, 186253381, 59176162, 60815057],

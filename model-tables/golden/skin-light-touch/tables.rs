@@ -26,7 +26,7 @@ pub type DesignTables = model_tables::table::Tables<8, 4>;
 /// Pressure rise -> force and indentation.
 pub const TABLES: DesignTables = model_tables::table::Tables {
     layout: model_tables::table::Layout {
-        pressure_fraction_bits: 8,
+        fraction_bits: 8,
         maximum: 684032,
         bias: 22,
         octaves: 2,
@@ -34,8 +34,7 @@ pub const TABLES: DesignTables = model_tables::table::Tables {
         powers: model_tables::table::Powers::Six,
         constant: model_tables::table::Constant::Half,
         first_index: 6,
-        force_shift: 5,
-        indentation_shift: 0,
+        shifts: [5, 0],
     },
     segments: [
         [540628162, 94044757, 411630676, -52628832],

@@ -159,7 +159,7 @@ pub(crate) fn estimate<'py>(
         )));
     }
     let tables = &generated.certified.tables;
-    let bits = tables.layout.pressure_fraction_bits;
+    let bits = tables.layout.fraction_bits;
     let readings: Vec<_> = pressure_rise_pa
         .iter()
         .map(|&pascals| tables.lookup(PressureRise::from_pascals(pascals, bits)))

@@ -10,7 +10,7 @@ pub mod section;
 #[cfg(feature = "std")]
 pub mod write;
 
-use crate::table::error::TablesError;
+use crate::table::TablesError;
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use section::SectionKind;

@@ -8,9 +8,9 @@ use super::{
 };
 use crate::constants::{DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions};
 use crate::material::series::{SeriesStep, WallSeries};
+use crate::table::LoadedTables;
 use crate::table::feedback::{FeedbackScale, LoadedFeedback};
 use crate::table::law::{BlendLaw, Touched};
-use crate::table::loaded::LoadedTables;
 use crate::table::objects::LoadedObjects;
 use crate::table::{Constant, Layout, Powers};
 
@@ -408,7 +408,7 @@ const NO_CONSTANTS: DesignConstants = DesignConstants {
 
 /// To be filled.
 const NO_LAYOUT: Layout = Layout {
-    pressure_fraction_bits: 0,
+    fraction_bits: 0,
     maximum: 0,
     bias: 0,
     octaves: 0,
@@ -416,8 +416,7 @@ const NO_LAYOUT: Layout = Layout {
     powers: Powers::Two,
     constant: Constant::Half,
     first_index: 0,
-    force_shift: 0,
-    indentation_shift: 0,
+    shifts: [0, 0],
 };
 
 /// To be filled.

@@ -118,7 +118,7 @@ pub fn zero<V: Visit>(value: &mut ZeroAssumptions, visit: &mut V) -> Result<(), 
 /// # Errors
 /// The visitor's.
 pub fn layout<V: Visit>(value: &mut Layout, visit: &mut V) -> Result<(), V::Stop> {
-    visit.field("pressure_fraction_bits", &mut value.pressure_fraction_bits)?;
+    visit.field("pressure_fraction_bits", &mut value.fraction_bits)?;
     visit.field("maximum", &mut value.maximum)?;
     visit.field("bias", &mut value.bias)?;
     visit.field("octaves", &mut value.octaves)?;
@@ -126,8 +126,8 @@ pub fn layout<V: Visit>(value: &mut Layout, visit: &mut V) -> Result<(), V::Stop
     visit.field("powers", &mut value.powers)?;
     visit.field("constant", &mut value.constant)?;
     visit.field("first_index", &mut value.first_index)?;
-    visit.field("force_shift", &mut value.force_shift)?;
-    visit.field("indentation_shift", &mut value.indentation_shift)
+    visit.field("force_shift", &mut value.shifts[0])?;
+    visit.field("indentation_shift", &mut value.shifts[1])
 }
 
 /// The calibration.

@@ -7,6 +7,7 @@ use crate::constants::{
     AirReference, DesignConstants, Quantity, Transducer, TransducerKind, ZeroAssumptions,
 };
 use crate::material::series::{Factor, SeriesStep, TermStep, WallSeries};
+use crate::table::ContactLookup as _;
 use crate::table::feedback::FeedbackScale;
 use crate::table::law::{BlendLaw, Touched};
 use crate::table::{Constant, Layout, Powers};
@@ -35,7 +36,7 @@ const CONSTANTS: DesignConstants = DesignConstants {
 
 /// One segment of two octaves; both outputs are near the rise.
 const LAYOUT: Layout = Layout {
-    pressure_fraction_bits: 2,
+    fraction_bits: 2,
     maximum: 11,
     bias: 4,
     octaves: 1,
@@ -43,8 +44,7 @@ const LAYOUT: Layout = Layout {
     powers: Powers::Two,
     constant: Constant::Whole,
     first_index: 28,
-    force_shift: 4,
-    indentation_shift: 4,
+    shifts: [4, 4],
 };
 
 /// Force and indentation are the rise: `U/2 - 4 + U (1/2 - s)` in octaves that end at `U` = 16 and 8.
@@ -148,7 +148,7 @@ fn a_feedback_force_is_written_and_read() {
     let feedback = tip.feedback.expect("it has one");
     for rise in -1..=12 {
         let force = feedback.lookup(PressureRise(rise)).0;
-        assert_eq!(force, 50 + tip.tables.lookup(PressureRise(rise)).force.0);
+        assert_eq!(force, 50 + tip.tables.contact_at(PressureRise(rise)).force.0);
     }
     assert!(tip.sections().any(|kind| kind == SectionKind::Feedback));
     let plain = DATA.write();
@@ -236,7 +236,7 @@ fn what_is_written_is_read() {
         );
         assert_eq!(*tip.tables.layout(), LAYOUT);
         for rise in [-5, 0, 1, 3, 4, 7, 11, 12, i32::MAX] {
-            let reading = tip.tables.lookup(PressureRise(rise));
+            let reading = tip.tables.contact_at(PressureRise(rise));
             let held = rise.clamp(0, 11);
             assert_eq!((reading.force.0, reading.indentation.0), (held, held), "{rise}");
             assert_eq!((reading.negative, reading.saturated), (rise < 0, rise > 11));

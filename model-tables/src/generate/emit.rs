@@ -2,17 +2,18 @@
 //!
 //! Rust source and the binary block give the same fields: those that [`crate::block::section`] describes.
 
-use super::TABLE_VERSION;
 use super::design::{Generated, integer};
 use super::feedback::CertifiedFeedback;
 use super::object::ObjectTables;
-use super::owned::OwnedTables;
+use super::{OwnedTables, TABLE_VERSION};
 use crate::block::StoredCalibration;
 use crate::block::field::{Field, Visit};
 use crate::block::section;
 use crate::block::write::{ObjectData, TipData};
 use crate::constants::{DesignConstants, ZeroAssumptions};
 use crate::material::series::{SeriesStep, WallSeries};
+use crate::table::Layout;
+use crate::table::feedback::words_per_segment;
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
 
@@ -78,7 +79,7 @@ impl Generated {
     /// Its wall in time as the chip knows it, if it relaxes.
     pub fn wall(&self) -> Option<WallSeries> {
         let relaxation = self.design.relaxation.as_ref()?;
-        let bits = self.certified.tables.layout.pressure_fraction_bits;
+        let bits = self.certified.tables.layout.fraction_bits;
         let rules = self.in_time?;
         let counts = |pascals: f64| PressureRise::from_pascals(pascals, bits).0.max(1).unsigned_abs();
         let sixteen_bits = |value: f64| libm::round(65_536.0 * value) as u32;
@@ -171,7 +172,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
          pub const TABLES: DesignTables = model_tables::table::Tables {{\n\
          \x20   layout: model_tables::table::Layout {{"
     )?;
-    section::layout(&mut tables.layout.clone(), &mut Source { out, indent: 8 })?;
+    write_layout(tables.layout, &mut Source { out, indent: 8 })?;
     writeln!(out, "    }},\n    segments: [")?;
     write_segments(tables, 8, out)?;
     writeln!(out, "    ],\n}};")?;
@@ -185,6 +186,19 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
         Some(wall) => write_wall(wall, out),
         None => Ok(()),
     }
+}
+
+/// The fields of a layout: a block has each shift as a field of its own.
+fn write_layout(mut layout: Layout, source: &mut Source<'_>) -> fmt::Result {
+    source.field("fraction_bits", &mut layout.fraction_bits)?;
+    source.field("maximum", &mut layout.maximum)?;
+    source.field("bias", &mut layout.bias)?;
+    source.field("octaves", &mut layout.octaves)?;
+    source.field("halvings", &mut layout.halvings)?;
+    source.field("powers", &mut layout.powers)?;
+    source.field("constant", &mut layout.constant)?;
+    source.field("first_index", &mut layout.first_index)?;
+    source.field("shifts", &mut layout.shifts)
 }
 
 fn write_wall(mut wall: WallSeries, out: &mut String) -> fmt::Result {
@@ -253,7 +267,7 @@ fn write_objects(object: &ObjectTables, out: &mut String) -> fmt::Result {
 
 fn write_feedback(feedback: &CertifiedFeedback, out: &mut String) -> fmt::Result {
     const OF: &str = "model_tables::table::feedback";
-    let width = feedback.layout.feedback_words();
+    let width = words_per_segment(&feedback.layout);
     let segments = feedback.words.len() / width;
     writeln!(
         out,
@@ -307,7 +321,7 @@ fn first_counts(tables: &OwnedTables) -> Vec<i32> {
             let (mut low, mut high) = (0, layout.maximum);
             while low < high {
                 let middle = low + (high - low) / 2;
-                let number = layout.place(PressureRise(middle)).number;
+                let number = layout.place(middle).number;
                 if number - layout.first_index <= index as u32 {
                     high = middle;
                 } else {

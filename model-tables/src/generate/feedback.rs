@@ -1,17 +1,11 @@
 //! Tables of the feedback actuator's force, in the same layout as the tables of force and indentation.
 
-use super::candidate::{Candidate, Work, with_force};
-use super::certify::force_errors;
-use super::owned::OwnedTables;
-use super::quantise::Coefficients;
-use super::shape::Segmentation;
-use super::tally::Errors;
-use super::truth::Truth;
+use super::{Errors, OwnedTables, curve_point};
 use crate::curve::Curve;
-use crate::design_file::Accuracy;
-use crate::table::feedback::{FeedbackScale, MAX_WORDS};
+use crate::table::feedback::{FeedbackScale, MAX_WORDS, force_at, words_per_segment};
 use crate::table::{Constant, Layout};
 use crate::units::{Micronewtons, PressureRise};
+use certified_lookup::generate::{AccuracyGoal, Coefficients, single_beside};
 
 /// The force of an actuator over a press.
 #[derive(Clone, Debug)]
@@ -29,7 +23,7 @@ pub struct CertifiedFeedback {
     pub layout: Layout,
     /// How a sum is read.
     pub scale: FeedbackScale,
-    /// The words, [`Layout::feedback_words`] a segment, the segment of the largest inputs first.
+    /// The words, [`words_per_segment`] a segment, the segment of the largest inputs first.
     pub words: Vec<i32>,
     /// Errors of the force gained since rest on every input, micronewtons.
     pub errors: Errors,
@@ -45,55 +39,47 @@ impl CertifiedFeedback {
 
     /// The words of one segment.
     pub fn segment(&self, index: usize) -> &[i32] {
-        let width = self.layout.feedback_words();
+        let width = words_per_segment(&self.layout);
         &self.words[index * width..(index + 1) * width]
     }
 
     /// The force at a pressure rise, bit for bit as on the chip.
     pub fn lookup(&self, rise: PressureRise) -> Micronewtons {
-        let place = self.layout.place(rise);
+        let place = self.layout.place(rise.0);
         let index = place.number.wrapping_sub(self.layout.first_index) as usize;
-        let last = self.words.len() / self.layout.feedback_words() - 1;
-        self.layout
-            .feedback(self.scale, self.segment(index.min(last)), place)
+        let last = self.words.len() / words_per_segment(&self.layout) - 1;
+        force_at(&self.layout, self.scale, self.segment(index.min(last)), place)
     }
 }
 
 impl FeedbackCurve {
-    /// Tables beside others, over whose inputs `truth` is, if there are some that meet the accuracy of the force.
+    /// Tables beside others, if there are some that meet the accuracy of the force.
     pub(super) fn tables(
         &self,
         beside: &OwnedTables,
-        truth: &Truth,
         end_rise: f64,
-        accuracy: &Accuracy,
+        goal: &AccuracyGoal,
     ) -> Option<CertifiedFeedback> {
         if beside.words.len() > MAX_WORDS {
             return None;
         }
-        let end = self.gained.at_pressure_rise(end_rise);
-        let own = Truth::new(&self.gained, end, truth.fraction_bits, truth.maximum);
-        let work = Work::default();
-        let candidate = Candidate {
-            truth: &own,
-            segmentation: Segmentation::of(beside.layout)?,
-            error: 0.0,
-            work: &work,
-        };
-        let (shift, sums) = candidate.force_alone(accuracy)?;
+        let end = curve_point(self.gained.at_pressure_rise(end_rise));
+        let gained = single_beside(beside, &self.gained, end, goal)?;
         let layout = beside.layout;
-        let paired = with_force(beside, shift, &sums);
-        let errors = force_errors(&paired, &own, accuracy).filter(Errors::holds)?;
-        let comparison_error = own.deviation(&self.gained);
-        (comparison_error <= 1e-4 * errors.allowed_percent).then(|| CertifiedFeedback {
+        Some(CertifiedFeedback {
             layout,
             scale: FeedbackScale {
-                shift,
+                shift: gained.shift,
                 at_rest: libm::round(self.at_rest * 1e6) as i32,
             },
-            words: sums.iter().rev().flat_map(|sum| words(&layout, sum)).collect(),
-            errors,
-            comparison_error,
+            words: gained
+                .sums
+                .iter()
+                .rev()
+                .flat_map(|sum| words(&layout, sum))
+                .collect(),
+            errors: gained.errors,
+            comparison_error: gained.comparison_error,
         })
     }
 }

@@ -2,16 +2,13 @@
 //! reference is a ball, or the cup that a design states. A weight converts one ball to another within one percent, but a ball to a
 //! cup only within 5 or 10 percent.
 
-use super::candidate::{Candidate, Work};
-use super::owned::OwnedTables;
-use super::shape::Segmentation;
-use super::truth::Truth;
+use super::{OwnedTables, curve_point};
 use crate::curve::Contact;
-use crate::design_file::Accuracy;
 use crate::table::blend::{MAX_WORDS, blend, last_answered};
 use crate::table::law::{BlendLaw, LAW_BITS, Touched, WEIGHT_BITS, Weights};
-use crate::table::loaded::LoadedTables;
+use crate::table::{ContactLookup as _, LoadedTables};
 use crate::units::PressureRise;
+use certified_lookup::generate::{AccuracyGoal, beside, lowest_segment_end};
 
 mod band;
 mod press;
@@ -84,8 +81,8 @@ impl ObjectTables {
 /// A blend up to the last rise that it answers.
 fn answered(plate: &OwnedTables, ball: &OwnedTables, weights: &Weights) -> OwnedTables {
     let mut tables = blended(plate, ball, weights);
-    let plain = |rise| plate.lookup(rise);
-    tables.layout.maximum = last_answered(&plate.layout, weights, plain, |rise| tables.lookup(rise));
+    let plain = |rise| plate.contact_at(rise);
+    tables.layout.maximum = last_answered(&plate.layout, weights, plain, |rise| tables.contact_at(rise));
     tables
 }
 
@@ -104,34 +101,26 @@ impl SolvedObjects {
         &self,
         plate: &OwnedTables,
         end: Contact,
-        truth: &Truth,
-        accuracy: &Accuracy,
+        goal: &AccuracyGoal,
     ) -> Option<ObjectTables> {
         if plate.layout.halvings > 0 || plate.words.len() > MAX_WORDS {
             return None;
         }
-        let accuracy = Accuracy {
-            force_percent_of_reading: REFERENCE_ACCURACY * accuracy.force_percent_of_reading,
-            indentation_percent_of_reading: REFERENCE_ACCURACY * accuracy.indentation_percent_of_reading,
-            ..*accuracy
+        let goal = AccuracyGoal {
+            percent_of_reading: goal
+                .percent_of_reading
+                .map(|percent| REFERENCE_ACCURACY * percent),
+            ..*goal
         };
-        let work = Work::default();
-        let own = Truth::new(&self.reference_beyond, end, truth.fraction_bits, truth.maximum);
-        let candidate = Candidate {
-            truth: &own,
-            segmentation: Segmentation::of(plate.layout)?,
-            error: 0.0,
-            work: &work,
-        };
+        let tables_from = |before| beside(plate, &self.reference_beyond, curve_point(end), before, &goal);
         let ball = if self.reference.is_cup() {
             // First contact is shared with the plate, and a cup has less indentation there: its tables begin below that, and a blend
             // raises them by less than a micrometre.
-            let cup = candidate.beside(plate, [0; 2], &accuracy)?;
-            blended(plate, &cup, &Weights::REFERENCE)
+            blended(plate, &tables_from([0; 2])?, &Weights::REFERENCE)
         } else {
-            candidate.beside(plate, candidate.shared_end(plate)?, &accuracy)?
+            tables_from(lowest_segment_end(plate)?)?
         };
-        let mut law = self.law(truth.fraction_bits, truth.maximum);
+        let mut law = self.law(plate.layout.fraction_bits, plate.layout.maximum);
         let errors = loop {
             let errors: Vec<BlendError> = self
                 .objects
@@ -206,7 +195,7 @@ impl SolvedObjects {
     }
 
     fn error(&self, tables: &OwnedTables, object: &SolvedObject) -> BlendError {
-        let bits = tables.layout.pressure_fraction_bits;
+        let bits = tables.layout.fraction_bits;
         let last = PressureRise(tables.layout.maximum).pascals(bits);
         let last = last.min(object.curve.end().pressure_rise);
         let errors = |last: f64| {
@@ -216,7 +205,7 @@ impl SolvedObjects {
                 indentation_percent: 0.0,
             };
             for rise in solved::rises(self.from, last) {
-                let read = tables.lookup(PressureRise::from_pascals(rise, bits));
+                let read = tables.contact_at(PressureRise::from_pascals(rise, bits));
                 let truth = object.curve.at_pressure_rise(rise);
                 let percent = |got: f64, truth: f64| 100.0 * (got / truth - 1.0).abs();
                 found.force_percent = found

@@ -6,12 +6,10 @@
 //! prevent this, a segment's constant is raised until the segment begins where the one below ends. The lowest segment, first
 //! contact, is the same for plate and ball, and so for every blend: zero reads zero.
 
-use super::error::TablesError;
 use super::law::{WEIGHT_BITS, Weights};
-use super::loaded::LoadedTables;
-use super::segments::Segments;
-use super::{Constant, Layout, Reading};
+use super::{Constant, Layout, LoadedTables, Reading, TablesError};
 use crate::units::PressureRise;
+use certified_lookup::Segments;
 
 /// Most words of a table that is blended at run time: of 40 segments, the most with two octaves or one each, 6 words each.
 pub const MAX_WORDS: usize = 240;
@@ -44,14 +42,14 @@ pub fn blend(layout: &Layout, plate: &[i32], ball: &[i32], weights: &Weights, bl
             let octave = layout.octave_shift(number);
             let [force, indentation] = layout.sums(words, mantissa);
             [
-                force.wrapping_shr(octave + layout.force_shift),
-                indentation.wrapping_shr(octave + layout.indentation_shift),
+                force.wrapping_shr(octave + layout.shifts[0]),
+                indentation.wrapping_shr(octave + layout.shifts[1]),
             ]
         };
         if let Some(ends) = below {
             let starts = at(own, number, first);
             let octave = layout.octave_shift(number);
-            let shifts = [octave + layout.force_shift, octave + layout.indentation_shift];
+            let shifts = [octave + layout.shifts[0], octave + layout.shifts[1]];
             raise(layout.constant, starts, ends, shifts, own);
         }
         // What the segment above must not begin below.
@@ -199,7 +197,7 @@ impl BlendedTables {
         blended.layout.maximum = last_answered(
             layout,
             weights,
-            |rise| plate.lookup(rise),
+            |rise| plate.lookup(rise.0).into(),
             |rise| blended.lookup(rise),
         );
         Ok(blended)
@@ -212,7 +210,8 @@ impl BlendedTables {
             layout: self.layout,
             words,
         }
-        .lookup(rise)
+        .lookup(rise.0)
+        .into()
     }
 
     /// The last rise that is no bound.

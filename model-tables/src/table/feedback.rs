@@ -4,11 +4,9 @@
 //! segment has the constant term in its first word (with [`Constant::Half`] also the linear coefficient). Then two coefficients
 //! follow per word, the lower power in the upper half. The table has the force gained since rest; the force at rest is added.
 
-use super::error::TablesError;
-use super::rising::{Output, rises_in};
-use super::segments::Segments;
-use super::{Constant, Layout, Place, product};
+use super::{Constant, Layout, TablesError};
 use crate::units::{Micronewtons, PressureRise};
+use certified_lookup::{Place, Segments, product, rises};
 
 /// Most words of the tables that these stand beside.
 pub const MAX_WORDS: usize = super::blend::MAX_WORDS;
@@ -22,7 +20,7 @@ pub struct FeedbackScale {
     pub at_rest: i32,
 }
 
-/// Tables of a feedback force: `SEGMENTS` segments of `WORDS` words, as [`Layout::feedback_words`] says.
+/// Tables of a feedback force: `SEGMENTS` segments of `WORDS` words, as [`words_per_segment`] says.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct FeedbackTables<const SEGMENTS: usize, const WORDS: usize> {
     /// How a sum is read.
@@ -39,50 +37,45 @@ impl<const SEGMENTS: usize, const WORDS: usize> FeedbackTables<SEGMENTS, WORDS> 
     #[inline(always)]
     #[allow(clippy::inline_always)] // so that the layout folds into the code, and one pre-lookup is enough for all outputs
     pub fn lookup(&self, layout: &Layout, rise: PressureRise) -> Micronewtons {
-        let place = layout.place(rise);
+        let place = layout.place(rise.0);
         let index = place.number.wrapping_sub(layout.first_index) as usize;
-        layout.feedback(self.scale, &self.segments[index.min(SEGMENTS - 1)], place)
+        force_at(layout, self.scale, &self.segments[index.min(SEGMENTS - 1)], place)
     }
 }
 
-impl Layout {
-    /// Words of a segment of a feedback force.
-    pub const fn feedback_words(&self) -> usize {
-        1 + self.feedback_coefficients().div_ceil(2)
-    }
+/// Words of a segment of a feedback force.
+pub const fn words_per_segment(layout: &Layout) -> usize {
+    // Coefficients beside the first word.
+    let coefficients = match layout.constant {
+        Constant::Half => layout.powers.terms() - 1,
+        Constant::Whole => layout.powers.terms(),
+    };
+    1 + coefficients.div_ceil(2)
+}
 
-    /// Coefficients beside the first word.
-    const fn feedback_coefficients(&self) -> usize {
-        match self.constant {
-            Constant::Half => self.powers.terms() - 1,
-            Constant::Whole => self.powers.terms(),
-        }
+/// The force at a place, from its segment's words.
+#[inline(always)]
+#[allow(clippy::inline_always)] // part of the lookup
+pub(crate) fn force_at(layout: &Layout, scale: FeedbackScale, words: &[i32], place: Place) -> Micronewtons {
+    let [linear, second, third, fourth] = layout.factors(place.mantissa);
+    // Nothing is ever missing in generated tables; this keeps panics out.
+    let word = |at: usize| words.get(at).copied().unwrap_or(0);
+    let coefficient = |n: usize| beside(word(1 + n / 2), n);
+    let constant = word(0);
+    let (mut sum, first) = match layout.constant {
+        Constant::Half => (constant.wrapping_add(product(linear, constant as i16)), 0),
+        Constant::Whole => (constant.wrapping_add(product(linear, coefficient(0))), 1),
+    };
+    sum = sum.wrapping_add(product(second, coefficient(first)));
+    if layout.powers.terms() > 2 {
+        sum = sum.wrapping_add(product(third, coefficient(first + 1)));
     }
-
-    /// The force at a place, from its segment's words.
-    #[inline(always)]
-    #[allow(clippy::inline_always)] // part of the lookup
-    pub(crate) fn feedback(&self, scale: FeedbackScale, words: &[i32], place: Place) -> Micronewtons {
-        let [linear, second, third, fourth] = self.factors(place.mantissa);
-        // Nothing is ever missing in generated tables; this keeps panics out.
-        let word = |at: usize| words.get(at).copied().unwrap_or(0);
-        let coefficient = |n: usize| beside(word(1 + n / 2), n);
-        let constant = word(0);
-        let (mut sum, first) = match self.constant {
-            Constant::Half => (constant.wrapping_add(product(linear, constant as i16)), 0),
-            Constant::Whole => (constant.wrapping_add(product(linear, coefficient(0))), 1),
-        };
-        sum = sum.wrapping_add(product(second, coefficient(first)));
-        if self.powers.terms() > 2 {
-            sum = sum.wrapping_add(product(third, coefficient(first + 1)));
-        }
-        if self.powers.terms() > 3 {
-            sum = sum.wrapping_add(product(fourth, coefficient(first + 2)));
-        }
-        let octave = self.octave_shift(place.number);
-        let gained = sum.wrapping_shr(octave).wrapping_shr(scale.shift);
-        Micronewtons(gained.saturating_add(scale.at_rest))
+    if layout.powers.terms() > 3 {
+        sum = sum.wrapping_add(product(fourth, coefficient(first + 2)));
     }
+    let octave = layout.octave_shift(place.number);
+    let gained = sum.wrapping_shr(octave).wrapping_shr(scale.shift);
+    Micronewtons(gained.saturating_add(scale.at_rest))
 }
 
 /// The coefficient of this number in its word.
@@ -105,7 +98,7 @@ pub struct LoadedFeedback<'a> {
 }
 
 impl<'a> LoadedFeedback<'a> {
-    /// Tables beside checked ones of this layout, [`Layout::feedback_words`] words a segment, the segment of the largest inputs first.
+    /// Tables beside checked ones of this layout, [`words_per_segment`] words a segment, the segment of the largest inputs first.
     ///
     /// # Errors
     /// [`TablesError`]: such tables may answer wrongly.
@@ -118,7 +111,7 @@ impl<'a> LoadedFeedback<'a> {
         if scale.shift > 31 {
             return Err(TablesError::Layout("feedback_shift"));
         }
-        let (needed, found) = (segments * layout.feedback_words(), words.len());
+        let (needed, found) = (segments * words_per_segment(layout), words.len());
         if needed != found || segments * layout.words() > MAX_WORDS {
             return Err(TablesError::Words { needed, found });
         }
@@ -146,18 +139,18 @@ impl<'a> LoadedFeedback<'a> {
         }
         let paired = Segments {
             layout: Layout {
-                force_shift: scale.shift,
+                shifts: [scale.shift, layout.shifts[1]],
                 ..*layout
             },
             words: paired.get(..segments * layout.words()).unwrap_or(&[]),
         };
-        rises_in(&paired, &[Output::Force])?;
+        rises(&paired, &[0])?;
         Ok(loaded)
     }
 
     /// The words of the segment of this index, the last one's for any higher.
     fn segment(&self, index: usize) -> [i32; Layout::MAX_WORDS] {
-        let width = self.layout.feedback_words();
+        let width = words_per_segment(&self.layout);
         let last = (self.words.len() / width).saturating_sub(1);
         let mut words = [0; Layout::MAX_WORDS];
         let segment = self.words.iter().skip(index.min(last) * width).take(width);
@@ -174,9 +167,9 @@ impl<'a> LoadedFeedback<'a> {
 
     /// The force at a pressure rise. Total: every `i32` has an answer.
     pub fn lookup(&self, rise: PressureRise) -> Micronewtons {
-        let place = self.layout.place(rise);
+        let place = self.layout.place(rise.0);
         let index = place.number.wrapping_sub(self.layout.first_index) as usize;
-        self.layout.feedback(self.scale, &self.segment(index), place)
+        force_at(&self.layout, self.scale, &self.segment(index), place)
     }
 }
 
@@ -196,7 +189,7 @@ mod tests {
     }
 
     const LAYOUT: Layout = Layout {
-        pressure_fraction_bits: 2,
+        fraction_bits: 2,
         maximum: 11,
         bias: 4,
         octaves: 1,
@@ -204,8 +197,7 @@ mod tests {
         powers: Powers::Two,
         constant: Constant::Whole,
         first_index: 28,
-        force_shift: 0,
-        indentation_shift: 0,
+        shifts: [0; 2],
     };
     const SCALE: FeedbackScale = FeedbackScale { shift: 4, at_rest: 7 };
     const TABLES: FeedbackTables<2, 2> = FeedbackTables {
@@ -258,12 +250,11 @@ mod tests {
     #[test]
     fn two_coefficients_share_a_word() {
         let words = |powers, constant| {
-            Layout {
+            words_per_segment(&Layout {
                 powers,
                 constant,
                 ..LAYOUT
-            }
-            .feedback_words()
+            })
         };
         let counts = [Powers::Two, Powers::Four, Powers::Six, Powers::Eight]
             .map(|powers| [words(powers, Constant::Half), words(powers, Constant::Whole)]);

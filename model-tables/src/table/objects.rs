@@ -1,11 +1,9 @@
 //! Tables of other objects than a plate that are known at run time only.
 
-use super::Reading;
 use super::blend::BlendedTables;
-use super::error::TablesError;
 use super::known::{KnownContact, Lookups, ReadPair};
 use super::law::{BlendLaw, Touched};
-use super::loaded::LoadedTables;
+use super::{ContactLookup as _, LoadedTables, Reading, TablesError};
 use crate::units::{Nanometres, PressureRise};
 
 /// The reference ball's tables beside those of the plate, and the law of the weights.
@@ -64,8 +62,8 @@ impl<'a> LoadedObjects<'a> {
         let lookups = Lookups {
             touched,
             last: [last, PressureRise(self.plate.layout().maximum)],
-            plate: |rise| self.plate.lookup(rise),
-            ball: |rise| self.ball.lookup(rise),
+            plate: |rise| self.plate.contact_at(rise),
+            ball: |rise| self.ball.contact_at(rise),
         };
         lookups.tell(&self.law, read, known)
     }

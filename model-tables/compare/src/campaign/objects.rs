@@ -10,6 +10,7 @@ use model_tables::generate::object::{Band, quoted};
 use model_tables::generate::{self, GenerateError, Generated};
 use model_tables::object::Friction;
 use model_tables::random::Random;
+use model_tables::table::ContactLookup as _;
 use model_tables::units::PressureRise;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -208,12 +209,12 @@ impl BandTally {
         for index in 0..count {
             let object = world.draw(seed, index, [all.from, all.to]);
             let truth = object.truth;
-            let bits = tables.layout.pressure_fraction_bits;
-            let reading = tables.lookup(PressureRise::from_pascals(truth.pressure_rise, bits));
+            let bits = tables.layout.fraction_bits;
+            let reading = tables.contact_at(PressureRise::from_pascals(truth.pressure_rise, bits));
             let read = [reading.force.newtons(), reading.indentation.metres()];
             let mut random = Random(seed.wrapping_add(index) ^ 0x5bd1_e995);
             let moved = deviation * random.normal() + random.uniform(-bound, bound);
-            let noisy = tables.lookup(PressureRise::from_pascals(truth.pressure_rise + moved, bits));
+            let noisy = tables.contact_at(PressureRise::from_pascals(truth.pressure_rise + moved, bits));
             let noisy = [noisy.force.newtons(), noisy.indentation.metres()];
             for ((errors, noisy), truth) in tally
                 .errors

@@ -7,6 +7,7 @@ use model_tables::generate::{self, GenerateError, Generated, OwnedTables};
 use model_tables::model::choice::FINE;
 use model_tables::model::{Fingertip, Kind, ModelError};
 use model_tables::object::{Friction, Object, Shape};
+use model_tables::table::ContactLookup as _;
 use model_tables::table::law::Touched;
 use model_tables::units::PressureRise;
 use std::fmt::Write as _;
@@ -30,8 +31,8 @@ pub struct ObjectErrors([f64; 2]);
 
 impl ObjectErrors {
     fn of(tables: &OwnedTables, truth: &Contact) -> Self {
-        let bits = tables.layout.pressure_fraction_bits;
-        let read = tables.lookup(PressureRise::from_pascals(truth.pressure_rise, bits));
+        let bits = tables.layout.fraction_bits;
+        let read = tables.contact_at(PressureRise::from_pascals(truth.pressure_rise, bits));
         Self([
             100.0 * (read.force.newtons() / truth.force - 1.0),
             100.0 * (read.indentation.metres() / truth.indentation - 1.0),
@@ -131,8 +132,8 @@ pub fn measure(wall: f64) -> Result<Vec<ObjectScene>, NoScene> {
         for part in PARTS {
             let truth = press.contact_at(1e-3 * part * DEEPEST).map_err(NoScene::State)?;
             let of_plate = ObjectErrors::of(plate, &truth);
-            let bits = plate.layout.pressure_fraction_bits;
-            let read = plate.lookup(PressureRise::from_pascals(truth.pressure_rise, bits));
+            let bits = plate.layout.fraction_bits;
+            let read = plate.contact_at(PressureRise::from_pascals(truth.pressure_rise, bits));
             let in_band = generated.band.as_ref().is_some_and(|band| {
                 band.at(truth.pressure_rise).unwrap_or(&band.widest()).holds(
                     [read.force.newtons(), read.indentation.metres()],

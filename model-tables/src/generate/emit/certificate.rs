@@ -3,12 +3,13 @@
 use super::NEVER;
 use crate::block::field::{Field, Visit};
 use crate::block::section;
-use crate::generate::TABLE_VERSION;
 use crate::generate::design::{AccuracyLimit, Generated};
 use crate::generate::feedback::CertifiedFeedback;
 use crate::generate::object::{Band, ObjectTables, quoted};
-use crate::generate::tally::Errors;
+use crate::generate::{Errors, TABLE_VERSION};
 use crate::model::own_error::OwnError;
+use crate::table::ContactLookup as _;
+use crate::table::feedback::words_per_segment;
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
 
@@ -69,7 +70,7 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
         tables.bytes(),
         tables.instructions(),
         generated.rest_pressure,
-        PressureRise(tables.layout.maximum).pascals(tables.layout.pressure_fraction_bits),
+        PressureRise(tables.layout.maximum).pascals(tables.layout.fraction_bits),
         certificate.comparison_error,
     )?;
     if let Some(kind) = generated.kind {
@@ -163,7 +164,7 @@ fn write_feedback(
          comparison_error = {:.1e}",
         feedback.scale.at_rest,
         feedback.scale.shift,
-        feedback.layout.feedback_words(),
+        words_per_segment(&feedback.layout),
         feedback.bytes(),
         feedback.comparison_error,
     )?;
@@ -180,7 +181,7 @@ fn write_feedback(
 /// What a blend of the plate's tables and the reference ball's is worth.
 fn write_blend(object: &ObjectTables, unknown: bool, out: &mut String) -> fmt::Result {
     let law = &object.law;
-    let bits = object.ball.layout.pressure_fraction_bits;
+    let bits = object.ball.layout.fraction_bits;
     let millimetres = |micrometres: i32| f64::from(micrometres) * 1e-3;
     writeln!(
         out,
@@ -264,7 +265,7 @@ fn write_band(band: &Band, out: &mut String) -> fmt::Result {
 fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
     let tables = &generated.certified.tables;
     let transducer = &generated.transducer;
-    let bits = tables.layout.pressure_fraction_bits;
+    let bits = tables.layout.fraction_bits;
     let resolvable = generated.certified.resolvable_percent;
     let held_to = generated.limits().map(AccuracyLimit::word);
     let integers = if held_to.contains(&AccuracyLimit::Integers.word()) {
@@ -272,7 +273,7 @@ fn write_transducer(generated: &Generated, out: &mut String) -> fmt::Result {
     } else {
         ""
     };
-    let touch = tables.lookup(PressureRise::from_pascals(transducer.resolution_pa, bits));
+    let touch = tables.contact_at(PressureRise::from_pascals(transducer.resolution_pa, bits));
     writeln!(
         out,
         "\n[transducer] # what it leaves undecided: a step of it at first contact, and half a step as a share of the reading where\n\

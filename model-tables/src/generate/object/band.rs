@@ -9,8 +9,9 @@ use super::press::{Depths, Presses, micrometres};
 use super::quoted;
 use crate::curve::{Contact, Curve};
 use crate::design_file::{DesignFile, ShapeSection};
-use crate::generate::owned::OwnedTables;
+use crate::generate::OwnedTables;
 use crate::model::Fingertip;
+use crate::table::ContactLookup as _;
 use crate::table::law::Touched;
 use crate::units::PressureRise;
 use std::fmt;
@@ -169,8 +170,8 @@ impl Unknown {
 
     /// Force and indentation of the extent over what tables read at a pressure rise, and what they read.
     fn over(&self, tables: &OwnedTables, rise: f64) -> Option<[([f64; 2], f64); 2]> {
-        let bits = tables.layout.pressure_fraction_bits;
-        let reading = tables.lookup(PressureRise::from_pascals(rise, bits));
+        let bits = tables.layout.fraction_bits;
+        let reading = tables.contact_at(PressureRise::from_pascals(rise, bits));
         let Extent([force, indentation]) = self.extent(rise);
         let read = [reading.force.newtons(), reading.indentation.metres()];
         (read[0] > 0.0 && read[1] > 0.0).then(|| {
@@ -259,7 +260,7 @@ impl Unknown {
 }
 
 fn last_rise(tables: &OwnedTables) -> f64 {
-    PressureRise(tables.layout.maximum).pascals(tables.layout.pressure_fraction_bits)
+    PressureRise(tables.layout.maximum).pascals(tables.layout.fraction_bits)
 }
 
 /// Two ends with what was found there, and what lies between them: linear over the logarithm of the pressure.

@@ -6,9 +6,9 @@
 
 use super::placing::{FROM, least, spread, weighted_lines};
 use crate::lookups;
+use certified_lookup::generate::minimax::{self, FitSample, MAX_COEFFICIENTS};
 use micromath::F32Ext;
 use model_tables::curve::{Contact, Curve};
-use model_tables::generate::minimax::{self, FitSample, MAX_COEFFICIENTS};
 use nalgebra::{SMatrix, SVector};
 
 /// Samples of an interval that a fit sees.

@@ -21,6 +21,7 @@ use model_tables::model::choice::FINE;
 use model_tables::model::state::{MeridianStation, Pressed, RestState};
 use model_tables::model::{Fingertip, Kind};
 use model_tables::object::Shape;
+use model_tables::table::ContactLookup as _;
 use model_tables::units::PressureRise;
 use output::Refusal;
 use output::progress::Progress;
@@ -210,10 +211,10 @@ const WEATHER: f64 = 100.0;
 fn least(generated: &Generated) -> Least {
     let transducer = &generated.transducer;
     let tables = &generated.certified.tables;
-    let bits = tables.layout.pressure_fraction_bits;
+    let bits = tables.layout.fraction_bits;
     let force_at = |pascals: f64| {
         tables
-            .lookup(PressureRise::from_pascals(pascals, bits))
+            .contact_at(PressureRise::from_pascals(pascals, bits))
             .force
             .newtons()
     };
@@ -237,7 +238,7 @@ fn table_readings(generated: &Generated, file: &DesignFile, states: &[Pressed]) 
         .as_ref()
         .and_then(|object| object.blended(plate, object.start));
     let tables = blended.as_ref().unwrap_or(plate);
-    let bits = tables.layout.pressure_fraction_bits;
+    let bits = tables.layout.fraction_bits;
     let from = file
         .accuracy
         .map_or(0.0, |accuracy| accuracy.from_percent_of_full_scale / 100.0);
@@ -253,7 +254,7 @@ fn table_readings(generated: &Generated, file: &DesignFile, states: &[Pressed]) 
                 // Over the rises of the data, which need not be the model's.
                 Some(_) => generated.end.pressure_rise * state.indentation / deepest,
             };
-            let reading = tables.lookup(PressureRise::from_pascals(pressure_rise, bits));
+            let reading = tables.contact_at(PressureRise::from_pascals(pressure_rise, bits));
             let (force, indentation) = (reading.force.newtons(), reading.indentation.metres());
             TableReading {
                 pressure_rise,

@@ -6,6 +6,7 @@ use model_tables::design_file::{Axes, DesignFile};
 use model_tables::generate::Generated;
 use model_tables::model::choice::{FINE, elements_in_time};
 use model_tables::solid::history::{Drive, History};
+use model_tables::table::ContactLookup as _;
 use model_tables::units::PressureRise;
 use output::rows::plain;
 
@@ -34,7 +35,7 @@ pub(super) fn presses(file: &DesignFile, generated: &Generated) -> Vec<TimedPres
     let elements = elements_in_time(file.model).unwrap_or(FINE);
     let force = FORCE * generated.end.force;
     let tables = &generated.certified.tables;
-    let bits = tables.layout.pressure_fraction_bits;
+    let bits = tables.layout.fraction_bits;
     let press = |seconds: f64| {
         let mut history = History::new(&file.design_to(Axes::Outer), &series, elements, 0.0, 0.0).ok()?;
         for i in 1..=INSTANTS {
@@ -43,7 +44,7 @@ pub(super) fn presses(file: &DesignFile, generated: &Generated) -> Vec<TimedPres
         }
         let instant = history.now();
         let pressure_rise = file.calibration.pressure_gain * instant.pressure_rise;
-        let reading = tables.lookup(PressureRise::from_pascals(pressure_rise, bits));
+        let reading = tables.contact_at(PressureRise::from_pascals(pressure_rise, bits));
         Some(TimedPress {
             seconds,
             pressure_rise,

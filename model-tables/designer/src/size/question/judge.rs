@@ -7,6 +7,7 @@ use model_tables::design::Membrane;
 use model_tables::design_file::DesignFile;
 use model_tables::generate::{Generated, from_design_or_worse};
 use model_tables::model::Fingertip;
+use model_tables::table::ContactLookup as _;
 use model_tables::units::PressureRise;
 use rayon::prelude::*;
 use std::fmt::Write as _;
@@ -109,11 +110,11 @@ pub fn judge<'a>(
         Some(_) => Some(pressed_by_ball(&text, deepest)?),
     };
     let tables = &generated.certified.tables;
-    let bits = tables.layout.pressure_fraction_bits;
+    let bits = tables.layout.fraction_bits;
     let read = |pascals: f64| -> [f64; 2] {
         match &ball {
             None => {
-                let reading = tables.lookup(PressureRise::from_pascals(pascals, bits));
+                let reading = tables.contact_at(PressureRise::from_pascals(pascals, bits));
                 [reading.force.newtons(), reading.indentation.metres()]
             }
             Some(curve) => {

@@ -1,9 +1,8 @@
-//! Tables whose size is known only when they are made. The generator makes them, and the command line reads them.
+//! Tables whose size is known only when they are made. The generator makes them.
 
-use crate::table::{Layout, Reading};
-use crate::units::PressureRise;
+use crate::layout::{Layout, Outputs};
 
-/// Tables of any number of segments; reads exactly as [`crate::table::Tables`] does.
+/// Tables of any number of segments; reads exactly as [`crate::Tables`] does.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct OwnedTables {
     /// Position of the segments, and the layout of their words.
@@ -23,18 +22,18 @@ impl OwnedTables {
         size_of_val(self.words.as_slice())
     }
 
-    /// Instructions from a pressure rise to both outputs and the saturation flag, inlined on the chip.
+    /// Instructions from an input to both outputs and the saturation flag, inlined on the chip.
     pub fn instructions(&self) -> u32 {
         super::shape::instructions(&self.layout)
     }
 
-    /// Force and indentation at a pressure rise, bit for bit as on the chip.
+    /// Both outputs at an input, bit for bit as on the chip.
     #[inline]
-    pub fn lookup(&self, rise: PressureRise) -> Reading {
-        let place = self.layout.place(rise);
+    pub fn lookup(&self, input: i32) -> Outputs {
+        let place = self.layout.place(input);
         let index = place.number.wrapping_sub(self.layout.first_index) as usize;
         let words = self.segment(index.min(self.segments() - 1));
-        self.layout.reading(rise, place, words)
+        self.layout.outputs(input, place, words)
     }
 
     /// The words of one segment.

@@ -1,7 +1,6 @@
 //! Shapes that tables can take: how a segment is made, and where the segments lie.
 
-use crate::table::{Constant, Layout, Powers};
-use crate::units::PressureRise;
+use crate::layout::{Constant, Layout, Powers};
 
 /// Candidate biases in an octave: multiples of an eighth of it, so that the bias fits one instruction.
 const BIASES_PER_OCTAVE: i32 = 8;
@@ -57,7 +56,7 @@ impl Shape {
     /// The layout of this shape for a unit, a last input and a bias, the rest still zero.
     pub(super) const fn layout(self, fraction_bits: u32, maximum: i32, bias: i32) -> Layout {
         Layout {
-            pressure_fraction_bits: fraction_bits,
+            fraction_bits,
             maximum,
             bias,
             octaves: self.octaves,
@@ -65,8 +64,7 @@ impl Shape {
             powers: self.powers,
             constant: self.constant,
             first_index: 0,
-            force_shift: 0,
-            indentation_shift: 0,
+            shifts: [0; 2],
         }
     }
 
@@ -76,7 +74,7 @@ impl Shape {
     }
 }
 
-/// Instructions from a pressure rise to both outputs and the flag, inlined, as rustc makes them for the chip: counted from its
+/// Instructions from an input to both outputs and the flag, inlined, as rustc makes them for the chip: counted from its
 /// listings, without what the code around them makes it spill.
 pub(super) fn instructions(layout: &Layout) -> u32 {
     let maximum = i64::from(layout.maximum);
@@ -99,7 +97,7 @@ pub(super) fn instructions(layout: &Layout) -> u32 {
     // The address of a segment, then loads of two words at a time.
     let loads = if words == 4 { 3 } else { 4 } + words.div_ceil(2) as u32;
     let products = 2 * layout.powers.terms() as u32;
-    let shifts = u32::from(layout.force_shift > 0) + u32::from(layout.indentation_shift > 0);
+    let shifts: u32 = layout.shifts.map(|shift| u32::from(shift > 0)).iter().sum();
     held + common + octaves + powers + loads + products + shifts
 }
 
@@ -126,7 +124,7 @@ pub(super) struct Span {
 impl Segmentation {
     /// The segments of a layout, if each holds enough counts.
     pub(super) fn of(mut layout: Layout) -> Option<Self> {
-        let number = |count: i32| layout.place(PressureRise(count)).number;
+        let number = |count: i32| layout.place(count).number;
         let (first, last) = (number(0), number(layout.maximum));
         let mut spans = Vec::with_capacity((first - last + 1) as usize);
         let mut start = 0;
@@ -206,7 +204,7 @@ mod tests {
                     assert_eq!(segmentation.spans[segmentation.spans.len() - 1].end, 3001);
                     for span in &segmentation.spans {
                         for count in span.start..span.end {
-                            let place = segmentation.layout.place(PressureRise(count));
+                            let place = segmentation.layout.place(count);
                             assert_eq!(place.number, span.number);
                             // As far below the segment's upper end as its mantissa is below one; a part of an octave
                             // counts as the upper half of one.

@@ -1,13 +1,14 @@
 //! Segments whose words lie in memory as little-endian bytes, at any address.
 
-use crate::table::{Layout, Reading};
-use crate::units::PressureRise;
+use crate::layout::{Layout, Outputs};
 
 /// A layout and its words, unchecked, [`Layout::words`] a segment, the segment of the largest inputs first.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Segments<'a> {
-    pub(super) layout: Layout,
-    pub(super) words: &'a [[u8; 4]],
+pub struct Segments<'a> {
+    /// Where the segments lie.
+    pub layout: Layout,
+    /// Their words, little-endian.
+    pub words: &'a [[u8; 4]],
 }
 
 impl Segments<'_> {
@@ -17,7 +18,7 @@ impl Segments<'_> {
     }
 
     /// The words of the segment of this index, the last one's for any higher; those that a segment has not are 0.
-    pub(super) fn segment(&self, index: usize) -> [i32; Layout::MAX_WORDS] {
+    pub fn segment(&self, index: usize) -> [i32; Layout::MAX_WORDS] {
         let width = self.layout.words();
         let index = index.min(self.count().saturating_sub(1));
         let mut words = [0; Layout::MAX_WORDS];
@@ -28,10 +29,10 @@ impl Segments<'_> {
         words
     }
 
-    /// Force and indentation at a pressure rise. For a layout that the lookup computes, every `i32` has an answer.
-    pub(super) fn lookup(&self, rise: PressureRise) -> Reading {
-        let place = self.layout.place(rise);
+    /// Both outputs at an input. For a layout that the lookup computes, every `i32` has an answer.
+    pub fn lookup(&self, input: i32) -> Outputs {
+        let place = self.layout.place(input);
         let index = place.number.wrapping_sub(self.layout.first_index) as usize;
-        self.layout.reading(rise, place, &self.segment(index))
+        self.layout.outputs(input, place, &self.segment(index))
     }
 }

@@ -1,11 +1,11 @@
 //! The search: the fewest bytes that meet the accuracy within the instructions wanted, and among equals the fewest instructions.
 
+use super::AccuracyGoal;
 use super::candidate::{Candidate, Shifts, Tolerance, Work, counts, factors};
 use super::minimax::{FitSample, MAX_COEFFICIENTS, fit};
 use super::owned::OwnedTables;
 use super::shape::{Segmentation, Shape, biases, instructions};
 use super::truth::Truth;
-use crate::design_file::Accuracy;
 
 /// Segments at most.
 const MAX_SEGMENTS: usize = 32;
@@ -62,7 +62,7 @@ pub(super) struct Found<T> {
 /// smallest share of the tolerance that was reached.
 pub(super) fn smallest<T>(
     truths: &[Truth],
-    accuracy: &Accuracy,
+    goal: &AccuracyGoal,
     work: &Work,
     mut accept: impl FnMut(&OwnedTables, &Truth) -> Option<T>,
 ) -> Result<Found<T>, f64> {
@@ -116,7 +116,7 @@ pub(super) fn smallest<T>(
                         continue;
                     }
                     tried += 1;
-                    let look = first_look(&candidate.segmentation, truth, accuracy);
+                    let look = first_look(&candidate.segmentation, truth, goal);
                     closest = closest.min(look.error);
                     candidate.error = look.error;
                     if look.error < HOPEFUL {
@@ -145,7 +145,7 @@ pub(super) fn smallest<T>(
                     if candidate.instructions() + u32::from(shifts != Shifts::None) > most_instructions {
                         return None;
                     }
-                    let tables = candidate.finish(accuracy, shifts)?;
+                    let tables = candidate.finish(goal, shifts)?;
                     (instructions(&tables.layout) <= most_instructions).then_some((tables, candidate.truth))
                 })
             });
@@ -172,9 +172,9 @@ struct Look {
 
 /// How close sums of real coefficients come: the largest error as a share of the tolerance. Looks no further once that rules
 /// the segmentation out.
-fn first_look(segmentation: &Segmentation, truth: &Truth, accuracy: &Accuracy) -> Look {
+fn first_look(segmentation: &Segmentation, truth: &Truth, goal: &AccuracyGoal) -> Look {
     let free = 1 + segmentation.layout.powers.terms();
-    let tolerances = Tolerance::both(truth, accuracy);
+    let tolerances = Tolerance::both(truth, goal);
     let mut worst = 0.0_f64;
     let last = segmentation.spans.len() - 1;
     // The first segment has the logarithm of first contact, the last one the strongest bend.

@@ -14,7 +14,7 @@ pub enum TablesError {
         /// Words found.
         found: usize,
     },
-    /// A rise of zero does not read as zero force and zero indentation.
+    /// An input of zero does not read as two zeros.
     Zero,
     /// An output falls after this input, counts.
     Falls(i32),

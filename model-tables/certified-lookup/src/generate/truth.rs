@@ -1,7 +1,7 @@
 //! The curve at every count, fast: local polynomials through exact evaluations, with the error they add.
 
 use super::bounds::{Polynomial, Range, compose};
-use crate::curve::{Contact, Curve};
+use super::{CurvePair, CurvePoint};
 
 /// Inputs below this many counts are evaluated exactly, one by one.
 const EXACT: i32 = 64;
@@ -28,25 +28,25 @@ pub(super) struct Block {
     start: i32,
     /// Counts to map: the place of a count is `2 (count - start) / width - 1`.
     width: f64,
-    /// Force in micronewtons and indentation in nanometres, powers of the place, constant term first.
+    /// Both outputs in their units: powers of the place, constant term first.
     powers: [[f64; NODES]; 2],
 }
 
-/// Force in micronewtons and indentation in nanometres at every count of `0..=maximum`.
+/// Both outputs in their units at every count of `0..=maximum`.
 pub(super) struct Truth {
     exact: Vec<[f64; 2]>,
     blocks: Vec<Block>,
-    /// A count is `2^-fraction_bits` pascal.
+    /// A count is `2^-fraction_bits` of the input's unit.
     pub(super) fraction_bits: u32,
     /// Last count.
     pub(super) maximum: i32,
-    /// Force and indentation at the end of the press, which the last count may lie a little beyond.
+    /// Both outputs at the end, which the last count may lie a little beyond.
     pub(super) full_scale: [f64; 2],
 }
 
 impl Truth {
-    /// Prepares the curve at counts of `2^-fraction_bits` pascal; the press ends at `end`.
-    pub(super) fn new(curve: &Curve, end: Contact, fraction_bits: u32, maximum: i32) -> Self {
+    /// Prepares the curve at counts of `2^-fraction_bits`, up to `maximum`; full scale is at `end`.
+    pub(super) fn new(curve: &impl CurvePair, end: CurvePoint, fraction_bits: u32, maximum: i32) -> Self {
         let at = exactly(curve, fraction_bits);
         let exact = (0..EXACT.min(maximum + 1))
             .map(|count| at(f64::from(count)))
@@ -67,13 +67,13 @@ impl Truth {
             blocks,
             fraction_bits,
             maximum,
-            full_scale: outputs(end),
+            full_scale: end.outputs,
         }
     }
 
     /// Largest deviation of a polynomial from the curve, relative to the curve, at the points farthest from its
     /// nodes.
-    pub(super) fn deviation(&self, curve: &Curve) -> f64 {
+    pub(super) fn deviation(&self, curve: &impl CurvePair) -> f64 {
         let at = exactly(curve, self.fraction_bits);
         let mut deviation = 0.0_f64;
         for block in &self.blocks {
@@ -82,7 +82,7 @@ impl Truth {
         deviation
     }
 
-    /// Force in micronewtons and indentation in nanometres at a count.
+    /// Both outputs in their units at a count.
     pub(super) fn at(&self, count: i32) -> [f64; 2] {
         if let Some(&value) = self.exact.get(count.max(0) as usize) {
             return value;
@@ -119,7 +119,7 @@ pub(super) enum Piece<'a> {
 }
 
 impl Piece<'_> {
-    /// Force in micronewtons and indentation in nanometres at one of its counts.
+    /// Both outputs in their units at one of its counts.
     #[inline]
     pub(super) fn at(&self, count: i32) -> [f64; 2] {
         match self {
@@ -175,14 +175,9 @@ impl Block {
 }
 
 /// The curve itself at a count.
-fn exactly(curve: &Curve, fraction_bits: u32) -> impl Fn(f64) -> [f64; 2] {
+fn exactly(curve: &impl CurvePair, fraction_bits: u32) -> impl Fn(f64) -> [f64; 2] {
     let unit = libm::ldexp(1.0, -(fraction_bits as i32));
-    move |count| outputs(curve.at_pressure_rise(count * unit))
-}
-
-/// Micronewtons and nanometres of a contact.
-fn outputs(contact: Contact) -> [f64; 2] {
-    [contact.force * 1e6, contact.indentation * 1e9]
+    move |count| curve.at(count * unit)
 }
 
 #[inline]

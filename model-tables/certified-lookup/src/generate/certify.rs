@@ -8,64 +8,88 @@ use super::owned::OwnedTables;
 use super::shape::Segmentation;
 use super::tally::{Errors, OutputPart, Tally};
 use super::truth::{Piece, Truth};
-use crate::curve::Curve;
-use crate::design_file::Accuracy;
-use crate::table::Reading;
-use crate::units::PressureRise;
+use super::{AccuracyGoal, CurvePair, CurvePoint};
+use crate::layout::{Layout, Outputs};
 
 /// Inputs that are evaluated one by one at most: 2^22.
 const EVALUATED: i32 = 1 << 22;
 
 /// Proven properties of tables over every input.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Certificate {
+pub struct Proof {
     /// Inputs that it holds of: all from zero to the maximum.
     pub inputs: u64,
     /// Whether each was evaluated. If not, largest errors, steps and monotonicity come from exact bounds, and evaluation where
     /// they do not settle it; root-mean-square and mean errors from evenly spaced inputs.
     pub every_input_evaluated: bool,
-    /// Errors of the force; absolute ones in micronewtons.
-    pub force: Errors,
-    /// Errors of the indentation; absolute ones in nanometres.
-    pub indentation: Errors,
+    /// Errors of each output, absolute ones in its unit.
+    pub outputs: [Errors; 2],
     /// Error of the comparison itself, relative: the local polynomials that stand for the curve.
     pub comparison_error: f64,
 }
 
-impl Certificate {
+impl Proof {
     /// Whether the tables can be used: they are accurate, never fall, give zero at zero, and are flagged at both ends. The
     /// comparison itself must be a hundred times finer than the errors that it measures.
     pub fn holds(&self) -> bool {
-        let allowed = self.force.allowed_percent.min(self.indentation.allowed_percent);
-        self.force.holds() && self.indentation.holds() && 100.0 * self.comparison_error <= 0.01 * allowed
+        let [first, second] = &self.outputs;
+        let allowed = first.allowed_percent.min(second.allowed_percent);
+        first.holds() && second.holds() && 100.0 * self.comparison_error <= 0.01 * allowed
     }
+}
+
+/// How a proof covers every input.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum ProvenBy {
+    /// Each is evaluated.
+    Evaluation,
+    /// Exact bounds, and evaluation where they do not settle it.
+    Bounds,
+}
+
+/// Proves tables of any origin against a pair of curves, whose full scale is at `end`. `None` when an end is not held and flagged as
+/// it must be, or when the first inputs looked at miss the accuracy.
+pub fn prove(
+    tables: &OwnedTables,
+    curve: &impl CurvePair,
+    end: CurvePoint,
+    goal: &AccuracyGoal,
+    by: ProvenBy,
+) -> Option<Proof> {
+    let Layout {
+        fraction_bits,
+        maximum,
+        ..
+    } = tables.layout;
+    let truth = Truth::new(curve, end, fraction_bits, maximum);
+    certify_by(tables, curve, &truth, goal, by == ProvenBy::Evaluation)
 }
 
 /// Certifies tables over every input. `None` when an end is not held and flagged as it must be.
 pub(super) fn certify(
     tables: &OwnedTables,
-    curve: &Curve,
+    curve: &impl CurvePair,
     truth: &Truth,
-    accuracy: &Accuracy,
-) -> Option<Certificate> {
-    certify_by(tables, curve, truth, accuracy, truth.maximum < EVALUATED)
+    goal: &AccuracyGoal,
+) -> Option<Proof> {
+    certify_by(tables, curve, truth, goal, truth.maximum < EVALUATED)
 }
 
 /// The same, every input evaluated or as few as the bounds need.
-pub(super) fn certify_by(
+fn certify_by(
     tables: &OwnedTables,
-    curve: &Curve,
+    curve: &impl CurvePair,
     truth: &Truth,
-    accuracy: &Accuracy,
+    goal: &AccuracyGoal,
     every: bool,
-) -> Option<Certificate> {
+) -> Option<Proof> {
     if !ends_are_held(tables) {
         return None;
     }
     let segments = Segmentation::of(tables.layout)?;
     let from = truth
         .full_scale
-        .map(|full| full * accuracy.from_percent_of_full_scale / 100.0);
+        .map(|full| full * goal.from_percent_of_full_scale / 100.0);
     let mut tallies = [0, 1].map(|output| Tally::new(truth.full_scale[output], from[output]));
     let parts: Vec<Part> = parts(tables, &segments, truth).collect();
     if !every {
@@ -76,13 +100,9 @@ pub(super) fn certify_by(
         }
     }
     // Most of the tables that miss the accuracy show it here.
-    let percents = [
-        accuracy.force_percent_of_reading,
-        accuracy.indentation_percent_of_reading,
-    ];
     if tallies
         .iter()
-        .zip(percents)
+        .zip(goal.percent_of_reading)
         .any(|(tally, percent)| tally.misses(percent))
     {
         return None;
@@ -98,30 +118,30 @@ pub(super) fn certify_by(
             }
             _ => {
                 for count in part.range.first..=part.range.last {
-                    let reading = part.reading(count);
+                    let read = part.outputs(count).values;
                     let truth = part.piece.at(count);
-                    tallies[0].add(reading.force.0, truth[0]);
-                    tallies[1].add(reading.indentation.0, truth[1]);
+                    tallies[0].add(read[0], truth[0]);
+                    tallies[1].add(read[1], truth[1]);
                 }
             }
         }
     }
-    let [force, indentation] = tallies;
-    (!flagged).then(|| Certificate {
+    let [first, second] = tallies;
+    let [of_first, of_second] = goal.percent_of_reading;
+    (!flagged).then(|| Proof {
         inputs: truth.maximum as u64 + 1,
         every_input_evaluated: every,
-        force: force.finish(accuracy.force_percent_of_reading),
-        indentation: indentation.finish(accuracy.indentation_percent_of_reading),
+        outputs: [first.finish(of_first), second.finish(of_second)],
         comparison_error: truth.deviation(curve),
     })
 }
 
-/// The errors of the force of tables alone, over every input. `None` where they are soon seen to exceed what is allowed.
-pub(super) fn force_errors(tables: &OwnedTables, truth: &Truth, accuracy: &Accuracy) -> Option<Errors> {
+/// The errors of the first output of tables alone, over every input. `None` where they are soon seen to exceed what is allowed.
+pub(super) fn first_errors(tables: &OwnedTables, truth: &Truth, goal: &AccuracyGoal) -> Option<Errors> {
     let segments = Segmentation::of(tables.layout)?;
-    let allowed = accuracy.force_percent_of_reading;
+    let allowed = goal.percent_of_reading[0];
     let full = truth.full_scale[0];
-    let mut tally = Tally::new(full, full * accuracy.from_percent_of_full_scale / 100.0);
+    let mut tally = Tally::new(full, full * goal.from_percent_of_full_scale / 100.0);
     let parts: Vec<Part> = parts(tables, &segments, truth).collect();
     let every = truth.maximum < EVALUATED;
     if !every {
@@ -137,7 +157,7 @@ pub(super) fn force_errors(tables: &OwnedTables, truth: &Truth, accuracy: &Accur
             Piece::Polynomial(_) if !(every || part.range.is_short()) => tally.bound(&part.of(0)),
             _ => {
                 for count in part.range.first..=part.range.last {
-                    tally.add(part.reading(count).force.0, part.piece.at(count)[0]);
+                    tally.add(part.outputs(count).values[0], part.piece.at(count)[0]);
                 }
             }
         }
@@ -183,17 +203,17 @@ fn parts<'a>(
 
 impl<'a> Part<'a> {
     /// What the chip says at a count.
-    fn reading(&self, count: i32) -> Reading {
-        let (layout, rise) = (&self.tables.layout, PressureRise(count));
-        layout.reading(rise, layout.place(rise), self.words)
+    fn outputs(&self, count: i32) -> Outputs {
+        let layout = &self.tables.layout;
+        layout.outputs(count, layout.place(count), self.words)
     }
 
     /// Whether an input within the tables says that it is not; both ends of a range do, if any does.
     fn is_flagged(&self) -> bool {
         [self.range.first, self.range.last]
-            .map(|count| self.tables.lookup(PressureRise(count)))
+            .map(|count| self.tables.lookup(count))
             .iter()
-            .any(|reading| reading.saturated || reading.negative)
+            .any(|outputs| outputs.saturated || outputs.negative)
     }
 
     fn of(&self, output: usize) -> OutputPart<'a> {
@@ -209,21 +229,18 @@ impl<'a> Part<'a> {
 /// Inputs beyond the ends read as the ends do, with their flag.
 fn ends_are_held(tables: &OwnedTables) -> bool {
     let maximum = tables.layout.maximum;
-    let (zero, last) = (
-        tables.lookup(PressureRise(0)),
-        tables.lookup(PressureRise(maximum)),
-    );
+    let (zero, last) = (tables.lookup(0), tables.lookup(maximum));
     let above = [maximum + 1, maximum.saturating_mul(2), i32::MAX - 1, i32::MAX];
     let below = [-1, -maximum, i32::MIN / 2, -i32::MAX];
     above.iter().all(|&count| {
-        tables.lookup(PressureRise(count))
-            == Reading {
+        tables.lookup(count)
+            == Outputs {
                 saturated: true,
                 ..last
             }
     }) && below.iter().all(|&count| {
-        tables.lookup(PressureRise(count))
-            == Reading {
+        tables.lookup(count)
+            == Outputs {
                 negative: true,
                 ..zero
             }

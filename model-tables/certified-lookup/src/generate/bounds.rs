@@ -6,8 +6,7 @@
 
 use super::owned::OwnedTables;
 use super::quantise::{Coefficients, evaluate};
-use crate::table::{Constant, Layout, Powers};
-use crate::units::PressureRise;
+use crate::layout::{Constant, Layout, Powers};
 
 /// Coefficients of a polynomial: degree eight, as the highest power of a sum.
 pub(super) const TERMS: usize = 9;
@@ -63,7 +62,7 @@ pub(super) struct Sum<'a> {
 }
 
 impl<'a> Sum<'a> {
-    /// Of force (0) or indentation (1) in a segment of tables, from its words.
+    /// Of an output (0, 1) in a segment of tables, from its words.
     pub(super) fn of(tables: &'a OwnedTables, index: usize, number: u32, output: usize) -> Self {
         let layout = &tables.layout;
         let words = tables.segment(index);
@@ -86,7 +85,7 @@ impl<'a> Sum<'a> {
                 at += 1;
             }
         }
-        let own = [layout.force_shift, layout.indentation_shift][output];
+        let own = layout.shifts[output];
         Self {
             layout,
             coefficients,
@@ -96,7 +95,7 @@ impl<'a> Sum<'a> {
 
     /// The output at a count of the segment, as the chip has it.
     pub(super) fn at(&self, count: i32) -> i32 {
-        let mantissa = self.layout.place(PressureRise(count)).mantissa;
+        let mantissa = self.layout.place(count).mantissa;
         evaluate(&self.coefficients, self.layout.factors(mantissa)) >> self.shift
     }
 
@@ -136,7 +135,7 @@ impl<'a> Sum<'a> {
             }
         }
         let distance = |count: i32| {
-            let mantissa = self.layout.place(PressureRise(count)).mantissa;
+            let mantissa = self.layout.place(count).mantissa;
             1.0 - f64::from(mantissa) / WHOLE
         };
         let first = distance(range.first);
@@ -165,7 +164,7 @@ impl<'a> Sum<'a> {
     /// The same from each product's own bounds, added: factors never change direction within a segment, and neither do products
     /// with them, however they are rounded.
     fn growth_of_products(&self, range: Range) -> [f64; 2] {
-        let mantissa = |count: i32| self.layout.place(PressureRise(count)).mantissa;
+        let mantissa = |count: i32| self.layout.place(count).mantissa;
         let [near, far] = [range.first, range.last].map(|count| 1.0 - f64::from(mantissa(count)) / WHOLE);
         // What the mantissa, and so the linear factor, grows by at a count.
         let growth = f64::from(mantissa(range.first + 1) - mantissa(range.first));
@@ -249,10 +248,10 @@ pub(super) fn bounds(powers: &Polynomial) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use proptest::prelude::*;
 
     const LAYOUT: Layout = Layout {
-        pressure_fraction_bits: 5,
+        fraction_bits: 5,
         maximum: 1_000_000,
         bias: 64,
         octaves: 2,
@@ -260,8 +259,7 @@ mod tests {
         powers: Powers::Eight,
         constant: Constant::Whole,
         first_index: 6,
-        force_shift: 0,
-        indentation_shift: 0,
+        shifts: [0; 2],
     };
 
     /// `(1 - u)^2 (1 + u)` on `2 + 3 u`, by hand: the values agree, and the bounds enclose them.
@@ -281,22 +279,26 @@ mod tests {
         assert!((least - 3.0).abs() < 1e-9 && (largest - 96.0).abs() < 1e-9);
     }
 
-    /// Sums and growth of drawn coefficients, at every count of drawn ranges.
-    #[test]
-    fn the_integers_stay_within_the_bounds() {
-        let mut random = Random(14);
-        let mut draw = |most: i32| (random.bits() % (2 * most as u64 + 1)) as i32 - most;
-        for case in 0..400 {
-            let powers = [Powers::Two, Powers::Four, Powers::Six, Powers::Eight][case % 4];
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+        /// Sums and growth of drawn coefficients, at every count of drawn ranges.
+        #[test]
+        fn the_integers_stay_within_the_bounds(
+            powers in prop::sample::select(vec![Powers::Two, Powers::Four, Powers::Six, Powers::Eight]),
+            first in 10_000..390_000,
+            constant in -(1 << 27)..(1 << 27),
+            others in prop::array::uniform4(-32767..=32767),
+        ) {
             let layout = Layout { powers, ..LAYOUT };
-            let first = 200_000 + draw(190_000);
-            let number = layout.place(PressureRise(first)).number;
+            let number = layout.place(first).number;
             let last = (first..first + 900)
-                .take_while(|&count| layout.place(PressureRise(count)).number == number)
+                .take_while(|&count| layout.place(count).number == number)
                 .last()
                 .expect("its own");
-            let mut coefficients = [draw(1 << 27), draw(32767), draw(32767), draw(32767), draw(32767)];
-            coefficients[1 + powers.terms()..].fill(0);
+            let mut coefficients = [0; 5];
+            coefficients[0] = constant;
+            coefficients[1..=powers.terms()].copy_from_slice(&others[..powers.terms()]);
             let sum = Sum {
                 layout: &layout,
                 coefficients,
@@ -308,12 +310,9 @@ mod tests {
             let mut before = None;
             for count in first..=last {
                 let value = f64::from(sum.at(count));
-                assert!(value > least - sum.rounding() && value < largest + sum.rounding());
+                prop_assert!(value > least - sum.rounding() && value < largest + sum.rounding());
                 if let Some(before) = before.replace(value) {
-                    assert!(
-                        value - before >= slowest && value - before <= fastest,
-                        "{case} {count}"
-                    );
+                    prop_assert!(value - before >= slowest && value - before <= fastest, "{}", count);
                 }
             }
         }

@@ -6,10 +6,9 @@
 //! `S = c0 + 2^16 (c1 (1/2 - s) + c2 s^2/2 + c3 s^4/4 + c4 s^8/16)` up to rounding (or `c3 s^6/8`), so that towards that end it
 //! grows by `2^16 (c1 - c2 s - c3 s^3 - c4 s^7/2)` for the whole of `s` (or `c3 s^5 3/4`).
 
-use crate::table::error::TablesError;
-use crate::table::segments::Segments;
-use crate::table::{Constant, Layout, Powers};
-use crate::units::PressureRise;
+use crate::error::TablesError;
+use crate::layout::{Constant, Layout, Powers};
+use crate::segments::Segments;
 
 /// From one count to the next, rounding takes less than this from a sum: four products rounded down lose below 1 each, and
 /// their factors, rounded down by less than 1, 1.6 and 1.6 units of `2^-32`, at most half of that each.
@@ -21,28 +20,20 @@ const MAX_STRETCHES: u32 = 1 << 12;
 /// Room at either end of the word that a sum keeps, for what rounding adds.
 const ROOM: i64 = 16;
 
-/// Shows that neither output falls anywhere.
+/// Shows that these outputs (0, 1) fall nowhere.
 ///
 /// # Errors
 /// [`TablesError::Falls`], [`TablesError::Flat`].
-pub(super) fn rises(tables: &Segments) -> Result<(), TablesError> {
-    rises_in(tables, &[Output::Force, Output::Indentation])
-}
-
-/// The same of some outputs.
-///
-/// # Errors
-/// As [`rises`].
-pub(super) fn rises_in(tables: &Segments, outputs: &[Output]) -> Result<(), TablesError> {
+pub fn rises(tables: &Segments, outputs: &[usize]) -> Result<(), TablesError> {
     let maximum = tables.layout.maximum;
     let mut start = 0;
     loop {
         let end = last_of_segment(&tables.layout, start);
         for &output in outputs {
-            if start > 0 && output.at(tables, start) < output.at(tables, start - 1) {
+            if start > 0 && at(tables, output, start) < at(tables, output, start - 1) {
                 return Err(TablesError::Falls(start - 1));
             }
-            output.rises(tables, start, end)?;
+            rises_in_segment(tables, output, start, end)?;
         }
         if end >= maximum {
             return Ok(());
@@ -53,7 +44,7 @@ pub(super) fn rises_in(tables: &Segments, outputs: &[Output]) -> Result<(), Tabl
 
 /// The last count in the segment of this one, by bisection: the number never rises with the count.
 fn last_of_segment(layout: &Layout, count: i32) -> i32 {
-    let number = |count: i32| layout.place(PressureRise(count)).number;
+    let number = |count: i32| layout.place(count).number;
     let own = number(count);
     let (mut within, mut beyond) = (count, layout.maximum + 1);
     while beyond - within > 1 {
@@ -67,48 +58,35 @@ fn last_of_segment(layout: &Layout, count: i32) -> i32 {
     within
 }
 
-/// One of the two that a word holds coefficients of.
-#[derive(Clone, Copy)]
-pub(super) enum Output {
-    /// The upper halves.
-    Force,
-    /// The lower halves.
-    Indentation,
+/// An output at a count.
+fn at(tables: &Segments, output: usize, count: i32) -> i32 {
+    let [first, second] = tables.lookup(count).values;
+    if output == 0 { first } else { second }
 }
 
-impl Output {
-    fn at(self, tables: &Segments, count: i32) -> i32 {
-        let reading = tables.lookup(PressureRise(count));
-        match self {
-            Self::Force => reading.force.0,
-            Self::Indentation => reading.indentation.0,
+/// In one segment, from its first count to its last.
+fn rises_in_segment(tables: &Segments, output: usize, start: i32, end: i32) -> Result<(), TablesError> {
+    let layout = &tables.layout;
+    let number = layout.place(start).number;
+    let segment = tables.segment(number.wrapping_sub(layout.first_index) as usize);
+    let sum = Sum::of(layout, &segment, output);
+    let (mut from, mut length) = (start, end - start);
+    for _ in 0..MAX_STRETCHES {
+        if from >= end {
+            return Ok(());
+        }
+        let to = from.saturating_add(length).min(end);
+        if at(tables, output, to) < at(tables, output, from) {
+            return Err(TablesError::Falls(from));
+        }
+        if to - from == 1 || sum.grows(layout, from, to) {
+            from = to;
+            length = length.saturating_mul(2);
+        } else {
+            length = (to - from) / 2;
         }
     }
-
-    /// In one segment, from its first count to its last.
-    fn rises(self, tables: &Segments, start: i32, end: i32) -> Result<(), TablesError> {
-        let layout = &tables.layout;
-        let number = layout.place(PressureRise(start)).number;
-        let segment = tables.segment(number.wrapping_sub(layout.first_index) as usize);
-        let sum = Sum::of(layout, &segment, self);
-        let (mut at, mut length) = (start, end - start);
-        for _ in 0..MAX_STRETCHES {
-            if at >= end {
-                return Ok(());
-            }
-            let to = at.saturating_add(length).min(end);
-            if self.at(tables, to) < self.at(tables, at) {
-                return Err(TablesError::Falls(at));
-            }
-            if to - at == 1 || sum.grows(layout, at, to) {
-                at = to;
-                length = length.saturating_mul(2);
-            } else {
-                length = (to - at) / 2;
-            }
-        }
-        Err(TablesError::Flat(end))
-    }
+    Err(TablesError::Flat(end))
 }
 
 /// One output's sum in a segment.
@@ -119,16 +97,16 @@ struct Sum {
 }
 
 impl Sum {
-    fn of(layout: &Layout, segment: &[i32; Layout::MAX_WORDS], output: Output) -> Self {
-        let half = |word: i32| match output {
-            Output::Force => i64::from((word >> 16) as i16),
-            Output::Indentation => i64::from(word as i16),
+    fn of(layout: &Layout, segment: &[i32; Layout::MAX_WORDS], output: usize) -> Self {
+        let half = |word: i32| {
+            i64::from(if output == 0 {
+                (word >> 16) as i16
+            } else {
+                word as i16
+            })
         };
-        let [force, indentation, pairs @ ..] = *segment;
-        let constant = match output {
-            Output::Force => force,
-            Output::Indentation => indentation,
-        };
+        let [upper, lower, pairs @ ..] = *segment;
+        let constant = if output == 0 { upper } else { lower };
         let [first, second, third, fourth] = pairs.map(half);
         let coefficients = match layout.constant {
             Constant::Half => [i64::from(constant as i16), first, second, third],
@@ -143,7 +121,7 @@ impl Sum {
     /// Whether the sum grows at each count from one to another of the segment, by more than rounding takes, and stays
     /// within its word.
     fn grows(&self, layout: &Layout, from: i32, to: i32) -> bool {
-        let mantissa = |count: i32| layout.place(PressureRise(count)).mantissa;
+        let mantissa = |count: i32| layout.place(count).mantissa;
         let (low, high) = (mantissa(from), mantissa(to));
         if high <= low {
             return false;

@@ -3,22 +3,21 @@
 //! They are checked once, when they are loaded: the lookup supports the layout, there is a segment for every input, zero gives
 //! zero, and neither output ever falls (`rising`).
 
-use crate::table::error::TablesError;
-use crate::table::rising::rises;
-use crate::table::segments::Segments;
-use crate::table::{Layout, Reading};
-use crate::units::PressureRise;
+use crate::error::TablesError;
+use crate::layout::{Layout, Outputs};
+use crate::rising::rises;
+use crate::segments::Segments;
 
-/// Most fraction bits of a pascal.
-pub const MAX_FRACTION_BITS: u32 = 16;
+/// Most fraction bits of the input's unit.
+pub(crate) const MAX_FRACTION_BITS: u32 = 16;
 /// Last input and bias are below this, so that their sum fits a word.
-pub const INPUTS_END: i32 = 1 << 30;
+const INPUTS_END: i32 = 1 << 30;
 /// An octave is cut in halves at most so often.
-pub const MAX_HALVINGS: u32 = 3;
+const MAX_HALVINGS: u32 = 3;
 /// Most bits of a shift of a word.
 const MAX_SHIFT: u32 = 31;
 
-/// Tables whose words lie in memory as little-endian bytes, at any address; reads exactly as [`crate::table::Tables`] does.
+/// Tables whose words lie in memory as little-endian bytes, at any address; reads exactly as [`crate::Tables`] does.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadedTables<'a>(Segments<'a>);
 
@@ -29,7 +28,7 @@ impl<'a> LoadedTables<'a> {
     /// [`TablesError`]: such tables may answer wrongly.
     pub fn new(layout: Layout, words: &'a [[u8; 4]]) -> Result<Self, TablesError> {
         check_layout(&layout)?;
-        let number = |count: i32| layout.place(PressureRise(count)).number;
+        let number = |count: i32| layout.place(count).number;
         if number(layout.maximum) != layout.first_index {
             return Err(TablesError::Layout("first_index"));
         }
@@ -40,11 +39,10 @@ impl<'a> LoadedTables<'a> {
             return Err(TablesError::Words { needed, found });
         }
         let tables = Segments { layout, words };
-        let zero = tables.lookup(PressureRise(0));
-        if (zero.force.0, zero.indentation.0) != (0, 0) {
+        if tables.lookup(0).values != [0, 0] {
             return Err(TablesError::Zero);
         }
-        rises(&tables)?;
+        rises(&tables, &[0, 1])?;
         Ok(Self(tables))
     }
 
@@ -58,9 +56,9 @@ impl<'a> LoadedTables<'a> {
         self.0.words
     }
 
-    /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
-    pub fn lookup(&self, rise: PressureRise) -> Reading {
-        self.0.lookup(rise)
+    /// Both outputs at an input. Total: every `i32` has an answer.
+    pub fn lookup(&self, input: i32) -> Outputs {
+        self.0.lookup(input)
     }
 }
 
@@ -68,16 +66,13 @@ impl<'a> LoadedTables<'a> {
 fn check_layout(layout: &Layout) -> Result<(), TablesError> {
     let halvings = if layout.octaves == 1 { MAX_HALVINGS } else { 0 };
     let fields = [
-        (
-            "pressure_fraction_bits",
-            layout.pressure_fraction_bits <= MAX_FRACTION_BITS,
-        ),
+        ("fraction_bits", layout.fraction_bits <= MAX_FRACTION_BITS),
         ("maximum", (1..INPUTS_END).contains(&layout.maximum)),
         ("bias", (1..INPUTS_END).contains(&layout.bias)),
         ("octaves", (1..=2).contains(&layout.octaves)),
         ("halvings", layout.halvings <= halvings),
-        ("force_shift", layout.force_shift <= MAX_SHIFT),
-        ("indentation_shift", layout.indentation_shift <= MAX_SHIFT),
+        ("first shift", layout.shifts[0] <= MAX_SHIFT),
+        ("second shift", layout.shifts[1] <= MAX_SHIFT),
     ];
     match fields.into_iter().find(|(_, holds)| !holds) {
         Some((field, _)) => Err(TablesError::Layout(field)),

@@ -11,9 +11,9 @@ const SOUNDED: i32 = 16;
 /// Errors of one output over every input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Errors {
-    /// The output at the end of the press, newtons or metres.
+    /// The output at the end, in its unit.
     pub full_scale: f64,
-    /// Where errors of reading begin, in units of the output.
+    /// Where errors of reading begin, in its unit.
     pub from: f64,
     /// Largest, root-mean-square and mean error from there up, percent of reading (mean signed).
     pub of_reading: Spread,
@@ -21,7 +21,7 @@ pub struct Errors {
     pub of_full_scale: Spread,
     /// Largest error below `from`, percent of `from`.
     pub below_percent_of_from: f64,
-    /// Largest error that `[accuracy]` allows, percent.
+    /// Largest error that is allowed, percent.
     pub allowed_percent: f64,
     /// Steps up by one count where the output does not change.
     pub equal_steps: u64,
@@ -50,7 +50,8 @@ impl Errors {
         self.of_reading.max.max(self.below_percent_of_from) / self.allowed_percent
     }
 
-    pub(super) fn holds(&self) -> bool {
+    /// Whether the error is allowed, the output never falls, and it is zero at zero.
+    pub fn holds(&self) -> bool {
         self.share_of_allowed() <= 1.0 && self.falling_steps == 0 && self.range[0] == 0
     }
 }
@@ -60,7 +61,7 @@ pub(super) struct OutputPart<'a> {
     pub(super) range: Range,
     pub(super) sum: Sum<'a>,
     pub(super) piece: Piece<'a>,
-    /// 0: force, 1: indentation.
+    /// 0 or 1.
     pub(super) output: usize,
 }
 

@@ -1,14 +1,13 @@
 //! Makes the integers of one segmentation: the sums of each segment are rounded, close enough to the curve to rise with it.
 
+use super::AccuracyGoal;
 use super::bounds::{Range, Sum};
 use super::minimax::{FitSample, MAX_COEFFICIENTS, fit};
 use super::owned::OwnedTables;
 use super::quantise::{Coefficients, round};
 use super::shape::{Segmentation, Span, instructions};
 use super::truth::Truth;
-use crate::design_file::Accuracy;
-use crate::table::{Constant, Layout};
-use crate::units::PressureRise;
+use crate::layout::{Constant, Layout};
 use std::cell::Cell;
 
 /// Samples of a segment that a fit sees; the certificate sees every input.
@@ -59,14 +58,14 @@ impl Candidate<'_> {
 
     /// Integers for it, if rounding leaves it within the tolerance and never falling: without shifts of the outputs' own, or with
     /// one at least.
-    pub(super) fn finish(&self, accuracy: &Accuracy, shifts: Shifts) -> Option<OwnedTables> {
+    pub(super) fn finish(&self, goal: &AccuracyGoal, shifts: Shifts) -> Option<OwnedTables> {
         let mut layout = self.segmentation.layout;
         let spare = [0, 1].map(|output| self.spare_bits(output));
-        let [Some(force), Some(indentation)] = spare else {
+        let [Some(first), Some(second)] = spare else {
             return None;
         };
         let mut found = Vec::new();
-        for (output, most) in [force, indentation].into_iter().enumerate() {
+        for (output, most) in [first, second].into_iter().enumerate() {
             let least = match shifts {
                 Shifts::None => most + 1,
                 Shifts::Largest => most.max(1),
@@ -74,31 +73,25 @@ impl Candidate<'_> {
             };
             let (shift, sums) = std::iter::once(0).chain((least..=most).rev()).find_map(|shift| {
                 let spans = &self.segmentation.spans;
-                Some((shift, self.integers(&layout, output, shift, accuracy, spans, 0)?))
+                Some((shift, self.integers(&layout, output, shift, goal, spans, 0)?))
             })?;
             found.push((shift, sums));
         }
         if shifts != Shifts::None && found.iter().all(|&(shift, _)| shift == 0) {
             return None;
         }
-        (layout.force_shift, layout.indentation_shift) = (found[0].0, found[1].0);
+        layout.shifts = [found[0].0, found[1].0];
         Some(assemble(layout, &found[0].1, &found[1].1))
     }
 
-    /// The sums of the force alone and their shift, segments upwards: without a shift of its own, or with one that lets rounding keep to the tolerance.
-    pub(super) fn force_alone(&self, accuracy: &Accuracy) -> Option<(u32, Vec<Coefficients>)> {
+    /// The sums of the first output alone and their shift, segments upwards: without a shift of its own, or with one that lets
+    /// rounding keep to the tolerance.
+    pub(super) fn first_alone(&self, goal: &AccuracyGoal) -> Option<(u32, Vec<Coefficients>)> {
         let Segmentation { layout, spans } = &self.segmentation;
         let most = self.spare_bits(0)?;
         std::iter::once(0)
             .chain((1..=most).rev())
-            .find_map(|shift| Some((shift, self.integers(layout, 0, shift, accuracy, spans, 0)?)))
-    }
-
-    /// What others read at the end of their lowest segment.
-    pub(super) fn shared_end(&self, others: &OwnedTables) -> Option<[i32; 2]> {
-        let (lowest, _) = self.segmentation.spans.split_first()?;
-        let end = others.lookup(PressureRise(lowest.end - 1));
-        Some([end.force.0, end.indentation.0])
+            .find_map(|shift| Some((shift, self.integers(layout, 0, shift, goal, spans, 0)?)))
     }
 
     /// Tables of this candidate's curve in the layout of others, with their lowest segment; beyond it from these outputs on.
@@ -106,7 +99,7 @@ impl Candidate<'_> {
         &self,
         others: &OwnedTables,
         before: [i32; 2],
-        accuracy: &Accuracy,
+        goal: &AccuracyGoal,
     ) -> Option<OwnedTables> {
         let layout = others.layout;
         let (_, spans) = self.segmentation.spans.split_first()?;
@@ -114,11 +107,11 @@ impl Candidate<'_> {
             if self.spare_bits(output)? < shift {
                 return None;
             }
-            self.integers(&layout, output, shift, accuracy, spans, before)
+            self.integers(&layout, output, shift, goal, spans, before)
         };
-        let force = integers(0, layout.force_shift, before[0])?;
-        let indentation = integers(1, layout.indentation_shift, before[1])?;
-        let mut tables = assemble(layout, &force, &indentation);
+        let first = integers(0, layout.shifts[0], before[0])?;
+        let second = integers(1, layout.shifts[1], before[1])?;
+        let mut tables = assemble(layout, &first, &second);
         tables.words.extend(others.segment(spans.len()));
         Some(tables)
     }
@@ -145,11 +138,11 @@ impl Candidate<'_> {
         layout: &Layout,
         output: usize,
         shift: u32,
-        accuracy: &Accuracy,
+        goal: &AccuracyGoal,
         spans: &[Span],
         before: i32,
     ) -> Option<Vec<Coefficients>> {
-        let tolerance = Tolerance::both(self.truth, accuracy)[output];
+        let tolerance = Tolerance::both(self.truth, goal)[output];
         let rising = Rising {
             layout,
             output,
@@ -289,14 +282,10 @@ pub(super) struct Tolerance {
 }
 
 impl Tolerance {
-    pub(super) fn both(truth: &Truth, accuracy: &Accuracy) -> [Self; 2] {
-        let percents = [
-            accuracy.force_percent_of_reading,
-            accuracy.indentation_percent_of_reading,
-        ];
+    pub(super) fn both(truth: &Truth, goal: &AccuracyGoal) -> [Self; 2] {
         [0, 1].map(|output| Self {
-            share: percents[output] / 100.0,
-            from: truth.full_scale[output] * accuracy.from_percent_of_full_scale / 100.0,
+            share: goal.percent_of_reading[output] / 100.0,
+            from: truth.full_scale[output] * goal.from_percent_of_full_scale / 100.0,
         })
     }
 
@@ -308,13 +297,13 @@ impl Tolerance {
 /// What the coefficients are multiplied with at a count, in units of the sum.
 pub(super) fn factors(layout: &Layout, count: i32) -> [f64; MAX_COEFFICIENTS] {
     let [a, b, c, d] = layout
-        .factors(layout.place(PressureRise(count)).mantissa)
+        .factors(layout.place(count).mantissa)
         .map(|factor| f64::from(factor) / 65536.0);
     [1.0, a, b, c, d]
 }
 
 /// Counts of a segment, both ends included, denser towards the ends as the extremes of an error are, on a scale of its octaves;
-/// the segment of first contact is graded towards zero, where the indentation has a logarithm.
+/// the segment of first contact is graded towards zero, where an output may have a logarithm.
 pub(super) fn counts(span: &Span, bias: i32) -> Vec<i32> {
     let last = span.end - 1;
     let length = f64::from(last - span.start);
@@ -335,12 +324,12 @@ pub(super) fn counts(span: &Span, bias: i32) -> Vec<i32> {
     counts
 }
 
-/// Tables with these sums of the force, and the indentation of others.
-pub(super) fn with_force(others: &OwnedTables, shift: u32, force: &[Coefficients]) -> OwnedTables {
+/// Tables with these sums of the first output, and the second of others.
+pub(super) fn with_first(others: &OwnedTables, shift: u32, first: &[Coefficients]) -> OwnedTables {
     let mut layout = others.layout;
-    layout.force_shift = shift;
-    let none = vec![[0; MAX_COEFFICIENTS]; force.len()];
-    let mut tables = assemble(layout, force, &none);
+    layout.shifts[0] = shift;
+    let none = vec![[0; MAX_COEFFICIENTS]; first.len()];
+    let mut tables = assemble(layout, first, &none);
     for (at, (own, other)) in tables.words.iter_mut().zip(&others.words).enumerate() {
         match at % layout.words() {
             0 => {}
@@ -352,18 +341,18 @@ pub(super) fn with_force(others: &OwnedTables, shift: u32, force: &[Coefficients
 }
 
 /// The words of the tables, the segment of the largest inputs first.
-fn assemble(layout: Layout, force: &[Coefficients], indentation: &[Coefficients]) -> OwnedTables {
-    let pair = |force: i32, indentation: i32| force << 16 | i32::from(indentation as i16 as u16);
+fn assemble(layout: Layout, first: &[Coefficients], second: &[Coefficients]) -> OwnedTables {
+    let pair = |upper: i32, lower: i32| upper << 16 | i32::from(lower as i16 as u16);
     let mut words = Vec::new();
-    for (force, indentation) in force.iter().zip(indentation).rev() {
-        words.extend([force[0], indentation[0]]);
+    for (upper, lower) in first.iter().zip(second).rev() {
+        words.extend([upper[0], lower[0]]);
         // With halves, a constant's fraction is the linear coefficient already.
-        let first = match layout.constant {
+        let lowest = match layout.constant {
             Constant::Half => 2,
             Constant::Whole => 1,
         };
-        for power in first..=layout.powers.terms() {
-            words.push(pair(force[power], indentation[power]));
+        for power in lowest..=layout.powers.terms() {
+            words.push(pair(upper[power], lower[power]));
         }
     }
     OwnedTables { layout, words }

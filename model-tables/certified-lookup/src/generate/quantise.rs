@@ -4,7 +4,7 @@
 //! the remainder, and so on down. The rounding with the smallest maximum error is kept.
 
 use super::minimax::{FitSample, MAX_COEFFICIENTS, fit};
-use crate::table::Constant;
+use crate::layout::Constant;
 
 /// How many integers on either side of the best real coefficient are tried, one after the other until one is exact enough: of the two
 /// highest powers, which over a short segment are worth little, so that what is best for them may be any number. What they
@@ -12,7 +12,7 @@ use crate::table::Constant;
 const REACHES: [i32; 3] = [1, 2, 5];
 
 /// The integers of one segment's sum: the constant in units of the sum, then the coefficients.
-pub(super) type Coefficients = [i32; MAX_COEFFICIENTS];
+pub type Coefficients = [i32; MAX_COEFFICIENTS];
 
 /// The best integers with which every sample's error stays below `limit` half widths.
 pub(super) fn round(
