@@ -2,7 +2,7 @@
 
 /// Pressure over the rest pressure, in counts of `1 / 2^k` pascal.
 ///
-/// `k` belongs to a design and is [`crate::table::Layout::pressure_fraction_bits`]. From `-(2^31 - 1)` to `2^31 - 1`, so that the
+/// `k` belongs to a design and is [`crate::table::Layout::fraction_bits`]. From `-(2^31 - 1)` to `2^31 - 1`, so that the
 /// lookup can take a rise from any that is not negative and stay in the word.
 #[derive(Clone, Copy, Debug, Default, Eq, Ord, PartialEq, PartialOrd)]
 pub struct PressureRise(pub i32);

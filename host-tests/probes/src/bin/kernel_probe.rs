@@ -158,17 +158,16 @@ mod probe {
                 mod $module {
                     include!(concat!("../../../../model-tables/golden/", $path, "/tables.rs"));
                     use core::hint::black_box;
-                    use model_tables::table::Reading;
-                    use model_tables::units::PressureRise;
+                    use model_tables::table::Outputs;
 
                     #[inline(never)]
-                    pub(super) fn $lookup(rise: i32, out: &mut Reading) {
-                        *out = TABLES.lookup(PressureRise(rise));
+                    pub(super) fn $lookup(rise: i32, out: &mut Outputs) {
+                        *out = TABLES.lookup(rise);
                     }
 
                     pub(super) fn run(share: f32) {
                         let rise = (share * TABLES.layout.maximum as f32) as i32;
-                        $lookup(rise, black_box(&mut Reading::default()));
+                        $lookup(rise, black_box(&mut Outputs::default()));
                     }
                 }
             )*
