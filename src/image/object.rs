@@ -111,8 +111,8 @@ macro_rules! object_design {
                         self.last_rise(),
                         model_tables::units::PressureRise(TABLES.layout.maximum),
                     ],
-                    plate: |rise| model_tables::table::Reading::from(TABLES.lookup(rise.0)),
-                    ball: |rise| model_tables::table::Reading::from(TABLES.layout.lookup_in(&BALL, rise.0)),
+                    plate: |rise: model_tables::units::PressureRise| model_tables::table::Reading::from(TABLES.lookup(rise.0)),
+                    ball: |rise: model_tables::units::PressureRise| model_tables::table::Reading::from(TABLES.layout.lookup_in(&BALL, rise.0)),
                 };
                 Some(lookups.tell(&LAW, self.read.as_ref()?, known))
             }
