@@ -5,6 +5,7 @@ use model_tables::design_file::DesignFile;
 use model_tables::generate::{Generated, from_design, from_design_or_worse};
 use model_tables::membrane::state::Wrinkling;
 use model_tables::model::{self, Fingertip};
+use model_tables::table::ContactLookup as _;
 use model_tables::units::PressureRise;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -162,7 +163,7 @@ pub(crate) fn estimate<'py>(
     let bits = tables.layout.fraction_bits;
     let readings: Vec<_> = pressure_rise_pa
         .iter()
-        .map(|&pascals| tables.lookup(PressureRise::from_pascals(pascals, bits)))
+        .map(|&pascals| tables.contact_at(PressureRise::from_pascals(pascals, bits)))
         .collect();
     let force = readings.iter().map(|reading| reading.force.newtons());
     let indentation = readings.iter().map(|reading| reading.indentation.metres() * 1e3);
