@@ -1,17 +1,21 @@
-//! The membrane model of a soft, fluid-filled fingertip and the compact tables made from it.
+//! The models of a soft, fluid-filled fingertip, membrane and solid, and the compact tables made from them.
 //!
-//! An axisymmetric hyperelastic dome is inflated to its rest state, bonded at its equator to a rigid base, filled with
-//! incompressible fluid and pressed by a flat, frictionless plate. The model gives pressure, force, contact, shape
-//! and tensions at any indentation up to the end of the press, or says why there is no answer.
+//! An axisymmetric hyperelastic dome is bonded at its equator to a rigid base, filled with incompressible fluid, inflated or not, and
+//! pressed by a plate, a ball, a cup or a punch. The models give pressure, force, contact and shape at any indentation up to the end of
+//! the press, or say why there is no answer.
 //!
 //! ```
 //! use model_tables::design::{Design, Membrane, RestBy};
 //! use model_tables::object::Object;
 //! use model_tables::{material::Law, membrane::TensionField, membrane::press::Press};
 //!
-//! // Metres and pascals: a small dome of Agilus30, inflated to 2.3 times its length at the pole.
+//! // Metres and pascals: a small dome of Agilus30, stretched to 2.3 at its pole.
 //! let design = Design {
-//!     membrane: Membrane { radial_semi_axis: 4.5e-3, axial_semi_axis: 2.7e-3, thickness: 1e-3 },
+//!     membrane: Membrane {
+//!         radial_semi_axis: 4.5e-3,
+//!         axial_semi_axis: 2.7e-3,
+//!         thickness: 1e-3,
+//!     },
 //!     law: Law::MooneyRivlin { c1: 160_355.0, c2: 46_559.0 },
 //!     rest: RestBy::PoleStretch(2.3),
 //!     compliance: 0.0,
@@ -27,7 +31,7 @@
 //!
 //! [`design`] (what the fingertip is) of a [`material`], and the [`object`] that it touches -> [`membrane`] (thin walls) or [`solid`] (walls that bend), with the
 //! [`solver`], which knows no physics -> `model` (either of them behind one interface, and which of them a design needs) ->
-//! [`curve`] (pressure rise -> force and indentation) -> `generate` (tables and certificate, by [`certified_lookup`]) -> [`table`] (integers for the
+//! [`curve`] (pressure rise -> force and indentation) -> `generate` (tables and certificate, by `certified_lookup`) -> [`table`] (integers for the
 //! chip, in the quantities of [`units`], beside the [`constants`] of the design), or a [`block`] of bytes that is loaded. A design comes from a file by
 //! `design_file`. Beside it all stands the feedback [`actuator`].
 //!

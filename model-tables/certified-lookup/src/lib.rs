@@ -9,7 +9,7 @@
 //! # #[cfg(feature = "generate")] {
 //! use certified_lookup::generate::{AccuracyGoal, CurvePair, CurvePoint, tables};
 //!
-//! /// A float in a conical tank: depth in micrometres -> volume in cubic millimetres, and wetted wall in square millimetres.
+//! /// A conical vessel with a flat foot: depth in micrometres -> volume in mm^3, and surface in mm^2.
 //! struct Cone;
 //!
 //! impl CurvePair for Cone {
@@ -18,12 +18,16 @@
 //!     }
 //!
 //!     fn points(&self) -> Vec<CurvePoint> {
-//!         (1..=64).map(f64::from).map(|i| 1.5e5 * i / 64.0).map(|input| CurvePoint { input, outputs: self.at(input) }).collect()
+//!         let depths = (1..=64).map(|i| 1.5e5 * f64::from(i) / 64.0);
+//!         depths.map(|input| CurvePoint { input, outputs: self.at(input) }).collect()
 //!     }
 //! }
 //!
 //! let end = CurvePoint { input: 1.5e5, outputs: Cone.at(1.5e5) };
-//! let goal = AccuracyGoal { percent_of_reading: [0.5, 0.5], from_percent_of_full_scale: 1.0 };
+//! let goal = AccuracyGoal {
+//!     percent_of_reading: [0.5, 0.5],
+//!     from_percent_of_full_scale: 1.0,
+//! };
 //! let made = tables(&Cone, end, &goal, 10.0)?;
 //! assert!(made.proof.holds() && made.proof.outputs[0].of_reading.max <= 0.5);
 //! let half = made.tables.lookup(75_000 << made.tables.layout.fraction_bits);
@@ -36,12 +40,12 @@
 //!
 //! Let `f` be a curve and `T` the integer table. For every integer input from 0 to the table's maximum: `|T - f|` is at most the
 //! stated share of `f` (below a stated part of full scale, of that part), `T` never falls, `T(0) = 0`, and inputs beyond either end
-//! read as the end does, with a flag. Up to 2^22 inputs are evaluated one by one. Beyond, a range of inputs is settled by bounds:
+//! read as the end does, with a flag. Up to 2<sup>22</sup> inputs are evaluated one by one. Beyond, a range of inputs is settled by bounds:
 //!
 //! 1. The table's sum of real factors, and the local polynomial that stands for `f`, are polynomials in the place within the range.
 //!    *Theorem:* a polynomial of degree `n` lies between the least and the largest of its coefficients in Bernstein's basis of degree `n`
 //!    over the range (the convex hull property: G. Farin, *Curves and Surfaces for CAGD*, 5th edition, chapter 5).
-//! 2. What the integers add is bounded: a product rounded down loses less than 1, a factor less than 1.6 of `2^-32`.
+//! 2. What the integers add is bounded: a product rounded down loses less than 1, a factor less than 1.6 of 2<sup>-32</sup>.
 //! 3. A range that these two do not settle is halved, and evaluated where it is short.
 //!
 //! Largest errors, equal and falling steps are therefore those of full evaluation, to the digit. How far the local polynomials are

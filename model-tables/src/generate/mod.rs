@@ -1,6 +1,6 @@
 //! The generator: a press curve and the accuracy wanted of it -> integer tables and their certificate.
 //!
-//! [`from_design_file`] does every step: design file -> full model -> tables, with every input checked. The tables are made and proven by [`certified_lookup`]. Tables that do not meet the
+//! [`from_design_file`] does every step: design file -> full model -> tables, with every input checked. The tables are made and proven by `certified_lookup`. Tables that do not meet the
 //! design's accuracy are never returned.
 
 mod design;

@@ -1,6 +1,6 @@
 //! The lookup on the chip: pressure rise -> force and indentation, integers only.
 //!
-//! How it works and what is proven of it is in [`certified_lookup`]; here its two outputs are the force in micronewtons and the
+//! How it works and what is proven of it is in `certified_lookup`; here its two outputs are the force in micronewtons and the
 //! indentation in nanometres, its input is the pressure rise, and tables of other objects and of a feedback force are made of it.
 //!
 //! The tables of a design are a constant, so the compiler folds everything but the coefficients.
