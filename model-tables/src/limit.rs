@@ -11,7 +11,7 @@ pub enum EndsBy {
     FluidDrained,
     /// The inner surface of a solid wall reaches the base plane.
     WallTouchesBase,
-    /// The material law softens at strains that a solid wall reaches, and nothing more is in balance.
+    /// The material law softens at strains that the wall reaches, and nothing more is in balance.
     MaterialSoftens,
     /// A solid wall folds onto itself.
     WallFolds,

@@ -7,6 +7,7 @@ use common::{AGILUS30, design};
 use model_tables::design::{Design, RestBy};
 use model_tables::limit::EndsBy;
 use model_tables::material::Law;
+use model_tables::material::preset::Preset;
 use model_tables::material::stability::Mode;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::Unsolved;
@@ -304,4 +305,38 @@ fn a_dome_that_inflates_by_itself_is_refused() {
     );
     // As 1 / (1 - c / c_largest).
     assert!((nearly / half / 5.0 - 1.0).abs() < 0.05, "{half} {nearly}");
+}
+
+/// A cast silicone whose law has `C3 < 0`, in designs that `size` finds: the press ends where the law softens, with the last state found, and
+/// what is asked beyond is refused by that end.
+#[test]
+fn a_press_whose_law_softens_ends_there_with_its_reason() {
+    for (name, [a, b, h], stretch, about) in [
+        ("dragon-skin-10", [6.18, 4.934, 1.48], 1.55534, 4.04),
+        ("dragon-skin-20", [10.0, 9.0, 1.1308], 1.55379, 6.01),
+        ("dragon-skin-30", [4.653, 9.0, 1.251], 1.19557, 5.39),
+    ] {
+        let law = Preset::named(name).expect("listed").law;
+        let mut press = relaxed(&design(a, b, h, law, stretch)).expect("a rest state");
+        let limit = press.limit().expect("an end");
+        assert_eq!(limit.ends_by, EndsBy::MaterialSoftens, "{name}");
+        assert!(
+            (1e3 * limit.indentation / about - 1.0).abs() < 0.01,
+            "{name}: {limit:?}"
+        );
+        let last = press
+            .at_indentation(limit.indentation)
+            .expect("the last state found");
+        assert!((limit.force / last.force - 1.0).abs() < 1e-6, "{name}: {limit:?}");
+        // Hardly anything is left of the law's stability there, and it was well before.
+        assert!(press.stability().value < 0.02, "{name}");
+        press.at_indentation(0.5 * limit.indentation).expect("a state");
+        assert!(press.stability().value > 0.02, "{name}");
+        for asked in [1.01 * limit.indentation, 1.3 * limit.indentation] {
+            match press.at_indentation(asked) {
+                Err(MembraneError::BeyondLimit { limit: told, .. }) => assert_eq!(told, limit),
+                other => panic!("{name}: {other:?}"),
+            }
+        }
+    }
 }

@@ -5,6 +5,7 @@
 //! collocation with other Gauss points, of order sixteen, on a finer mesh.
 
 use super::draw::{Case, INDENTATIONS};
+use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::membrane::TensionField;
 use model_tables::membrane::adapt::{Resolution, Unsolved};
@@ -95,6 +96,9 @@ fn work_error(press: &mut Press, state: &PressedState, step: f64) -> Result<(f64
 fn reason(error: &MembraneError, press: Option<&Press>) -> &'static str {
     let failure = match error {
         MembraneError::NoRestState { .. } => return "pole-stretch-turns",
+        MembraneError::BeyondLimit { limit, .. } if limit.ends_by == EndsBy::MaterialSoftens => {
+            return "press-law-unstable";
+        }
         MembraneError::BeyondLimit { .. } => return "beyond-limit",
         MembraneError::NotAnIndentation { .. } => return "not-an-indentation",
         MembraneError::LawUnstable { .. } => return "law-unstable",

@@ -22,6 +22,8 @@ const EARLIEST_TOUCH: f64 = 0.3;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Indentation over the height to which the largest contact is found.
 const TURN_TOLERANCE: f64 = 1e-6;
+/// Margin of the law's stability under which a press that finds no next state ends because the law softens.
+const NO_MARGIN: f64 = 0.02;
 
 impl<L: Hyperelastic, const S: usize> Press<L, S> {
     /// The end of the press.
@@ -131,6 +133,15 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                     let pressure = self.latest().solution.parameters[PRESSURE];
                     return Ok(end(at, pressure, EndsBy::BulgeTouchesBase));
                 }
+                // The last state found is the end, with its own contact.
+                Stop::Failed { .. } if step < SMALLEST_STEP * height && self.softens() => {
+                    let last = &self.latest().solution;
+                    let [_, pressure, radius, _] = last.parameters;
+                    return Ok(Limit {
+                        force: pressure * PI * radius * radius * scale.tension * unit,
+                        ..end(height - last.height, pressure, EndsBy::MaterialSoftens)
+                    });
+                }
                 Stop::Failed { failure, .. } if step < SMALLEST_STEP * height => {
                     return Err(MembraneError::PressUnsolved {
                         asked: next * unit,
@@ -141,6 +152,20 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                 _ => {}
             }
         }
+    }
+
+    /// Whether the law has lost all but a little of its stability in the latest state.
+    fn softens(&self) -> bool {
+        self.stability().value < NO_MARGIN
+    }
+
+    /// The end of a press whose law softens, if an indentation that was not reached lies beyond it.
+    pub(super) fn softened_before(&mut self, indentation: f64) -> Option<Limit> {
+        if !self.softens() {
+            return None;
+        }
+        let limit = self.limit().ok()?;
+        (limit.ends_by == EndsBy::MaterialSoftens && indentation > limit.indentation).then_some(limit)
     }
 
     /// An indentation between two at which the contact is wider than the edge, that is, the bulge below the base; if there

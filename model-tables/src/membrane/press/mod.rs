@@ -243,10 +243,16 @@ impl<L: Hyperelastic, const S: usize> Press<L, S> {
                     asked: indentation,
                     limit: self.limit()?,
                 },
-                Stop::Failed { reached, failure } => MembraneError::PressUnsolved {
-                    asked: indentation,
-                    reached: reached * self.scale.length,
-                    failure,
+                Stop::Failed { reached, failure } => match self.softened_before(indentation) {
+                    Some(limit) => MembraneError::BeyondLimit {
+                        asked: indentation,
+                        limit,
+                    },
+                    None => MembraneError::PressUnsolved {
+                        asked: indentation,
+                        reached: reached * self.scale.length,
+                        failure,
+                    },
                 },
             });
         }
