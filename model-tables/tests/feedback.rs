@@ -117,6 +117,39 @@ fn what_cannot_balance_is_refused_with_the_reason() {
     );
 }
 
+/// A free disc of 0.05 mm: fingertips of some compliances on the way have no state 3 mm deep, and the loop has one. Its end is one number,
+/// whatever was asked, and no state lies beyond it.
+#[test]
+fn the_end_of_a_loop_depends_on_nothing_but_the_design() {
+    let thin = || {
+        let disc = actuator(FarSide::Free, AGILUS30, 0.05e-3);
+        Loop::new(Kind::Solid(COARSE), &printed(0.0), disc).expect("at rest")
+    };
+    let limit = thin().limit().expect("an end");
+    assert!(limit.indentation > 3e-3, "{limit:?}");
+    for (before, asked) in [(None, 1.05), (Some(3.4e-3), 1.2)] {
+        let mut haptic = thin();
+        if let Some(before) = before {
+            haptic.at_indentation(before).expect("a state");
+        }
+        let asked = asked * limit.indentation;
+        let refused = haptic.at_indentation(asked).expect_err("beyond");
+        let told = haptic.explained(refused, asked);
+        let LoopError::BeyondLimit { limit: end, .. } = told else {
+            panic!("{told:?}")
+        };
+        assert!((end - limit.indentation).abs() < 1e-15, "{end}");
+    }
+    let mut haptic = thin();
+    haptic
+        .at_indentation(limit.indentation)
+        .expect("the end is a state");
+    let state = haptic.at_indentation(3e-3).expect("a state");
+    // Both share the fluid: what the tip alone has lost, the disc has taken.
+    let taken = state.volume_moved / state.touch.pressure_rise;
+    assert!((taken / state.compliance - 1.0).abs() < 1e-6, "{taken:e}");
+}
+
 const SKIN: FarSide = FarSide::Foundation {
     gap: 0.0,
     stiffness: 20e6,

@@ -5,8 +5,11 @@
 //! solver searches for this compliance, and solves states of neighbouring compliances from one another.
 
 mod curve;
+mod edge;
+mod limit;
 
 pub use curve::LoopCurve;
+pub use limit::LoopLimit;
 
 use super::{Fingertip, Kind, ModelError};
 use crate::curve::Contact;
@@ -21,6 +24,7 @@ use crate::solid::gas::TrappedGas;
 use crate::solid::inflation::mid_surface;
 use crate::solid::mesh::Elements;
 use crate::solid::section::WallPoint;
+use edge::Edge;
 use std::fmt;
 
 /// Accuracy of the compliance, relative: a solid has its pressure to some 1e-8.
@@ -38,6 +42,8 @@ const ABOUT: f64 = 1e-2;
 const LIGHT: f64 = 0.05;
 /// Iterations after which there is no balance: doublings, then halvings of a bracket.
 const MAX_ITERATIONS: u32 = 80;
+/// Steps on the way from rest to a state that was not found at once.
+const WAY: u32 = 8;
 
 /// Why the loop gives no answer.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +60,17 @@ pub enum LoopError {
         asked: f64,
         /// The least pressure at which the actuator failed, and why, if it did.
         failed: Option<DiscError>,
+        /// Why the fingertip has no state with some compliance in between, if it has none.
+        tip: Option<ModelError>,
+    },
+    /// The indentation lies beyond the end of the loop.
+    BeyondLimit {
+        /// What was asked for, metres.
+        asked: f64,
+        /// The end, metres.
+        limit: f64,
+        /// What ends, in a word.
+        ends_by: &'static str,
     },
     /// The actuator presses from some state of the press on, and tables are of forces from rest on.
     Apart {
@@ -70,17 +87,23 @@ impl fmt::Display for LoopError {
             Self::NoActuator => f.write_str(
                 "the loop needs the actuator as a disc: give [actuator] diameter_mm and thickness_mm",
             ),
-            Self::NoBalance { asked, failed } => {
-                write!(
-                    f,
-                    "fingertip and actuator do not balance at indentation {} mm",
-                    asked * 1e3
-                )?;
-                match failed {
-                    Some(error) => write!(f, ": {error}; or press less deep"),
-                    None => write!(f, "; press less deep, or take a stiffer actuator"),
-                }
-            }
+            Self::NoBalance { asked, .. } => write!(
+                f,
+                "fingertip and actuator do not balance at indentation {} mm ({}); press less deep, or take a stiffer actuator",
+                asked * 1e3,
+                self.word()
+            ),
+            Self::BeyondLimit {
+                asked,
+                limit,
+                ends_by,
+            } => write!(
+                f,
+                "indentation {} mm is beyond the limit of {:.3} mm, below which fingertip and actuator do not balance ({ends_by}); \
+                 ask for less, or take a stiffer actuator",
+                asked * 1e3,
+                limit * 1e3
+            ),
             Self::Apart { rise } => write!(
                 f,
                 "the actuator does not reach what is over it up to a pressure rise of {rise:.1} Pa, and its force has tables only                  where it presses from the first touch on; set actuator.gap_mm to 0, or leave actuator.thickness_mm out"
@@ -292,19 +315,63 @@ impl Loop {
         Ok(if is_smooth { simpson } else { difference })
     }
 
-    /// The state at an indentation of the fingertip in metres, 0 ..= limit.
+    /// The state at an indentation of the fingertip in metres, 0 ..= limit: from the latest state, or else over states from rest on.
     ///
     /// # Errors
     /// [`LoopError`].
     pub fn at_indentation(&mut self, indentation: f64) -> Result<LoopState, LoopError> {
+        let direct = self.search(indentation);
+        if !matches!(&direct, Err(error) if error.is_end()) {
+            return direct;
+        }
+        let mut from_rest = self.at_rest();
+        for step in 1..WAY {
+            if from_rest
+                .search(indentation * f64::from(step) / f64::from(WAY))
+                .is_err()
+            {
+                return direct;
+            }
+        }
+        let found = from_rest.search(indentation);
+        if found.is_err() {
+            return direct;
+        }
+        *self = from_rest;
+        found
+    }
+
+    /// The same before anything was solved.
+    fn at_rest(&self) -> Self {
+        Self {
+            compliance: self.constant_compliance(),
+            near: None,
+            ..self.clone()
+        }
+    }
+
+    /// The state at an indentation, from the compliance of the latest.
+    fn search(&mut self, indentation: f64) -> Result<LoopState, LoopError> {
         // Where the actuator takes more than the compliance stands for (or does not stand the pressure), more is needed; else less.
         let (mut low, mut high) = (self.design.compliance, f64::INFINITY);
         let mut compliance = self.compliance;
         let mut before: Option<[f64; 2]> = None;
         let mut failed = None;
         let mut nearest: Option<(f64, LoopState)> = None;
+        let mut edge = Edge::default();
         for _ in 0..MAX_ITERATIONS {
-            let touch = self.touch(indentation, compliance)?;
+            let touch = match self.touch(indentation, compliance) {
+                Ok(touch) => touch,
+                Err(error) => {
+                    let stiffest = self.design.compliance;
+                    compliance = edge.without(error, compliance, stiffest, [&mut low, &mut high])?;
+                    if edge.is_at([low, high]) {
+                        break;
+                    }
+                    before = None;
+                    continue;
+                }
+            };
             if touch.pressure_rise <= 0.0 {
                 return self.state(touch, compliance).map_err(LoopError::Actuator);
             }
@@ -327,6 +394,7 @@ impl Loop {
                     } else {
                         high = compliance;
                     }
+                    edge.found(excess > 0.0);
                     // The secant through the last two, or what is needed at the pressure of now.
                     next = Some(match before {
                         Some([c, e]) if (e - excess).abs() > 0.0 => {
@@ -338,10 +406,11 @@ impl Loop {
                 }
                 Err(error) => {
                     low = compliance;
+                    edge.found(true);
                     failed = Some(error);
                 }
             }
-            if high.is_finite() && high - low <= TOLERANCE * high {
+            if edge.is_at([low, high]) || high.is_finite() && high - low <= TOLERANCE * high {
                 break;
             }
             let middle = if high.is_finite() {
@@ -356,6 +425,7 @@ impl Loop {
             _ => Err(LoopError::NoBalance {
                 asked: indentation,
                 failed,
+                tip: edge.tip,
             }),
         }
     }

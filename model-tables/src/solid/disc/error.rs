@@ -114,3 +114,13 @@ impl fmt::Display for DiscError {
 }
 
 impl core::error::Error for DiscError {}
+
+impl DiscError {
+    /// What ends, in a word.
+    pub(crate) fn word(&self) -> &'static str {
+        match self {
+            Self::BeyondLimit { limit, .. } => limit.ends_by.word(),
+            _ => DiscEnd::NoFurtherState.word(),
+        }
+    }
+}

@@ -1,9 +1,8 @@
 //! `designer loop --diameter-mm`: the loop over diameters of the actuator.
 
 use super::super::bench;
-use super::{COLUMNS, at_rest, cells, of_constant_compliance};
+use super::{COLUMNS, Solving, at_rest, cells, of_constant_compliance, state_at};
 use model_tables::design_file::DesignFile;
-use output::progress::Progress;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
 use std::path::Path;
@@ -29,7 +28,7 @@ pub(super) fn run(
 ) -> Result<CommandAnswer, Refusal> {
     let mut rows = Rows::new(BY_DIAMETER);
     let mut notes = Vec::new();
-    let progress = Progress::new("loop");
+    let solving = Solving::begin(diameters.len() * indentations.len());
     for (i, &diameter) in diameters.iter().enumerate() {
         let disc = super::disc(file, &design_file.with_actuator_diameter(diameter))?;
         let refuse = |error: &dyn std::fmt::Display| {
@@ -43,9 +42,8 @@ pub(super) fn run(
         let mut deepest = None;
         for &asked in indentations {
             let indentation = bench::depth(&design_file.calibration, asked);
-            let state = haptic
-                .at_indentation(indentation)
-                .map_err(|error| refuse(&error))?;
+            let state = state_at(&mut haptic, indentation).map_err(|error| refuse(&error))?;
+            solving.is_done();
             let mut row = vec![Cell::Number(diameter), Cell::Number(asked)];
             row.extend(cells(&state));
             rows.push(row);
@@ -57,8 +55,6 @@ pub(super) fn run(
             let told = of_constant_compliance(&haptic, indentation, &state);
             notes.push(format!("diameter {diameter} mm: {told}"));
         }
-        progress.set((i + 1) as f64 / diameters.len() as f64);
     }
-    progress.finish();
     Ok(CommandAnswer { rows, notes })
 }

@@ -3,12 +3,11 @@
 use super::super::history::{self, FORCE, INDENTATION};
 use super::super::time_rows::{self, TimeRows};
 use super::super::warn;
-use super::{COLUMNS, at_rest, cells};
+use super::{COLUMNS, Solving, at_rest, cells, state_at};
 use model_tables::design_file::DesignFile;
 use model_tables::material::relaxation::Relaxation;
 use model_tables::solid::disc::{DISC, DiscDesign, DiscInTime};
 use model_tables::solid::history::History;
-use output::progress::Progress;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
 use std::path::Path;
@@ -55,7 +54,7 @@ pub(super) fn run(
     )
     .map_err(|error| Refusal::about(file, &error))?;
     let mut answer = Rows::new(IN_TIME);
-    let progress = Progress::new("loop");
+    let solving = Solving::begin(read.rows.len());
     for (i, row) in read.rows.iter().enumerate() {
         let instant = if i == 0 {
             haptic.now()
@@ -64,7 +63,7 @@ pub(super) fn run(
                 .advance(row.time, drive(row))
                 .map_err(|error| Refusal::about(rows, &error))?
         };
-        progress.set((i + 1) as f64 / read.rows.len() as f64);
+        solving.is_done();
         let disc = haptic.actuator().expect("a history with an actuator");
         let transmission = instant.in_contact().then(|| disc.force / instant.force);
         answer.push(vec![
@@ -82,7 +81,6 @@ pub(super) fn run(
             Cell::Number(disc.volume * 1e9),
         ]);
     }
-    progress.finish();
     let notes = history::note_of_auto(design, elements).into_iter().collect();
     Ok(CommandAnswer { rows: answer, notes })
 }
@@ -99,16 +97,17 @@ fn row_by_row(
     history::check(rows, &read.rows, |row| {
         history::drive(calibration, INDENTATION, row)
     })?;
+    let solving = Solving::begin(read.rows.len());
     let (mut haptic, note) = at_rest(file, design, disc)?;
     let mut answer = Rows::new(IN_TIME);
     for row in &read.rows {
         let metres = calibration.indentation_of(1e-3 * row.value);
-        let state = haptic
-            .at_indentation(metres.max(0.0))
+        let state = state_at(&mut haptic, metres.max(0.0))
             .map_err(|error| Refusal::about(rows, &format_args!("time_s = {}: {error}", row.time)))?;
         let mut out = vec![Cell::Number(row.time), Cell::Number(row.value)];
         out.extend(cells(&state));
         answer.push(out);
+        solving.is_done();
     }
     let mut notes: Vec<String> = note.into_iter().collect();
     notes.extend(super::of_rest(&haptic));

@@ -6,11 +6,15 @@ mod in_time;
 use super::numbers::{self, Numbers};
 use super::{bench, model, read};
 use model_tables::design_file::DesignFile;
-use model_tables::model::feedback::{Loop, LoopState};
+use model_tables::model::feedback::{Loop, LoopError, LoopState};
 use model_tables::solid::disc::{DISC, Disc, DiscDesign};
+use output::progress::Ticks;
 use output::rows::{Cell, Rows};
 use output::{CommandAnswer, Refusal};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 const COLUMNS: &[&str] = &[
     "indentation_mm",
@@ -88,23 +92,57 @@ fn cells(state: &LoopState) -> [Cell; 6] {
     ]
 }
 
+/// A line each second while states are solved: a thin actuator takes seconds for one.
+struct Solving {
+    done: Arc<AtomicUsize>,
+    _ticks: Ticks,
+}
+
+impl Solving {
+    fn begin(count: usize) -> Self {
+        let done = Arc::new(AtomicUsize::new(0));
+        let (counted, begun) = (done.clone(), Instant::now());
+        Self {
+            done,
+            _ticks: Ticks::begin(move || {
+                format!(
+                    "loop: {:.0} s, {} of {count} states",
+                    begun.elapsed().as_secs_f64(),
+                    counted.load(Ordering::Relaxed)
+                )
+            }),
+        }
+    }
+
+    fn is_done(&self) {
+        self.done.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+/// The state at an indentation, metres; beyond the end of the loop, that end.
+fn state_at(haptic: &mut Loop, indentation: f64) -> Result<LoopState, LoopError> {
+    haptic
+        .at_indentation(indentation)
+        .map_err(|error| haptic.explained(error, indentation))
+}
+
 fn at_indentations(
     file: &Path,
     design_file: &DesignFile,
     disc: &DiscDesign,
     asked: &[f64],
 ) -> Result<CommandAnswer, Refusal> {
+    let solving = Solving::begin(asked.len());
     let (mut haptic, note) = at_rest(file, design_file, disc)?;
     let mut rows = Rows::new(COLUMNS);
     let mut deepest = None;
     for &asked in asked {
         let indentation = bench::depth(&design_file.calibration, asked);
-        let state = haptic
-            .at_indentation(indentation)
-            .map_err(|error| Refusal::about(file, &error))?;
+        let state = state_at(&mut haptic, indentation).map_err(|error| Refusal::about(file, &error))?;
         let mut row = vec![Cell::Number(asked)];
         row.extend(cells(&state));
         rows.push(row);
+        solving.is_done();
         if deepest.is_none_or(|(depth, _)| indentation > depth) {
             deepest = Some((indentation, state));
         }
