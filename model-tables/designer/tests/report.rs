@@ -275,3 +275,50 @@ fn a_page_of_a_wall_that_relaxes_says_what_static_tables_make_of_it() {
     assert!((0.566..1.0).contains(&value(&row[4], "mm")), "{row:?}");
     assert!(!page(&shipped("skin-analogue"), "elastic").contains("Static tables in time"));
 }
+
+/// Fingertip and actuator share the fluid in every state of the page: what `designer loop` gives, and what the tables were made of.
+#[test]
+fn a_page_of_a_haptic_loop_is_of_fingertip_and_actuator_together() {
+    let design = shipped("haptic-loop");
+    let text = page(&design, "loop");
+    let document = parsed(&text);
+    let solved = Command::new(env!("CARGO_BIN_EXE_designer"))
+        .arg("loop")
+        .arg(&design)
+        .args(["--indentation-mm", "2.5", "--format", "csv"])
+        .output()
+        .expect("the binary runs");
+    let solved = String::from_utf8(solved.stdout).expect("text");
+    let cells: Vec<f64> = solved
+        .lines()
+        .nth(1)
+        .expect("a row")
+        .split(',')
+        .map(|cell| cell.parse().expect("a number"))
+        .collect();
+    for (label, unit, truth) in [
+        ("force there", "N", cells[2]),
+        ("pressure rise there", "kPa", cells[1]),
+    ] {
+        let term = document
+            .descendants()
+            .find(|node| node.has_tag_name("dt") && text_of(*node) == label)
+            .unwrap_or_else(|| panic!("no {label}"));
+        let number = term.next_sibling_element().map(text_of).expect("its value");
+        assert!(
+            (value(&number, unit) / truth - 1.0).abs() < 1e-3,
+            "{label}: {number} for {truth}"
+        );
+    }
+    // The errors of the tables against these states are those of the certificate, not of another press.
+    let described: Vec<&str> = text
+        .split("force: at most ")
+        .skip(1)
+        .filter_map(|rest| rest.split(' ').next())
+        .collect();
+    assert!(!described.is_empty());
+    for percent in described {
+        let percent: f64 = percent.parse().expect("a number");
+        assert!(percent < 0.5, "{percent} %");
+    }
+}

@@ -5,7 +5,7 @@ use super::findings::{Findings, Meridian, TableReading};
 use super::labels::{DEGREES, KPA, MM, NEWTON, STRETCH, TENSION, Unit};
 use model_tables::model::state::{MeridianStation, Pressed};
 use output::drawing::{
-    self, Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION, power, spread,
+    self, Anchor, BLACK, BLUE, Drawing, GREEN, GREY, Marker, ORANGE, PURPLE, VERMILION, power,
 };
 use output::linear::{LinearAxis, LinearPanel};
 use output::rows::plain;
@@ -322,6 +322,35 @@ pub(super) fn actuator(found: &Findings) -> String {
 /// Least error that the chart shows, percent.
 const MIN_ERROR: f64 = 1e-10;
 
+/// Width of a letter of a label, pixels.
+const LETTER: f64 = 7.0;
+
+/// Where the label of a marker begins: the nearest place in the panel that touches nothing in `taken` (left, top, right, bottom), which then
+/// holds it too.
+fn beside([x, y]: [f64; 2], width: f64, taken: &mut Vec<[f64; 4]>) -> [f64; 2] {
+    let places = (0..16).flat_map(|step| {
+        let away = 7.5 * f64::from(step);
+        [
+            [x + 9.0, y - away],
+            [x - 9.0 - width, y - away],
+            [x + 9.0, y + away],
+            [x - 9.0 - width, y + away],
+        ]
+    });
+    let held = |[left, middle]: [f64; 2]| [left, middle - 7.0, left + width, middle + 7.0];
+    let is_free = |place: &[f64; 2]| {
+        let [left, top, right, bottom] = held(*place);
+        let is_inside = left > LEFT && right < RIGHT && top > TOP && bottom < BOTTOM;
+        is_inside
+            && taken
+                .iter()
+                .all(|other| right < other[0] || left > other[2] || bottom < other[1] || top > other[3])
+    };
+    let place = places.into_iter().find(is_free).unwrap_or([x + 9.0, y]);
+    taken.push(held(place));
+    [place[0], place[1] + 4.0]
+}
+
 /// Speed against accuracy of the models.
 pub(super) fn speed(costs: &[Cost]) -> Option<String> {
     let shown: Vec<(&Cost, [f64; 2])> = costs
@@ -371,23 +400,21 @@ pub(super) fn speed(costs: &[Cost]) -> Option<String> {
     let step = |[first, last]: [f64; 2]| 1 + (last - first) as usize / 6;
     let steps = [step(panel.x.decades), step(panel.y.decades)];
     panel.draw(&mut drawing, steps, [&power, &power]);
-    let mut heights: Vec<f64> = shown.iter().map(|(_, at)| panel.at(*at)[1] - 10.0).collect();
-    spread(&mut heights, 15.0, [TOP + 12.0, BOTTOM - 6.0]);
-    for ((cost, at), height) in shown.iter().zip(heights) {
-        let [x, y] = panel.at(*at);
+    let places: Vec<[f64; 2]> = shown.iter().map(|(_, at)| panel.at(*at)).collect();
+    let mut taken: Vec<[f64; 4]> = places
+        .iter()
+        .map(|[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0])
+        .collect();
+    for ((cost, _), at) in shown.iter().zip(places) {
         let color = if cost.used { BLUE } else { GREY };
-        drawing.marker(Marker::Circle, [x, y], color, !cost.used);
+        drawing.marker(Marker::Circle, at, color, !cost.used);
         let label = if cost.used {
             format!("{} (here)", cost.model)
         } else {
             cost.model.clone()
         };
-        let (anchor, shift) = if x > 0.5 * (LEFT + RIGHT) {
-            (Anchor::End, -8.0)
-        } else {
-            (Anchor::Start, 8.0)
-        };
-        drawing.text([x + shift, height], anchor, 12.0, BLACK, &label);
+        let place = beside(at, LETTER * label.chars().count() as f64, &mut taken);
+        drawing.text(place, Anchor::Start, 12.0, BLACK, &label);
     }
     drawing.text(
         [0.5 * (LEFT + RIGHT), 316.0],

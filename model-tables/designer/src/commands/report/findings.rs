@@ -5,6 +5,7 @@ use super::super::model::{self, Model};
 use super::super::{bench, read};
 use super::cost::{self, Cost};
 use super::in_time::{self, TimedPress};
+use super::tips::Tips;
 use crate::size::question::catalogue::TOUCH_FLOORS;
 use model_tables::actuator::{Actuator, Blocked};
 use model_tables::constants::Quantity;
@@ -27,8 +28,9 @@ use output::Refusal;
 use output::progress::Progress;
 use std::path::Path;
 
-/// States of the curves.
+/// States of the curves; with an actuator, whose loop is solved for each.
 const STATES: usize = 48;
+const STATES_OF_LOOP: usize = 24;
 /// Indentations of the shapes, over the deepest.
 const SHAPES: [f64; 4] = [0.0, 0.2, 0.6, 1.0];
 /// Points of a meridian.
@@ -46,6 +48,8 @@ pub(super) struct Findings {
     pub(super) note: Option<String>,
     pub(super) rest: RestState,
     pub(super) limit: Limit,
+    /// Whether fingertip and actuator share the fluid in these states.
+    pub(super) has_actuator: bool,
     /// How deep it is pressed here, metres.
     pub(super) deepest: f64,
     /// States from first touch to the deepest.
@@ -127,18 +131,37 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
         _ => file.max_indentation_mm.map_or(end, |depth| depth / 1e3),
     };
     progress.set(0.2);
-    let states = (0..=STATES)
+    let mut tips = Tips::of(&file, kind, &design, tip, deepest);
+    let count = if tips.haptic.is_some() {
+        STATES_OF_LOOP
+    } else {
+        STATES
+    };
+    let states = (0..=count)
         .map(|k| {
-            let part = k as f64 / STATES as f64;
-            tip.at_indentation(deepest * part * libm::sqrt(part))
+            let part = k as f64 / count as f64;
+            let depth = deepest * part * libm::sqrt(part);
+            tips.at(depth)?.at_indentation(depth)
         })
         .collect::<Result<Vec<_>, _>>()
         .map_err(refuse)?;
     let meridians = SHAPES
         .iter()
-        .map(|part| meridian(&mut tip, &design, part * deepest))
+        .map(|part| {
+            let depth = part * deepest;
+            meridian(tips.at(depth)?, &design, depth)
+        })
         .collect::<Result<Vec<_>, _>>()
         .map_err(refuse)?;
+    // The deepest was the last: an actuator is from here on the compliance that it has there.
+    let has_actuator = tips.haptic.is_some();
+    let (mut tip, compliance) = (tips.tip, tips.compliance);
+    let limit = if has_actuator {
+        tip.limit().map_err(refuse)?
+    } else {
+        limit
+    };
+    let pressed = Design { compliance, ..design };
     progress.set(0.4);
     let tables = tables(&file).map_err(|error| refusal(path, error))?;
     progress.set(0.6);
@@ -149,10 +172,14 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
     let in_time = tables
         .as_ref()
         .map_or_else(|_| Vec::new(), |generated| in_time::presses(&file, generated));
-    let costs = cost::costs(&file, kind, &design, deepest);
+    let costs = cost::costs(&file, kind, &pressed, deepest);
     progress.set(0.9);
     let bending = if kind == Kind::Membrane {
-        bending(&file.design_to(Axes::Outer), &mut tip, deepest)
+        let outer = Design {
+            compliance,
+            ..file.design_to(Axes::Outer)
+        };
+        bending(&outer, &mut tip, deepest)
     } else {
         Vec::new()
     };
@@ -166,6 +193,7 @@ pub(super) fn gather(path: &Path, progress: &Progress) -> Result<Findings, Refus
         model: kind,
         note,
         limit,
+        has_actuator,
         deepest,
         states,
         meridians,

@@ -69,6 +69,12 @@ pub(super) fn inputs(found: &Findings) -> Markup {
                 div {
                     (rows("Solved", &state))
                     p.soft { "The press ends where " (ends) "." }
+                    @if found.has_actuator {
+                        p.soft {
+                            "Fingertip and actuator share the fluid in every state of this page. The limit is that of a fingertip whose \
+                             fluid is as compliant as in the deepest state."
+                        }
+                    }
                 }
             }
         }

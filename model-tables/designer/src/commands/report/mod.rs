@@ -11,6 +11,7 @@ mod labels;
 mod logarithmic;
 mod page;
 mod shapes;
+mod tips;
 
 use output::files;
 use output::progress::Progress;
