@@ -1,20 +1,14 @@
 //! `designer sweep` from outside: rows, refusals, kills, shards, what is refused.
 
+mod killed;
 mod program;
 
-use model_tables::random::Random;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::record::{Field, Row};
 use program::{designer, header_and_rows, refusal};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
-
-/// Kills of the running binary.
-const KILLS: usize = 20;
 
 /// An empty folder of its own for a test.
 fn scratch(name: &str) -> PathBuf {
@@ -47,7 +41,8 @@ fn space(folder: &Path, sweep: &str) -> String {
     path.display().to_string()
 }
 
-fn parts(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+/// The parts of a folder, by name.
+fn names(folder: &Path) -> Vec<String> {
     fs::read_dir(folder)
         .expect("the folder")
         .map(|entry| {
@@ -58,6 +53,12 @@ fn parts(folder: &Path) -> BTreeMap<String, Vec<u8>> {
                 .expect("a name")
         })
         .filter(|name| name.starts_with("part-"))
+        .collect()
+}
+
+fn parts(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    names(folder)
+        .into_iter()
         .map(|name| (name.clone(), fs::read(folder.join(name)).expect("a part")))
         .collect()
 }
@@ -303,60 +304,6 @@ curve_states = 8
 "rest.pole_stretch" = { from = 1.1, to = 2.2 }
 "press.max_indentation_mm" = { from = 0.5, to = 4.5 }
 "#;
-
-#[test]
-fn a_run_killed_at_any_instant_goes_on_and_loses_and_doubles_nothing() {
-    let folder = scratch("sweep-kill");
-    let space = space(&folder, LONG);
-    let (whole, killed) = (folder.join("whole"), folder.join("killed"));
-    let begun = Instant::now();
-    run(&space, &whole);
-    let unbroken = begun.elapsed();
-    let truth = parts(&whole);
-    assert_eq!(truth.len(), 22);
-
-    let mut random = Random(fs::metadata(&space).expect("there").len() ^ u64::from(std::process::id()));
-    let (mut kills, mut starts, mut before) = (0, 0, 0);
-    while kills < KILLS {
-        starts += 1;
-        assert!(starts < 10 * KILLS, "the run ends before it can be killed");
-        let mut child = Command::new(env!("CARGO_BIN_EXE_designer"))
-            .args(["sweep", &space, "--out", &killed.display().to_string()])
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("the binary runs");
-        sleep(Duration::from_secs_f64(
-            random.uniform(0.0, 0.25) * unbroken.as_secs_f64(),
-        ));
-        if child.try_wait().expect("a child").is_some() {
-            // Done: another round from an empty folder.
-            assert_eq!(parts(&killed), truth);
-            fs::remove_dir_all(&killed).expect("removed");
-            before = 0;
-            continue;
-        }
-        child.kill().expect("killed");
-        child.wait().expect("ended");
-        kills += 1;
-        if killed.is_dir() {
-            let there = parts(&killed);
-            assert!(there.len() >= before, "a part is gone");
-            assert!(there.iter().all(|(name, content)| truth[name] == *content));
-            before = there.len();
-        }
-    }
-    run(&space, &killed);
-    assert_eq!(parts(&killed), truth);
-    let rows = rows(&killed);
-    assert_eq!(rows.len(), 150);
-    for (place, row) in rows.iter().enumerate() {
-        assert!((number(row, "design_number") - place as f64).abs() < 1e-9);
-    }
-    // Nothing half-written stays beside the parts: the manifest and the lock of the shard.
-    assert_eq!(fs::read_dir(&killed).expect("there").count(), truth.len() + 2);
-    assert!(rows.iter().any(|row| cell(row, "reason") != &Field::Null));
-}
 
 #[test]
 fn shards_share_a_folder_and_make_the_whole() {

@@ -114,6 +114,13 @@ pub fn expect_folder(folder: &Path, names: &[&str]) -> Result<(), Refusal> {
     written
 }
 
+/// Whether a name is that of a file that a killed program had written to see whether one can be.
+pub fn is_probe(name: &str) -> bool {
+    name.strip_prefix('.')
+        .and_then(|rest| rest.strip_prefix(PROBE))
+        .is_some_and(|rest| rest.starts_with('.'))
+}
+
 /// Content and part of the name of a file that is written to see whether one can be.
 const PROBE: &str = "room";
 

@@ -5,6 +5,7 @@ use model_tables::generate::TABLE_VERSION;
 use output::{Refusal, files};
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use std::fs::{self, File, TryLockError};
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 /// Version of the rows: counts up when columns, their meaning or the way that points are drawn change.
@@ -62,7 +63,15 @@ impl Folder {
                         path.display()
                     )));
                 }
-                files::write_durably(&manifest, text.as_bytes())?;
+                // By its shard's own name: what a kill leaves of it, the next run of that shard takes.
+                let unready = path.join(unready_manifest(shard));
+                File::create(&unready)
+                    .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
+                    .and_then(|()| fs::rename(&unready, &manifest))
+                    .map_err(|error| {
+                        let _ = fs::remove_file(&unready);
+                        cannot(&manifest, &error)
+                    })?;
             }
         }
         let name = format!(".shard-{}-of-{}.lock", shard.index, shard.of);
@@ -97,9 +106,14 @@ impl Folder {
                 .strip_prefix(".part-")
                 .and_then(|rest| rest.split('.').next())
                 .and_then(|number| number.parse::<u64>().ok());
-            if part.is_some_and(|part| part < space.parts() && shard.holds(part)) {
+            let is_part = part.is_some_and(|part| part < space.parts() && shard.holds(part));
+            if is_part || name == unready_manifest(shard) || files::is_probe(&name) {
                 let path = self.path.join(name);
-                fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
+                match fs::remove_file(&path) {
+                    // A probe of another shard, which has removed it itself.
+                    Err(error) if error.kind() == ErrorKind::NotFound => {}
+                    removed => removed.map_err(|error| cannot(&path, &error))?,
+                }
             }
         }
         Ok(())
@@ -146,6 +160,11 @@ impl Folder {
     pub fn write(&self, part: u64, content: &[u8]) -> Result<(), Refusal> {
         files::write_durably(&self.part(part), content)
     }
+}
+
+/// The name of a manifest that a shard is about to move in.
+fn unready_manifest(shard: Shard) -> String {
+    format!(".shard-{}-of-{}.manifest", shard.index, shard.of)
 }
 
 /// Numbers of a part's designs.
