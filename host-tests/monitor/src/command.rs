@@ -136,7 +136,7 @@ impl Logs {
         });
         let mcap = arguments.mcap.as_ref().map(|path| {
             Capture::create(path, began)
-                .map_err(|error| format!("{}: {error}; choose another --mcap", path.display()))
+                .map_err(|error| format!("{}: {}; choose another --mcap", path.display(), cause(&error)))
         });
         Ok(Self {
             csv: csv.transpose()?,
@@ -149,14 +149,17 @@ impl Logs {
             csv.write(reading).map_err(|error| format!("--csv: {error}"))?;
         }
         if let Some(mcap) = &mut self.mcap {
-            mcap.write(reading).map_err(|error| format!("--mcap: {error}"))?;
+            mcap.write(reading)
+                .map_err(|error| format!("--mcap: {}", cause(&error)))?;
         }
         Ok(())
     }
 
     fn finish(self) -> Result<(), String> {
         match self.mcap {
-            Some(mcap) => mcap.finish().map_err(|error| format!("--mcap: {error}")),
+            Some(mcap) => mcap
+                .finish()
+                .map_err(|error| format!("--mcap: {}", cause(&error))),
             None => Ok(()),
         }
     }
@@ -213,6 +216,13 @@ fn run(arguments: &Arguments) -> Result<ExitCode, String> {
     Ok(ending.exit_code())
 }
 
+/// What the system says, where an error wraps that.
+fn cause(error: &dyn std::error::Error) -> String {
+    error
+        .source()
+        .map_or_else(|| error.to_string(), ToString::to_string)
+}
+
 /// A source that is watched until the time is over, a signal comes, or nobody wants it.
 struct Watch {
     source: Source,
@@ -247,6 +257,7 @@ impl Watch {
         let mut context = ViewContext {
             address: self.name.clone(),
             log: self.log.take(),
+            replayed: matches!(self.source, Source::Replay(_)),
             ..ViewContext::default()
         };
         // What is shown while the screen stands still, and since when.

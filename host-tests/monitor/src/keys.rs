@@ -4,25 +4,25 @@ use fingertip::link::command::Command;
 use model_tables::table::law::Touched;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// Every key with its meaning, for the help.
-pub(crate) const HELP: [(&str, &str); 17] = [
-    ("t", "tare: the fingertip is unloaded, take a new zero"),
-    ("u", "undo the last tare"),
-    ("s", "save zero and gain in the board"),
-    ("g", "save another gain, parts in a million"),
-    ("f", "forget what is saved"),
-    ("i", "info: ask for a hello"),
-    ("x", "self-test, at an indentation in mm"),
-    ("r", "rate: every so many-th report"),
-    ("a", "air around an absolute part, Pa"),
-    ("o", "object: radius in mm; 0 a plate, below 0 a cup"),
-    ("d", "indentation now, in mm: force and curvature"),
-    ("c", "chart force or pressure rise"),
-    ("p", "pause the screen; a log goes on"),
-    ("k", "forget the peak"),
-    ("?", "this help"),
-    ("Esc", "leave help or a number"),
-    ("q", "quit"),
+/// Every key with its meaning, and with a word for a small screen, for the help.
+pub(crate) const HELP: [(&str, &str, &str); 17] = [
+    ("t", "tare: the fingertip is unloaded, take a new zero", "tare"),
+    ("u", "undo the last tare", "undo"),
+    ("s", "save zero and gain in the board", "save"),
+    ("g", "save another gain, parts in a million", "gain"),
+    ("f", "forget what is saved", "forget"),
+    ("i", "info: ask for a hello", "info"),
+    ("x", "self-test, at an indentation in mm", "test"),
+    ("r", "rate: every so many-th report", "rate"),
+    ("a", "air around an absolute part, Pa", "air"),
+    ("o", "object: radius in mm; 0 a plate, below 0 a cup", "object"),
+    ("d", "indentation now, in mm: force and curvature", "depth"),
+    ("c", "chart force or pressure rise", "chart"),
+    ("p", "pause the screen; a log goes on", "pause"),
+    ("k", "forget the peak", "peak 0"),
+    ("?", "this help", "help"),
+    ("Esc", "leave help or a number", "back"),
+    ("q", "quit", "quit"),
 ];
 
 /// A command that needs a number, or to be confirmed.

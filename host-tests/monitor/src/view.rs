@@ -9,7 +9,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
-use ratatui::widgets::{Axis, Block, Chart, Clear, Dataset, GraphType, Paragraph, Wrap};
+use ratatui::widgets::{Axis, Block, Chart, Clear, Dataset, GraphType, Paragraph};
 use std::time::Duration;
 
 /// The keys, for the last line: the long form where it fits.
@@ -23,6 +23,10 @@ const ROOMY: [u16; 2] = [60, 17];
 const WIDE: u16 = 50;
 /// Lines of values: status, touch, force, peak, indentation, pressure rise. Of a design with a feedback actuator there is one more.
 const VALUES: u16 = 6;
+
+/// Width of the help's longest line, and columns of the help on a smaller screen.
+const LONGEST_HELP: usize = 56;
+const SHORT_COLUMNS: usize = 3;
 
 /// What the chart shows.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -76,6 +80,8 @@ pub struct ViewContext {
     pub question: Option<String>,
     /// Whether the keys are explained.
     pub help: bool,
+    /// Whether a log is played, and no board is there.
+    pub replayed: bool,
 }
 
 /// Draws everything; `now` is the time since the start.
@@ -88,7 +94,7 @@ pub fn draw(frame: &mut Frame<'_>, monitor: &Monitor, context: &ViewContext, now
             Constraint::Length(1),
             Constraint::Length(lines + 2),
             Constraint::Min(2),
-            Constraint::Length(if all.height >= 24 { 6 } else { 4 }),
+            Constraint::Length(if all.height >= 30 { 6 } else { 4 }),
             Constraint::Length(1),
         ])
         .areas(all);
@@ -151,17 +157,27 @@ fn draw_keys(frame: &mut Frame<'_>, area: Rect, context: &ViewContext) {
 }
 
 fn draw_help(frame: &mut Frame<'_>, all: Rect) {
+    frame.render_widget(Clear, all);
+    if usize::from(all.height) <= HELP.len() || usize::from(all.width) < LONGEST_HELP {
+        // A word a key, in columns.
+        let rows = HELP.len().div_ceil(SHORT_COLUMNS);
+        let lines: Vec<Line<'_>> = (0..rows)
+            .map(|row| {
+                let keys = HELP.iter().skip(row).step_by(rows);
+                Line::from(
+                    keys.map(|(key, _, word)| format!("{:<10}", format!("{key} {word}")))
+                        .collect::<String>(),
+                )
+            })
+            .collect();
+        frame.render_widget(Paragraph::new(lines), all);
+        return;
+    }
     let lines: Vec<Line<'_>> = HELP
         .iter()
-        .map(|(key, meaning)| Line::from(format!("{key:>3}  {meaning}")))
+        .map(|(key, meaning, _)| Line::from(format!("{key:>3}  {meaning}")))
         .collect();
-    frame.render_widget(Clear, all);
-    frame.render_widget(
-        Paragraph::new(lines)
-            .wrap(Wrap { trim: false })
-            .block(Block::new().title("keys")),
-        all,
-    );
+    frame.render_widget(Paragraph::new(lines).block(Block::new().title("keys")), all);
 }
 
 fn heading(monitor: &Monitor, context: &ViewContext, width: u16) -> Paragraph<'static> {
@@ -170,6 +186,7 @@ fn heading(monitor: &Monitor, context: &ViewContext, width: u16) -> Paragraph<'s
             "PAUSED, p goes on".to_owned(),
             Style::new().fg(Color::Black).bg(Color::Yellow),
         ),
+        _ if context.replayed => ("replay".to_owned(), Style::new().fg(Color::Cyan)),
         Connection::Connecting => ("connecting".to_owned(), Style::new().fg(Color::Yellow)),
         Connection::Connected => ("connected".to_owned(), Style::new().fg(Color::Green)),
         Connection::Lost(reason) => (

@@ -240,3 +240,30 @@ fn what_is_lost_or_broken_is_counted_and_answers_are_told() {
         "{screen}"
     );
 }
+
+/// Every key is explained on a screen of any size that shows values at all, and nothing of a line is cut.
+#[test]
+fn every_key_is_explained_on_a_small_screen_too() {
+    let keys = [
+        "t", "u", "s", "g", "f", "i", "x", "r", "a", "o", "d", "c", "p", "k", "?", "Esc", "q",
+    ];
+    for (width, height) in [(30, 8), (40, 12), (80, 24)] {
+        let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("memory");
+        let context = ViewContext {
+            help: true,
+            ..ViewContext::default()
+        };
+        let monitor = connected();
+        terminal
+            .draw(|frame| view::draw(frame, &monitor, &context, Duration::ZERO))
+            .expect("drawn");
+        let text = terminal.backend().to_string();
+        for key in keys {
+            assert!(
+                text.split_whitespace().any(|word| word.trim_matches('"') == key),
+                "{key} at {width} x {height}: {text}"
+            );
+        }
+        assert!(text.contains("forget") && text.contains("quit"), "{text}");
+    }
+}
