@@ -164,10 +164,11 @@ fn draw_help(frame: &mut Frame<'_>, all: Rect) {
         let lines: Vec<Line<'_>> = (0..rows)
             .map(|row| {
                 let keys = HELP.iter().skip(row).step_by(rows);
-                Line::from(
-                    keys.map(|(key, _, word)| format!("{:<10}", format!("{key} {word}")))
-                        .collect::<String>(),
-                )
+                let cells = keys.map(|(key, _, word)| {
+                    let cell = format!("{key} {word}");
+                    Span::raw(format!("{cell:<10}"))
+                });
+                Line::from(cells.collect::<Vec<_>>())
             })
             .collect();
         frame.render_widget(Paragraph::new(lines), all);

@@ -15,6 +15,7 @@ use super::{Fingertip, Kind, ModelError};
 use crate::curve::Contact;
 use crate::design::Design;
 use crate::design_file::{DesignFile, ModelSection};
+use crate::limit::EndsBy;
 use crate::membrane::TensionField;
 use crate::membrane::adapt::Resolution;
 use crate::membrane::press;
@@ -60,8 +61,8 @@ pub enum LoopError {
         asked: f64,
         /// The least pressure at which the actuator failed, and why, if it did.
         failed: Option<DiscError>,
-        /// Why the fingertip has no state with some compliance in between, if it has none.
-        tip: Option<ModelError>,
+        /// What ends the press of a fingertip of some compliance in between, if it ends before.
+        tip: Option<EndsBy>,
     },
     /// The indentation lies beyond the end of the loop.
     BeyondLimit {

@@ -1,7 +1,11 @@
 //! A sweep that is killed and goes on.
 
-use super::*;
+use super::{LONG, cell, names, number, parts, rows, run, scratch, space};
 use model_tables::random::Random;
+use parquet::record::Field;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};

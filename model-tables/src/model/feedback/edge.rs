@@ -1,5 +1,6 @@
 //! Compliances with which the fingertip has no state, on the way to the one of a loop.
 
+use crate::limit::EndsBy;
 use crate::model::ModelError;
 
 /// Part of a compliance to which the edge is found beyond which the fingertip has no state.
@@ -10,8 +11,8 @@ const WIDE: f64 = 4.0;
 /// What is known of compliances without a state.
 #[derive(Default)]
 pub(super) struct Edge {
-    /// Why there is none with the latest of them.
-    pub(super) tip: Option<ModelError>,
+    /// What ends the press with the latest of them.
+    pub(super) tip: Option<EndsBy>,
     /// Whether the actuator takes more than the lower end of the bracket stands for, so that the compliance looked for is above it.
     has_low: bool,
     /// Which ends of the bracket are compliances without a state.
@@ -39,10 +40,7 @@ impl Edge {
         stiffest: f64,
         [low, high]: [&mut f64; 2],
     ) -> Result<f64, ModelError> {
-        if error.beyond().is_none() {
-            return Err(error);
-        }
-        self.tip = Some(error);
+        self.tip = Some(error.beyond().ok_or(error)?.ends_by);
         if !self.stiffest && compliance > stiffest {
             self.stiffest = true;
             self.above = Some(*high).filter(|high| high.is_finite());

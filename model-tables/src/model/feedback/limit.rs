@@ -76,7 +76,10 @@ impl LoopError {
                 failed: Some(error), ..
             }
             | Self::Actuator(error) => error.word(),
-            Self::NoBalance { tip: Some(error), .. } | Self::Fingertip(error) => error
+            Self::NoBalance {
+                tip: Some(ends_by), ..
+            } => ends_by.word(),
+            Self::Fingertip(error) => error
                 .beyond()
                 .map_or(EndsBy::NoFurtherState.word(), |limit| limit.ends_by.word()),
             _ => EndsBy::NoFurtherState.word(),

@@ -328,7 +328,7 @@ const LETTER: f64 = 7.0;
 /// Where the label of a marker begins: the nearest place in the panel that touches nothing in `taken` (left, top, right, bottom), which then
 /// holds it too.
 fn beside([x, y]: [f64; 2], width: f64, taken: &mut Vec<[f64; 4]>) -> [f64; 2] {
-    let places = (0..16).flat_map(|step| {
+    let mut places = (0..16).flat_map(|step| {
         let away = 7.5 * f64::from(step);
         [
             [x + 9.0, y - away],
@@ -346,7 +346,7 @@ fn beside([x, y]: [f64; 2], width: f64, taken: &mut Vec<[f64; 4]>) -> [f64; 2] {
                 .iter()
                 .all(|other| right < other[0] || left > other[2] || bottom < other[1] || top > other[3])
     };
-    let place = places.into_iter().find(is_free).unwrap_or([x + 9.0, y]);
+    let place = places.find(is_free).unwrap_or([x + 9.0, y]);
     taken.push(held(place));
     [place[0], place[1] + 4.0]
 }
