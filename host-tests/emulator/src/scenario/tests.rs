@@ -93,6 +93,104 @@ fn unknown_keys_and_impossible_values_are_named() {
     assert!(event("is = \"flood\"\nfor_ms = 1").is_ok());
 }
 
+/// What is wrong with the two keys of objects and with the force, one line each, with the key, the value found and what is allowed.
+#[test]
+fn wrong_objects_and_forces_are_named_in_one_line() {
+    let refusal = |text: &str| {
+        let error = parsed(text).expect_err(text);
+        assert!(!error.contains('\n') && !error.is_empty(), "{error}");
+        error
+    };
+    let radius = "it must be from 1 to 1000, or from -1000 to -1 for a cup";
+    // Of a phase: an untouched rest, then a press onto it.
+    let phase = |words: &str| {
+        refusal(&format!(
+            "about = \"a\"\n[[phase]]\nname = \"rest\"\nduration_ms = 500\n[[phase]]\nname = \"press\"\nduration_ms = 100\n{words}"
+        ))
+    };
+    for (value, found) in [
+        ("0", "0"),
+        ("0.9", "0.9"),
+        ("-0.5", "-0.5"),
+        ("1001", "1001"),
+        ("-1000.5", "-1000.5"),
+        ("inf", "inf"),
+        ("nan", "NaN"),
+    ] {
+        assert_eq!(
+            phase(&format!("radius_mm = {value}")),
+            format!("phase[1].radius_mm = {found}, but {radius}")
+        );
+    }
+    for (value, found) in [("-0.1", "-0.1"), ("100.1", "100.1"), ("nan", "NaN")] {
+        assert_eq!(
+            phase(&format!("to_force_n = {value}")),
+            format!("phase[1].to_force_n = {found}, but it must be from 0 to 100")
+        );
+    }
+    assert_eq!(
+        phase("to_force_n = 1\nto_percent = 10"),
+        "phase[1].to_force_n = 1, but it must be left out where there is to_percent"
+    );
+    assert!(phase("radius_mm = \"ball\"").contains("invalid type: string \"ball\", expected f64"));
+    assert!(phase("to_force_n = true").contains("invalid type: boolean `true`, expected f64"));
+    for unknown in ["radius = 8", "object = \"ball\"", "force_n = 1", "told = true"] {
+        let key = unknown.split(' ').next().expect("a key");
+        assert!(
+            phase(unknown).contains(&format!("unknown field `{key}`")),
+            "{unknown}"
+        );
+    }
+    // An object changes only after the last one left.
+    let changed = |first: &str, second: &str| {
+        refusal(&format!(
+            "about = \"a\"\n[[phase]]\nname = \"a\"\nduration_ms = 500\n{first}\n[[phase]]\nname = \"b\"\nduration_ms = 100\n{second}"
+        ))
+    };
+    let until = "it must be that of the phase before, until it ends at 0";
+    assert_eq!(
+        changed("to_force_n = 1", "radius_mm = 8"),
+        format!("phase[1].radius_mm = 8, but {until}")
+    );
+    assert_eq!(
+        changed(
+            "to_percent = 40\nradius_mm = 8",
+            "to_percent = 0\nradius_mm = -80"
+        ),
+        format!("phase[1].radius_mm = -80, but {until}")
+    );
+    assert_eq!(
+        changed("to_force_n = 1\nradius_mm = 8", "to_force_n = 0"),
+        format!("phase[1].radius_mm = inf, but {until}")
+    );
+    // What the chip is told.
+    let event = |words: &str| refusal(&format!("{TRAPEZIUM}\n[[event]]\nat_ms = 10\n{words}"));
+    for (value, found) in [("0", "0"), ("0.5", "0.5"), ("-2000", "-2000"), ("nan", "NaN")] {
+        assert_eq!(
+            event(&format!("is = \"object\"\nradius_mm = {value}")),
+            format!("event[0].radius_mm = {found}, but {radius}")
+        );
+    }
+    assert_eq!(
+        event("is = \"tare\"\nradius_mm = 8"),
+        "event[0].radius_mm = 8, but it must be left out but for object"
+    );
+    assert_eq!(
+        event("is = \"object\"\nradius_mm = 8\nfor_ms = 5"),
+        "event[0].for_ms = 5, but it must be left out for what does not last"
+    );
+    assert!(event("is = \"objects\"").contains("unknown variant `objects`"));
+    assert!(event("is = \"object\"\nshape = \"cup\"").contains("unknown field `shape`"));
+    for told in ["", "radius_mm = 8", "radius_mm = -80"] {
+        assert!(
+            parsed(&format!(
+                "{TRAPEZIUM}\n[[event]]\nat_ms = 10\nis = \"object\"\n{told}"
+            ))
+            .is_ok()
+        );
+    }
+}
+
 #[test]
 fn every_shipped_scenario_is_well_formed() {
     let names = names();
