@@ -41,6 +41,7 @@ fn main() {
     println!("cargo::rustc-check-cfg=cfg(part, values(\"abp2\", \"ms5837\", \"dps310\"))");
     println!("cargo::rustc-check-cfg=cfg(multiplexer)");
     println!("cargo::rustc-check-cfg=cfg(object)");
+    println!("cargo::rustc-check-cfg=cfg(band)");
     println!("cargo::rustc-check-cfg=cfg(feedback)");
     println!("cargo::rustc-check-cfg=cfg(feedback_tables)");
     println!("cargo::rustc-check-cfg=cfg(hand)");
@@ -61,6 +62,9 @@ fn build() -> Result<(), String> {
     let for_the_chip = env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none");
     if for_the_chip {
         link_for_the_chip()?;
+    } else {
+        // A host reads the band of every board.
+        println!("cargo::rustc-cfg=band");
     }
     // Without a design the library is the signal path alone, and nothing is solved.
     if env::var_os("CARGO_FEATURE_DESIGN").is_some() {
@@ -171,6 +175,7 @@ fn hand(path: &Path) -> Result<(String, String), String> {
         };
         let touched = if generated.certified.object.is_some() {
             object = true;
+            tell_band(&generated);
             "object"
         } else {
             "plate"
@@ -342,6 +347,7 @@ fn tables(design: &Path) -> Result<String, String> {
     if generated.certified.object.is_some() {
         // Tables of other objects than a plate, and the command that says which.
         println!("cargo::rustc-cfg=object");
+        tell_band(&generated);
     }
     if generated.certified.feedback.is_some() {
         // The force of the feedback actuator, and its place in a reading.
@@ -351,6 +357,13 @@ fn tables(design: &Path) -> Result<String, String> {
         }
     }
     Ok(generated.rust_source())
+}
+
+/// Has the image send the band of a design that is not told what it touches.
+fn tell_band(generated: &Generated) {
+    if generated.chip_band().is_some() {
+        println!("cargo::rustc-cfg=band");
+    }
 }
 
 /// The board of the build; the reason where it is not one.

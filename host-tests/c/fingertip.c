@@ -30,6 +30,12 @@ static uint16_t take_u16(struct cursor *from) { return (uint16_t)take(from, 2); 
 
 static uint32_t take_u32(struct cursor *from) { return (uint32_t)take(from, 4); }
 
+static int16_t take_i16(struct cursor *from)
+{
+    uint16_t number = take_u16(from);
+    return (int16_t)(number <= (uint16_t)INT16_MAX ? (int32_t)number : (int32_t)number - 65536);
+}
+
 static int32_t take_i32(struct cursor *from)
 {
     uint32_t number = take_u32(from);
@@ -286,6 +292,36 @@ static enum ft_result read_tip_data(struct cursor *from, struct ft_frame *frame)
     return data->tip < FT_MAX_TIPS ? FT_WHOLE : FT_VALUE;
 }
 
+static enum ft_result read_band(struct cursor *from, struct ft_frame *frame)
+{
+    struct ft_band *band = &frame->of.band;
+    if (frame->version == 3) {
+        band->tip = take_u8(from);
+    }
+    frame->fraction_bits = take_u8(from);
+    band->count = take_u8(from);
+    band->from = take_i32(from);
+    if (frame->fraction_bits > 31 || band->count < 1 || band->count > FT_MAX_BAND || band->from < 0 || band->tip >= FT_MAX_TIPS) {
+        return FT_VALUE;
+    }
+    int32_t last = band->from;
+    for (uint8_t i = 0; i < band->count; i++) {
+        struct ft_band_row *row = &band->rows[i];
+        row->to = take_i32(from);
+        for (int end = 0; end < 2; end++) {
+            row->force[end] = take_i16(from);
+        }
+        for (int end = 0; end < 2; end++) {
+            row->indentation[end] = take_i16(from);
+        }
+        if (row->to <= last || row->force[0] > row->force[1] || row->indentation[0] > row->indentation[1]) {
+            return FT_VALUE;
+        }
+        last = row->to;
+    }
+    return FT_WHOLE;
+}
+
 static enum ft_result read_body(struct cursor from, struct ft_frame *frame)
 {
     *frame = (struct ft_frame){0};
@@ -318,6 +354,8 @@ static enum ft_result read_body(struct cursor from, struct ft_frame *frame)
         result = is_fault(frame->of.values[0].fault) ? FT_WHOLE : FT_VALUE;
     } else if (frame->kind == FT_TIP_DATA) {
         result = read_tip_data(&from, frame);
+    } else if (frame->kind == FT_BAND) {
+        result = read_band(&from, frame);
     }
     if (from.is_short) {
         return FT_LENGTH;
@@ -383,6 +421,25 @@ enum ft_result ft_push(struct ft_reader *reader, uint8_t byte, struct ft_frame *
 double ft_pascals(int32_t counts, uint8_t fraction_bits)
 {
     return (double)counts / (double)((uint32_t)1 << (fraction_bits & 31u));
+}
+
+const struct ft_band_row *ft_band_at(const struct ft_band *band, uint8_t band_bits, int32_t rise, uint8_t rise_bits)
+{
+    double pascals = ft_pascals(rise, rise_bits);
+    if (pascals < ft_pascals(band->from, band_bits)) {
+        return NULL;
+    }
+    for (uint8_t i = 0; i < band->count && i < FT_MAX_BAND; i++) {
+        if (pascals <= ft_pascals(band->rows[i].to, band_bits)) {
+            return &band->rows[i];
+        }
+    }
+    return NULL;
+}
+
+double ft_band_end(int32_t read, int16_t tenths)
+{
+    return (double)read * (1.0 + (double)tenths / 1000.0);
 }
 
 /* --- Commands ---------------------------------------------------------------------------------------------------- */

@@ -18,6 +18,7 @@ extern "C" {
 #define FT_MAX_FRAME 244u /* the same on the wire, the closing zero included */
 #define FT_MAX_TIPS 12u
 #define FT_MAX_NAME 64u     /* of a tip file; a frame carries 32 */
+#define FT_MAX_BAND 5u      /* rows of a band */
 #define FT_MAX_DATA 56u     /* bytes of a tip in one frame */
 #define FT_ALL_TIPS 255u    /* of a command to a hand */
 #define FT_KEEP_GAIN INT32_MIN /* of a save: the gain that there is */
@@ -30,7 +31,8 @@ enum ft_kind {
     FT_ANSWER = 4,   /* of a hand with its tip */
     FT_READINGS = 5, /* version 3: all tips of one instant */
     FT_TIP_HELLO = 6, /* version 3 */
-    FT_TIP_DATA = 7   /* of a hand with its tip */
+    FT_TIP_DATA = 7,  /* of a hand with its tip */
+    FT_BAND = 8       /* of a hand with its tip */
 };
 
 /* Kinds of commands. */
@@ -122,13 +124,29 @@ struct ft_tip_data {
     uint8_t bytes[FT_MAX_DATA];
 };
 
+/* The truth less the reading, tenths of a percent of the reading, lower and upper. */
+struct ft_band_row {
+    int32_t to; /* the row's last pressure rise, counts */
+    int16_t force[2];
+    int16_t indentation[2];
+};
+
+/* Of a tip that is not told what it touches. It belongs to the hello before it: the next hello, or an answer that an object is done,
+ * ends it. */
+struct ft_band {
+    uint8_t tip; /* 0 of a board of one fingertip */
+    uint8_t count; /* rows */
+    int32_t from; /* the first pressure rise of which it tells, counts of the frame's fraction bits */
+    struct ft_band_row rows[FT_MAX_BAND]; /* rising, one beside the other */
+};
+
 struct ft_frame {
     uint8_t version; /* 2: one fingertip; 3: a hand */
     uint8_t kind;    /* enum ft_kind */
     uint16_t sequence;
     uint64_t time_us; /* since reset */
     uint16_t dropped;
-    uint8_t fraction_bits; /* k, of a reading or readings: a count is 1 / 2^k pascal */
+    uint8_t fraction_bits; /* k, of a reading, readings or a band: a count is 1 / 2^k pascal */
     uint8_t tips;          /* of readings; 1 of a reading or fault */
     union {
         struct ft_values values[FT_MAX_TIPS]; /* FT_READING, FT_FAULT: the first; FT_READINGS: tips */
@@ -136,6 +154,7 @@ struct ft_frame {
         struct ft_answer answer;
         struct ft_tip_hello tip_hello;
         struct ft_tip_data tip_data;
+        struct ft_band band;
     } of;
 };
 
@@ -163,6 +182,13 @@ enum ft_result ft_push(struct ft_reader *reader, uint8_t byte, struct ft_frame *
 
 /* A pressure of a frame in pascals. */
 double ft_pascals(int32_t counts, uint8_t fraction_bits);
+
+/* The row of a band, from a frame with `band_bits` fraction bits, for a pressure rise of a frame with `rise_bits`; NULL where the band
+ * tells nothing. A reading that is saturated (warning 0), below zero (2) or recovering (9) is a bound, and has no band. */
+const struct ft_band_row *ft_band_at(const struct ft_band *band, uint8_t band_bits, int32_t rise, uint8_t rise_bits);
+
+/* The end of a band, in the unit of the value that was read. */
+double ft_band_end(int32_t read, int16_t tenths);
 
 /* Writes a command of a board of one fingertip, with its payload as the protocol's page has it; returns the bytes on the wire, 0 for
  * a payload of more than 68 bytes, the most there is. */

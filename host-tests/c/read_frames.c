@@ -78,6 +78,19 @@ static void print_frame(const struct ft_frame *frame)
             printf("%02x", frame->of.tip_data.bytes[i]);
         }
         break;
+    case FT_BAND: {
+        const struct ft_band *band = &frame->of.band;
+        printf(" tip %u object unknown from %.3f Pa", band->tip, ft_pascals(band->from, frame->fraction_bits));
+        for (uint8_t i = 0; i < band->count; i++) {
+            const struct ft_band_row *row = &band->rows[i];
+            /* Of a reading of 1 N and 1 mm in this row. */
+            row = ft_band_at(band, frame->fraction_bits, row->to, frame->fraction_bits);
+            printf(" to %.3f Pa force %.0f to %.0f uN indentation %.0f to %.0f nm", ft_pascals(row->to, frame->fraction_bits),
+                   ft_band_end(1000000, row->force[0]), ft_band_end(1000000, row->force[1]),
+                   ft_band_end(1000000, row->indentation[0]), ft_band_end(1000000, row->indentation[1]));
+        }
+        break;
+    }
     default:
         for (uint8_t tip = 0; tip < frame->tips; tip++) {
             print_values(tip, &frame->of.values[tip], frame->fraction_bits);

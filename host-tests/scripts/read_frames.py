@@ -16,7 +16,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "model-tables/python/package"))
 
 from fingertip.errors import TelemetryError  # noqa: E402
-from fingertip.telemetry import Answer, CommandKind, FaultReport, Hello, LastRun, Reading, Stored, TipData  # noqa: E402
+from fingertip.telemetry import Answer, Band, CommandKind, FaultReport, Hello, LastRun, Reading, Stored, TipData  # noqa: E402
 from fingertip.telemetry.codes import FAULT_WORDS, WARNING_WORDS  # noqa: E402
 from fingertip.telemetry.commands import encode  # noqa: E402
 from fingertip.telemetry.frames import FrameError, Splitter, body_of, decode  # noqa: E402
@@ -50,6 +50,10 @@ def describe(frame):
                            f"({frame.saves}), before: {LAST[frame.last_run]} {frame.where:#x}, {frame.resets} resets in a row; "
                            f"{frame.samples_lost} samples lost, {frame.samples_replaced} outliers, {frame.frames_dropped} frames "
                            f"dropped, {frame.refused} refused")
+        case Band():
+            rows = "; ".join(f"to {row.to_pa:.1f} Pa force {100 * row.force[0]:+.1f} to {100 * row.force[1]:+.1f} %, indentation "
+                             f"{100 * row.indentation[0]:+.1f} to {100 * row.indentation[1]:+.1f} %" for row in frame.rows)
+            return head + f"object unknown, from {frame.from_pa:.1f} Pa: {rows}"
         case TipData():
             return head + f"read-back {frame.command_sequence}: from {frame.offset} on, {frame.content.hex()}"
         case Answer():

@@ -60,7 +60,7 @@ def describe(body):
             raise FrameError("field") from None
         return head + (f"tip {tip} {name}, design {design:016x}, tables {tables}, a report each {period} us, stored: {words} ({saved}), "
                        f"{outliers} outliers")
-    if kind == 4 and len(body) == 21:
+    if kind == 8 or kind == 4 and len(body) == 21:
         answer = read_frames.describe(decode(bytes([2]) + body[1:14] + body[15:]))
         return answer.replace(": ", f": tip {body[14]}: ", 1)
     raise FrameError("version, kind or length")

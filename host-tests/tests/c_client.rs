@@ -146,6 +146,12 @@ fn the_pages_examples_are_what_the_header_in_c_reads() {
             "version 2 kind 4 sequence 8 time 2000000 us dropped 0 tip 0 command 93 sequence 5 outcome 12 findings 0008",
         ),
         (
+            "band, ",
+            "version 2 kind 8 sequence 8 time 1000000 us dropped 0 tip 0 object unknown from 500.000 Pa to 2000.000 Pa force 935000 \
+             to 1225000 uN indentation 988000 to 1300000 nm to 82944.000 Pa force 664000 to 1221000 uN indentation 977000 to \
+             1586000 nm",
+        ),
+        (
             "data, ",
             "version 2 kind 7 sequence 8 time 2000000 us dropped 0 sequence 5 offset 0 bytes 46544950",
         ),
@@ -164,6 +170,12 @@ fn the_pages_examples_are_what_the_header_in_c_reads() {
             "hand: hello of tip 4",
             "version 3 kind 6 sequence 8 time 1000000 us dropped 0 tip 4 index design 0123456789abcdef tables 5 period 2010 \
              stored 0 (0) outliers 6",
+        ),
+        (
+            "hand: band of tip 4",
+            "version 3 kind 8 sequence 8 time 1000000 us dropped 0 tip 4 object unknown from 500.000 Pa to 2000.000 Pa force 935000 \
+             to 1225000 uN indentation 988000 to 1300000 nm to 82944.000 Pa force 664000 to 1221000 uN indentation 977000 to \
+             1586000 nm",
         ),
         (
             "hand: answer of tip 4",
@@ -306,7 +318,7 @@ fn the_header_in_c_takes_and_refuses_the_same_bytes_as_the_firmwares_reader() {
         // Commands are of the other direction.
         .filter(|body| body[1] < 0x80)
         .collect();
-    assert_eq!(bodies.len(), 15);
+    assert_eq!(bodies.len(), 17);
     let mut random = Random(11);
     let mut below = |end: usize| (random.bits() >> 33) as usize % end;
     let mut frames = Vec::new();

@@ -102,13 +102,14 @@ const LOADS: [(&str, LoadCommand); 4] = [
 
 const LOAD_REPLIES: [&str; 2] = ["answer to a load, sequence 8", "data, sequence 8"];
 
-const FRAMES: [&str; 6] = [
+const FRAMES: [&str; 7] = [
     "fault, sequence 65535",
     "answer, sequence 8",
     "answer, sequence 9",
     "reading, sequence 0x0102",
     "hello, sequence 7",
     "feedback, sequence 0x0102",
+    "band, sequence 8",
 ];
 
 #[test]
@@ -134,6 +135,7 @@ fn the_pages_examples_of_a_hand_are_what_the_reader_in_python_reads() {
         "hello of the board",
         "hello of tip 4",
         "answer of tip 4",
+        "band of tip 4",
     ];
     let mut stream = Vec::new();
     for what in whats {
@@ -204,9 +206,7 @@ fn the_pages_examples_of_a_hand_are_what_the_reader_in_python_reads() {
         example("hand: object of tip 1")
     );
     for what in ["answer to a load of tip 3", "data of tip 3", "answer of tip 1"] {
-        let bytes = example(&format!("hand: {what}"));
-        let body = unstuff(&bytes[..bytes.len() - 1]).expect("it is a frame");
-        assert!(tips::read_body(&body).is_ok(), "{what}");
+        expect_frame_of_a_hand(what);
     }
     let Some(told) = reader_of(HAND_READER, &[], &stream) else {
         return;
@@ -224,8 +224,17 @@ fn the_pages_examples_of_a_hand_are_what_the_reader_in_python_reads() {
             "8 1000000 us, 0 dropped: tip 4 index, design 0123456789abcdef, tables 5, a report each 2010 us, stored: none \
              (0), 6 outliers",
             "9 2000000 us, 0 dropped: tip 4: tare 772: touched, findings 0x0",
+            "8 1000000 us, 0 dropped: tip 4: object unknown, from 500.0 Pa: to 2000.0 Pa force -6.5 to +22.5 %, indentation -1.2 to \
+             +30.0 %; to 82944.0 Pa force -33.6 to +22.1 %, indentation -2.3 to +58.6 %",
         ]
     );
+}
+
+/// The page's example of a hand is a frame of version 3.
+fn expect_frame_of_a_hand(what: &str) {
+    let bytes = example(&format!("hand: {what}"));
+    let body = unstuff(&bytes[..bytes.len() - 1]).expect("it is a frame");
+    assert!(tips::read_body(&body).is_ok(), "{what}");
 }
 
 /// The tests of the client of a hand need the standard library alone.
@@ -246,7 +255,7 @@ fn the_client_of_a_hand_in_python_is_the_pages() {
         String::from_utf8_lossy(&output.stderr),
     );
     assert!(
-        output.status.success() && told.matches("... ok").count() == 8,
+        output.status.success() && told.matches("... ok").count() == 9,
         "{told}{error}"
     );
 }
@@ -328,6 +337,8 @@ fn the_reader_in_python_reads_what_the_firmware_sends() {
              259 frames dropped, 4 refused",
             "258 3000500 us, 3 dropped: warning: saturated, touched, 642.000 Pa, 1500000 uN, 2500000 nm, 1-sigma 2.898 \
              Pa, 6000 uN, 9000 nm, feedback 445000 uN, 1-sigma 1800 uN",
+            "8 1000000 us, 0 dropped: object unknown, from 500.0 Pa: to 2000.0 Pa force -6.5 to +22.5 %, indentation -1.2 to \
+             +30.0 %; to 82944.0 Pa force -33.6 to +22.1 %, indentation -2.3 to +58.6 %",
             "8 2000000 us, 0 dropped: verify 5: block refused, findings 0x8",
             "8 2000000 us, 0 dropped: read-back 5: from 0 on, 46544950",
         ]

@@ -2,6 +2,8 @@
 //! own zero, faults, answers and stored calibration. The reports of one instant share a frame and a time.
 
 use crate::device::logic::{Counters, Device, ToStore};
+#[cfg(band)]
+use crate::link::band::BandMessage;
 use crate::link::command::{Command, Request};
 #[cfg(feature = "load-tip")]
 use crate::link::load::LoadReply;
@@ -110,6 +112,9 @@ pub enum HandFrame<'a> {
     Tip(u8, &'static str, Hello),
     /// A tip's answer, with its number.
     Answer(u8, Answer),
+    /// The band of a tip, with its number.
+    #[cfg(band)]
+    Band(u8, BandMessage),
     /// What came of a command that loads a tip, with its number.
     #[cfg(feature = "load-tip")]
     Load(u8, LoadReply),
@@ -133,6 +138,8 @@ impl HandFrame<'_> {
             Self::Board(ref hello, tips) => start.board(hello, tips),
             Self::Tip(tip, name, ref hello) => start.tip(tip, name, hello),
             Self::Answer(tip, ref answer) => start.answer(tip, answer),
+            #[cfg(band)]
+            Self::Band(tip, ref band) => start.band(tip, band),
             #[cfg(feature = "load-tip")]
             Self::Load(tip, ref reply) => start.load(tip, reply),
         }
@@ -309,6 +316,8 @@ fn tell<const TIPS: usize>(
             ));
         }
         Message::Answer(answer) => put(&HandFrame::Answer(tip, *answer)),
+        #[cfg(band)]
+        Message::Band(band) => put(&HandFrame::Band(tip, *band)),
         // Those of all tips are in a frame.
         Message::Report { .. } => {}
         // A loader makes them, and no tip.

@@ -2,6 +2,8 @@
 //! outcomes.
 
 use crate::device::task_monitor::Start;
+#[cfg(band)]
+use crate::link::band::BandMessage;
 use crate::link::command::{Command, CommandKind, Outcome, Request};
 use crate::link::telemetry::{Answer, Hello, Message};
 use crate::signal::calibration::Calibration;
@@ -177,7 +179,7 @@ impl<D: Design> Device<D> {
         };
         if now.0 >= self.next_hello {
             self.next_hello = now.0.saturating_add(HELLO_PERIOD);
-            say(&Message::Hello(self.hello(now)));
+            self.greet(now, &mut say);
         }
         self.last = report
             .outcome
@@ -245,7 +247,7 @@ impl<D: Design> Device<D> {
                 .air(now, pascals)
                 .map_or_else(Outcome::from, |()| Outcome::Done),
             Command::Info => {
-                say(&Message::Hello(self.hello(now)));
+                self.greet(now, &mut say);
                 Outcome::Done
             }
             Command::SelfTest { indentation } => {
@@ -343,6 +345,20 @@ impl<D: Design> Device<D> {
         add(findings::LAST_FAULT, self.hello.last_fault != LastFault::None);
         add(findings::SAMPLES_LOST, self.counters.samples_lost > 0);
         found
+    }
+
+    /// A hello, and the band of what is not known.
+    #[inline]
+    fn greet(&self, now: Microseconds, mut say: impl FnMut(&Message)) {
+        say(&Message::Hello(self.hello(now)));
+        #[cfg(band)]
+        if let Some(band) = self.pipeline.band() {
+            say(&Message::Band(BandMessage {
+                time: now,
+                pressure_fraction_bits: self.pipeline.parameters().pressure_fraction_bits as u8,
+                band: *band,
+            }));
+        }
     }
 
     fn hello(&self, now: Microseconds) -> Hello {

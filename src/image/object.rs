@@ -10,6 +10,9 @@ macro_rules! object_design {
             maximum: i32,
             segments: [[i32; $($module)::+::TABLES.layout.words()]; $($module)::+::TABLES.segments.len()],
             read: Option<model_tables::table::known::ReadPair>,
+            /// Whether what is touched is what the design says.
+            #[cfg(band)]
+            as_designed: bool,
         }
 
         impl $name {
@@ -23,6 +26,8 @@ macro_rules! object_design {
                     maximum: $($module)::+::TABLES.layout.maximum,
                     segments: $($module)::+::TABLES.segments,
                     read: None,
+                    #[cfg(band)]
+                    as_designed: true,
                 };
                 // The generator saw to it that the law allows it.
                 let _ = design.touch($($module)::+::START);
@@ -91,7 +96,16 @@ macro_rules! object_design {
                     .ok_or(crate::signal::design::NoSuchObject)?;
                 self.weigh(&weights);
                 self.read = None;
+                #[cfg(band)]
+                {
+                    self.as_designed = touched == $($module)::+::START;
+                }
                 Ok(())
+            }
+
+            #[cfg(band)]
+            fn band(&self) -> Option<&model_tables::table::band::ChipBand> {
+                const { &$($module)::+::BAND }.as_ref().filter(|_| self.as_designed)
             }
 
             #[inline]

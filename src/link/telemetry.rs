@@ -3,6 +3,8 @@
 //!
 //! A frame of another version, an unknown kind, code or length is discarded as a whole.
 
+#[cfg(band)]
+use crate::link::band::{self, BandMessage};
 use crate::link::command::{CommandKind, Outcome};
 #[cfg(feature = "load-tip")]
 use crate::link::load::{self, LoadReply};
@@ -90,6 +92,9 @@ pub enum Message {
     Hello(Hello),
     /// Answer to a command.
     Answer(Answer),
+    /// The band of the hello before it.
+    #[cfg(band)]
+    Band(BandMessage),
     /// Answer of the loader of a tip's data.
     #[cfg(feature = "load-tip")]
     Load(LoadReply),
@@ -102,6 +107,8 @@ impl Message {
             Self::Report { report, .. } => report.time,
             Self::Hello(hello) => hello.time,
             Self::Answer(answer) => answer.time,
+            #[cfg(band)]
+            Self::Band(band) => band.time,
             #[cfg(feature = "load-tip")]
             Self::Load(LoadReply::Answer { time, .. } | LoadReply::Data { time, .. }) => *time,
         }
@@ -174,6 +181,11 @@ pub fn write<const OBJECT: bool>(body: &mut Encoded, sequence: u16, dropped: u16
             if OBJECT && let Some(known) = &answer.known {
                 write_known(body, known);
             }
+        }
+        #[cfg(band)]
+        Message::Band(message) => {
+            header(band::BAND, message.time);
+            band::write(body, message);
         }
         #[cfg(feature = "load-tip")]
         Message::Load(reply) => {
@@ -255,6 +267,11 @@ pub(super) fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
     let sequence = u16::from_le_bytes(fields.take()?);
     let time = Microseconds(u64::from_le_bytes(fields.take()?));
     let dropped = u16::from_le_bytes(fields.take()?);
+    let frame = |message| Frame {
+        sequence,
+        dropped,
+        message,
+    };
     #[cfg(feature = "load-tip")]
     {
         let reply = match kind {
@@ -263,12 +280,12 @@ pub(super) fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
             _ => None,
         };
         if let Some(reply) = reply {
-            return Ok(Frame {
-                sequence,
-                dropped,
-                message: Message::Load(reply?),
-            });
+            return Ok(frame(Message::Load(reply?)));
         }
+    }
+    #[cfg(band)]
+    if kind == band::BAND {
+        return Ok(frame(Message::Band(band::read(fields, time, HEADER as u8)?)));
     }
     let expected = match kind {
         1 => READING,
@@ -329,11 +346,7 @@ pub(super) fn read_body(body: &[u8]) -> Result<Frame, DecodeError> {
             })
         }
     };
-    Ok(Frame {
-        sequence,
-        dropped,
-        message,
-    })
+    Ok(frame(message))
 }
 
 fn read_measurement(fields: &mut Reader<'_>) -> Result<(Measurement, u8), DecodeError> {

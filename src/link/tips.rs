@@ -6,6 +6,8 @@
 mod deviation;
 mod read;
 
+#[cfg(band)]
+use crate::link::band::{self, BandMessage};
 use crate::link::command::{self, Outcome, Request};
 #[cfg(feature = "load-tip")]
 use crate::link::load::{self, LoadCommand, LoadReply, LoadRequest};
@@ -72,6 +74,14 @@ pub enum TipsMessage {
         /// The answer.
         answer: Answer,
     },
+    /// The band of a tip, of its greeting before it.
+    #[cfg(band)]
+    Band {
+        /// The tip.
+        tip: u8,
+        /// The band.
+        band: BandMessage,
+    },
     /// What came of a command that loads a tip, or data of the tip in use.
     #[cfg(feature = "load-tip")]
     Load {
@@ -113,6 +123,8 @@ impl TipsMessage {
             Self::Board { hello, .. } => hello.time,
             Self::Tip(hello) => hello.time,
             Self::Answer { answer, .. } => answer.time,
+            #[cfg(band)]
+            Self::Band { band, .. } => band.time,
             #[cfg(feature = "load-tip")]
             Self::Load {
                 reply: LoadReply::Answer { time, .. } | LoadReply::Data { time, .. },
@@ -208,6 +220,15 @@ impl<'a> FrameStart<'a> {
         if OBJECT && let Some(known) = &answer.known {
             telemetry::write_known(body, known);
         }
+        body.finish();
+    }
+
+    /// The band of a tip.
+    #[cfg(band)]
+    pub fn band(self, tip: u8, message: &BandMessage) {
+        let body = self.header(band::BAND, message.time);
+        body.put([tip]);
+        band::write(body, message);
         body.finish();
     }
 

@@ -13,6 +13,8 @@ use crate::units::Microseconds;
 use model_tables::constants::DesignConstants;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
+#[cfg(band)]
+use model_tables::table::band::ChipBand;
 use model_tables::table::known::{KnownContact, ReadPair};
 use model_tables::table::law::Touched;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
@@ -58,6 +60,13 @@ pub trait Design {
     /// [`NoSuchObject`]; what was touched before still is.
     fn touch(&mut self, _touched: Touched) -> Result<(), NoSuchObject> {
         Err(NoSuchObject)
+    }
+
+    /// The band of an unknown object; nothing of a design that is told what it touches, and while another object than that of the band is
+    /// named.
+    #[cfg(band)]
+    fn band(&self) -> Option<&ChipBand> {
+        None
     }
 
     /// What was read last, if anything was that a known indentation tells more of. A design without `[object]` forgets it.

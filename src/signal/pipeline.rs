@@ -17,6 +17,8 @@ use crate::status::{Fault, Touch, Warnings};
 use crate::transducer::driver::Sample;
 use crate::units::{Centidegrees, Microseconds, Millipascals, Pressure};
 use model_tables::constants::AIR;
+#[cfg(band)]
+use model_tables::table::band::ChipBand;
 use model_tables::table::known::KnownContact;
 use model_tables::table::law::Touched;
 use model_tables::units::{Nanometres, PressureRise};
@@ -386,6 +388,12 @@ impl<D: Design> Pipeline<D> {
     /// [`NoSuchObject`]; readings stay those of the previous object.
     pub fn touch_object(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
         self.design.touch(touched)
+    }
+
+    /// The band of an unknown object; nothing where the object is known.
+    #[cfg(band)]
+    pub fn band(&self) -> Option<&ChipBand> {
+        self.design.band()
     }
 
     /// The contact from the last reading and a known indentation, above 0; `None` without a valid reading, or without `[object]`.

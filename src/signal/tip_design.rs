@@ -7,6 +7,8 @@ use crate::signal::zero::surroundings::Surroundings;
 use model_tables::material::relaxation::MAX_TERMS;
 use model_tables::material::series::WallSeries;
 use model_tables::table::Reading;
+#[cfg(band)]
+use model_tables::table::band::ChipBand;
 use model_tables::table::known::{KnownContact, ReadPair};
 use model_tables::table::law::Touched;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
@@ -69,6 +71,15 @@ impl<I: Design> Design for TipDesign<'_, I> {
         match self {
             Self::Image(image) => image.touch(touched),
             Self::Loaded(loaded) => loaded.touch(touched),
+        }
+    }
+
+    #[cfg(band)]
+    fn band(&self) -> Option<&ChipBand> {
+        match self {
+            Self::Image(image) => image.band(),
+            // A block has none.
+            Self::Loaded(_) => None,
         }
     }
 

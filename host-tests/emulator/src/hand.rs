@@ -7,6 +7,7 @@ use crate::multiplexer::BusCommand;
 use crate::plant::Plant;
 use crate::record::instant;
 use crate::transducer::{ElectricalOutput, EmulatedTransducer};
+use fingertip::link::band::BandMessage;
 use fingertip::link::load::LoadReply;
 use fingertip::link::telemetry::{Answer, Hello};
 use fingertip::link::tips::{AnyDecoder, AnyFrame, TipHello, TipsMessage};
@@ -78,6 +79,8 @@ pub struct HandRun {
     pub greetings: Vec<TipHello>,
     /// Answers, with their tips.
     pub answers: Vec<(u8, Answer)>,
+    /// Bands of the tips that are not told what they touch, with the number of the tip.
+    pub bands: Vec<(u8, BandMessage)>,
     /// Answers to commands that load a tip, with their tips.
     pub loads: Vec<(u8, LoadReply)>,
     /// What did not read as a frame.
@@ -210,6 +213,7 @@ fn read(bytes: &[(f64, u8)], clock_zero: f64) -> HandRun {
             TipsMessage::Board { hello, tips } => run.boards.push((hello, tips)),
             TipsMessage::Tip(hello) => run.greetings.push(hello),
             TipsMessage::Answer { tip, answer } => run.answers.push((tip, answer)),
+            TipsMessage::Band { tip, band } => run.bands.push((tip, band)),
             TipsMessage::Load { tip, reply } => run.loads.push((tip, reply)),
         }
     }

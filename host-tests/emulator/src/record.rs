@@ -2,6 +2,7 @@
 
 use crate::bench::{Listener, Moment};
 use crate::plant::Plant;
+use fingertip::link::band::BandMessage;
 use fingertip::link::telemetry::{Answer, Decoder, Frame, Hello, Message};
 use fingertip::link::wire::DecodeError;
 use fingertip::signal::report::Report;
@@ -59,6 +60,8 @@ pub struct Recording {
     pub hellos: Vec<Hello>,
     /// What came of commands, in order.
     pub answers: Vec<Answer>,
+    /// Bands of an unknown object, in order.
+    pub bands: Vec<BandMessage>,
     /// What did not read as a frame.
     pub broken: Vec<DecodeError>,
     /// Frames that the sequence numbers say are missing.
@@ -119,6 +122,7 @@ impl<F: FnMut(&Row) + Send + 'static> Recorder<F> {
             }
             Message::Hello(hello) => self.record.hellos.push(*hello),
             Message::Answer(answer) => self.record.answers.push(*answer),
+            Message::Band(band) => self.record.bands.push(*band),
             // Nothing is loaded onto an emulated board: its flash keeps nothing.
             Message::Load(_) => {}
         }

@@ -209,6 +209,7 @@ impl Loading {
             Message::Report { report, .. } => report.time.0,
             Message::Hello(hello) => hello.time.0,
             Message::Answer(answer) => answer.time.0,
+            Message::Band(band) => band.time.0,
             Message::Load(LoadReply::Answer { time, .. } | LoadReply::Data { time, .. }) => time.0,
         });
         match message {

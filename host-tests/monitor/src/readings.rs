@@ -4,7 +4,8 @@ use crate::frames::clock::BoardClock;
 use crate::frames::order::{FrameOrder, Order};
 use crate::frames::pending::{self, Pending};
 use crate::frames::tip::TipChoice;
-use fingertip::link::command::{Command, Request};
+use fingertip::link::band::BandMessage;
+use fingertip::link::command::{Command, CommandKind, Outcome, Request};
 use fingertip::link::telemetry::{Hello, Message};
 use fingertip::link::tips::{AnyDecoder, AnyFrame};
 use fingertip::link::wire::{DecodeError, HAND_VERSION, PROTOCOL_VERSION};
@@ -13,7 +14,7 @@ use std::time::Duration;
 
 mod live;
 
-pub use live::{LiveReading, LiveValues};
+pub use live::{LiveBand, LiveReading, LiveValues};
 
 /// A report older than this is no longer the fingertip's state. Of a board that sends few reports: one older than
 /// `MISSED` of the periods in its hello, where that is longer.
@@ -67,6 +68,8 @@ pub struct Monitor {
     peak_force_n: Option<f64>,
     history: VecDeque<HistoryPoint>,
     hello: Option<Hello>,
+    /// The band of that greeting; `None`: the board states none.
+    band: Option<BandMessage>,
     other_version: Option<u8>,
     journal: VecDeque<String>,
     next_command: u16,
@@ -108,6 +111,7 @@ impl Monitor {
         self.tip = self.tip.anew();
         self.order = FrameOrder::default();
         self.hello = None;
+        self.band = None;
         self.restarted("connected");
     }
 
@@ -148,6 +152,7 @@ impl Monitor {
             }
             Order::Restarted => {
                 self.hello = None;
+                self.band = None;
                 self.restarted("the board was reset");
                 0
             }
@@ -166,17 +171,32 @@ impl Monitor {
             Message::Report {
                 report,
                 pressure_fraction_bits,
-            } => Some(self.take(LiveReading {
-                measured: now.saturating_sub(late),
-                missing_before: missing,
-                design: self.hello.map(|hello| hello.design_hash),
-                ..LiveReading::of(&report, pressure_fraction_bits)
-            })),
+            } => Some(
+                self.take(LiveReading {
+                    measured: now.saturating_sub(late),
+                    missing_before: missing,
+                    design: self.hello.map(|hello| hello.design_hash),
+                    band: self
+                        .band
+                        .as_ref()
+                        .and_then(|band| LiveBand::of(&report, pressure_fraction_bits, band)),
+                    ..LiveReading::of(&report, pressure_fraction_bits)
+                }),
+            ),
             Message::Hello(hello) => {
                 self.hello = Some(hello);
+                self.band = None;
+                None
+            }
+            Message::Band(band) => {
+                self.band = Some(band);
                 None
             }
             Message::Answer(answer) => {
+                if answer.command == CommandKind::Object && answer.outcome == Outcome::Done {
+                    // The next greeting has the band, if there still is one.
+                    self.band = None;
+                }
                 let own = self.pending.answered(&answer);
                 let elsewhere = if own { "" } else { " (not asked for here)" };
                 self.note(format!("{}{elsewhere}", pending::describe(&answer)));
@@ -341,6 +361,11 @@ impl Monitor {
     /// The last greeting of this run of the board.
     pub fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
+    }
+
+    /// The band of an unknown object, as the last greeting has it; none where the board states none.
+    pub fn band(&self) -> Option<&BandMessage> {
+        self.band.as_ref()
     }
 
     /// The version of the protocol that the board speaks, where it is another one; none where no such frame came.

@@ -21,6 +21,8 @@ const KEYS: [&str; 2] = [
 const ROOMY: [u16; 2] = [60, 17];
 /// From this width on the 1-sigma stands beside its value.
 const WIDE: u16 = 50;
+/// From this width on the band of an unknown object stands behind the 1-sigma.
+const BANDED: u16 = 78;
 /// Lines of values: status, touch, force, peak, indentation, pressure rise. Of a design with a feedback actuator there is one more.
 const VALUES: u16 = 6;
 
@@ -249,6 +251,15 @@ fn readings(monitor: &Monitor, width: u16, now: Duration) -> Vec<Line<'static>> 
         };
         Line::from(vec![Span::raw(format!(" {name:<13} ")), Span::styled(text, bold)])
     };
+    let band = latest
+        .and_then(|reading| reading.band)
+        .filter(|_| ok.is_some() && width >= BANDED);
+    let banded = |mut line: Line<'static>, ends: Option<[f64; 2]>| {
+        if let Some([least, most]) = ends {
+            line.push_span(Span::raw(format!(", object unknown: {least:.3} to {most:.3}")));
+        }
+        line
+    };
     let touch = latest.map_or(Touch::Unknown, |reading| reading.touch).word();
     let peak = match monitor.peak_force_n() {
         Some(peak) if wide => format!("{peak:>10.4} N    largest that was ok; k forgets it"),
@@ -262,8 +273,14 @@ fn readings(monitor: &Monitor, width: u16, now: Duration) -> Vec<Line<'static>> 
     };
     let mut lines = vec![
         Line::styled(shown, Style::new().fg(color).add_modifier(Modifier::BOLD)),
-        value("force", ok.map(|values| values.force_n), 4, "N"),
-        value("indentation", ok.map(|values| values.indentation_mm), 4, "mm"),
+        banded(
+            value("force", ok.map(|values| values.force_n), 4, "N"),
+            band.map(|band| band.force_n),
+        ),
+        banded(
+            value("indentation", ok.map(|values| values.indentation_mm), 4, "mm"),
+            band.map(|band| band.indentation_mm),
+        ),
         // A warned rise still tells what the transducer reads.
         value(
             "pressure rise",

@@ -1,10 +1,13 @@
 //! The view on a terminal of memory: frames of the firmware's own encoder in, the screen out.
 
+use fingertip::link::band::BandMessage;
 use fingertip::link::command::{Command, CommandKind, Outcome};
 use fingertip::link::telemetry::{Answer, Frame, Hello, Message, encode};
 use fingertip::signal::report::{Measurement, Report, Sigma};
 use fingertip::status::{Fault, Touch, Warnings};
 use fingertip::units::Microseconds;
+use model_tables::table::band::{ChipBand, ChipBandRow, MAX_BAND_ROWS};
+use model_tables::units::PressureRise;
 use monitor::readings::{Monitor, STALE};
 use monitor::view::{self, ViewContext};
 use ratatui::Terminal;
@@ -69,6 +72,51 @@ fn connected() -> Monitor {
     let mut monitor = Monitor::default();
     monitor.connected();
     monitor
+}
+
+/// The band of a hello is beside each reading in it, until the next hello or the answer to an object.
+#[test]
+fn an_unknown_object_has_lower_and_upper_beside_each_reading() {
+    let mut rows = [ChipBandRow::NOTHING; MAX_BAND_ROWS];
+    rows[0] = ChipBandRow {
+        to: PressureRise(2_000 << 8),
+        force: [-200, 250],
+        indentation: [-40, 400],
+    };
+    let hello = Message::Hello(Hello::default());
+    let band = Message::Band(BandMessage {
+        time: Microseconds(0),
+        // More than the reading has.
+        pressure_fraction_bits: 8,
+        band: ChipBand {
+            from: PressureRise(1_000 << 8),
+            count: 1,
+            rows,
+        },
+    });
+    let told = Message::Answer(Answer {
+        time: Microseconds(4_000),
+        command: CommandKind::Object,
+        command_sequence: 1,
+        outcome: Outcome::Done,
+        findings: 0,
+        known: None,
+    });
+    let read = |milliseconds| report(milliseconds, Ok(measurement(Warnings::NONE)));
+    let mut monitor = connected();
+    hear(&mut monitor, 1, NOW, &[hello, band, read(2)]);
+    let shown = screen(&monitor, NOW);
+    // 1.2345 N and 0.75 mm at 1000.5 Pa.
+    assert!(shown.contains("object unknown: 0.988 to 1.543"), "{shown}");
+    assert!(shown.contains("object unknown: 0.720 to 1.050"), "{shown}");
+    let saturated = report(3, Ok(measurement(Warnings::SATURATED)));
+    for last in [vec![saturated], vec![told, read(5)], vec![hello, read(5)]] {
+        let mut monitor = connected();
+        hear(&mut monitor, 1, NOW, &[hello, band, read(2)]);
+        hear(&mut monitor, 4, NOW, &last);
+        let shown = screen(&monitor, NOW);
+        assert!(!shown.contains("object unknown"), "{last:?}: {shown}");
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@ from pathlib import Path
 from fingertip.telemetry import (
     ALL_TIPS,
     Answer,
+    Band,
     CommandKind,
     Fault,
     FaultReport,
@@ -96,6 +97,27 @@ def test_a_load_is_the_pages_bytes():
     [known] = decoded(example("answer of tip 1"))
     assert isinstance(known, Answer)
     assert (known.tip, known.command, known.findings, known.force_n) == (1, CommandKind.INDENTATION, 1, 1.5)
+
+
+def test_a_band_gives_lower_and_upper_of_a_reading():
+    [band] = decoded(example("band of tip 4"))
+    assert isinstance(band, Band)
+    assert (band.tip, band.from_pa, [row.to_pa for row in band.rows]) == (4, 500.0, [2000.0, 82944.0])
+
+    def of(rise, warnings=Warnings(0)):
+        return band.of(Reading(1, 2, 0, 4, warnings, Touch.TOUCHED, rise, 1.0, 2.0, 1.0, 0.01, 0.01))
+
+    def near(found, wanted):
+        return all(abs(one - other) < 1e-12 for ends, others in zip(found, wanted, strict=True) for one, other in zip(ends, others, strict=True))
+
+    assert near(of(2000.0), ((0.935, 1.225), (1.976, 2.6)))
+    assert near(of(2000.1), ((0.664, 1.221), (1.954, 3.172)))
+    assert of(499.9) is None and of(82944.1) is None
+    assert of(1000.0, Warnings.SATURATED) is None and of(1000.0, Warnings.ZERO_AGED) is not None
+    body = frames.body_of(example("band of tip 4")[:-1])
+    for changed in (body[:-12], body + bytes(12), body[:15] + b"\x20" + body[16:], body[:16] + b"\x06" + body[17:],
+                    body[:21] + body[33:45] + body[21:33]):
+        assert refused(lambda body=changed: hand.decode_hand(body)) in ("field", "version, kind or length")
 
 
 def test_what_no_hand_sends_is_refused():

@@ -13,6 +13,7 @@ use crate::block::write::{ObjectData, TipData};
 use crate::constants::{DesignConstants, ZeroAssumptions};
 use crate::material::series::{SeriesStep, WallSeries};
 use crate::table::Layout;
+use crate::table::band::ChipBand;
 use crate::table::feedback::words_per_segment;
 use crate::units::PressureRise;
 use std::fmt::{self, Write as _};
@@ -45,6 +46,13 @@ impl Generated {
             transducer: self.transducer(),
             zero: self.design.zero.assumptions(self.design.air),
         }
+    }
+
+    /// The band that the chip sends beside its readings; `None` if the design has no `[object] unknown = true`.
+    pub fn chip_band(&self) -> Option<ChipBand> {
+        let unknown = self.design.object.is_some_and(|object| object.unknown);
+        let bits = self.certified.tables.layout.fraction_bits;
+        self.band.as_ref().filter(|_| unknown)?.of_chip(bits)
     }
 
     /// The tip's data as a [`crate::block`], without a calibration.
@@ -178,6 +186,7 @@ fn write_rust(generated: &Generated, out: &mut String) -> fmt::Result {
     writeln!(out, "    ],\n}};")?;
     if let Some(object) = &generated.certified.object {
         write_objects(object, out)?;
+        write_band(generated, out)?;
     }
     if let Some(feedback) = &generated.certified.feedback {
         write_feedback(feedback, out)?;
@@ -262,6 +271,38 @@ fn write_objects(object: &ObjectTables, out: &mut String) -> fmt::Result {
          /// What is touched at the start.\n\
          pub const START: model_tables::table::law::Touched = model_tables::table::law::Touched::{:?};",
         object.start
+    )
+}
+
+/// The band of a design that is not told what it touches; of another with `[object]` that there is none, which costs the image nothing.
+fn write_band(generated: &Generated, out: &mut String) -> fmt::Result {
+    writeln!(
+        out,
+        "\n/// The band of an unknown object, for the tables at the start.\n\
+         pub const BAND: Option<model_tables::table::band::ChipBand> = {};",
+        generated
+            .chip_band()
+            .map_or_else(|| "None".to_owned(), |band| spelt_band(&band))
+    )
+}
+
+fn spelt_band(band: &ChipBand) -> String {
+    const OF: &str = "model_tables::table::band";
+    let rows: Vec<String> = band
+        .rows
+        .iter()
+        .map(|row| {
+            format!(
+                "        {OF}::ChipBandRow {{ to: model_tables::units::PressureRise({}), force: {:?}, indentation: {:?} }},\n",
+                row.to.0, row.force, row.indentation
+            )
+        })
+        .collect();
+    format!(
+        "Some({OF}::ChipBand {{\n    from: model_tables::units::PressureRise({}),\n    count: {},\n    rows: [\n{}    ],\n}})",
+        band.from.0,
+        band.count,
+        rows.concat()
     )
 }
 

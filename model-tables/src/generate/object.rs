@@ -11,6 +11,7 @@ use crate::units::PressureRise;
 use certified_lookup::generate::{AccuracyGoal, beside, lowest_segment_end};
 
 mod band;
+mod chip_band;
 mod press;
 pub mod quoted;
 mod solved;

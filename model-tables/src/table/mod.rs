@@ -5,6 +5,7 @@
 //!
 //! The tables of a design are a constant, so the compiler folds everything but the coefficients.
 
+pub mod band;
 pub mod blend;
 pub mod feedback;
 pub mod known;

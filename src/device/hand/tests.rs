@@ -31,6 +31,7 @@ fn sent(frame: &HandFrame<'_>) -> Sent {
         }
         HandFrame::Tip(tip, name, hello) => Sent::Tip(tip, name, hello.design_hash),
         HandFrame::Answer(tip, answer) => Sent::Answer(tip, answer.command, answer.outcome),
+        HandFrame::Band(..) => unreachable!("these tips are told what they touch"),
         #[cfg(feature = "load-tip")]
         HandFrame::Load(..) => unreachable!("no tip makes one"),
     }

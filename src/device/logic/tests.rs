@@ -1,9 +1,13 @@
 use super::*;
 use crate::device::task_monitor::CrashRecord;
+use crate::signal::design::NoSuchObject;
 use crate::signal::test_design::{Linear, TRANSDUCERS};
 use crate::status::Touch;
 use crate::units::{Millipascals, Pressure};
+use model_tables::table::Reading;
+use model_tables::table::band::{ChipBand, ChipBandRow, MAX_BAND_ROWS};
 use model_tables::table::law::Touched;
+use model_tables::units::PressureRise;
 use proptest::prelude::*;
 
 const BEGINNING: Beginning = Beginning {
@@ -389,6 +393,84 @@ fn a_supply_that_sags_in_a_grasp_keeps_the_zero_and_ends_with_a_reason() {
         (hello.reset_cause, hello.resets_in_a_row),
         (ResetCause::BrownOut, 6)
     );
+}
+
+/// A design that is not told what it touches, until it is.
+#[derive(Clone, Debug)]
+struct Unsure {
+    linear: Linear,
+    as_designed: bool,
+}
+
+const BAND: ChipBand = ChipBand {
+    from: PressureRise(1_000),
+    count: 1,
+    rows: [ChipBandRow::NOTHING; MAX_BAND_ROWS],
+};
+
+impl Design for Unsure {
+    type Wall = <Linear as Design>::Wall;
+    type Around = <Linear as Design>::Around;
+
+    fn parameters(&self) -> &Parameters {
+        self.linear.parameters()
+    }
+
+    fn lookup(&self, rise: PressureRise) -> Reading {
+        self.linear.lookup(rise)
+    }
+
+    fn touch(&mut self, touched: Touched) -> Result<(), NoSuchObject> {
+        self.as_designed = touched == Touched::Plate;
+        Ok(())
+    }
+
+    fn band(&self) -> Option<&ChipBand> {
+        Some(&BAND).filter(|_| self.as_designed)
+    }
+}
+
+/// The band follows each hello, and no other than the design's object has one.
+#[test]
+fn a_band_follows_each_hello_while_the_object_is_unknown() {
+    let unsure = Unsure {
+        linear: Linear::NEW,
+        as_designed: true,
+    };
+    let mut device = Device::new(unsure, &BEGINNING);
+    let mut bands = |command: Option<Command>, ms: u64| {
+        let mut emitted = vec![];
+        let now = Microseconds(1000 * ms);
+        if let Some(command) = command {
+            let request = Request { sequence: 9, command };
+            device.request(now, request, |message| emitted.push(*message));
+        }
+        let _ = device.step(now, Err(Fault::SensorOpen), |message| emitted.push(*message));
+        let kinds: String = emitted
+            .iter()
+            .map(|message| match message {
+                Message::Hello(_) => 'h',
+                Message::Band(band) => {
+                    assert_eq!((band.time, band.band), (now, BAND));
+                    assert_eq!(
+                        u32::from(band.pressure_fraction_bits),
+                        Linear::PRESSURE_FRACTION_BITS
+                    );
+                    'b'
+                }
+                Message::Answer(_) => 'a',
+                _ => 'r',
+            })
+            .collect();
+        kinds
+    };
+    assert_eq!(bands(None, 1), "hbr");
+    assert_eq!(bands(None, 2), "r");
+    assert_eq!(bands(Some(Command::Info), 3), "hbar");
+    assert_eq!(bands(Some(Command::Object(Touched::Ball(8_000))), 4), "ar");
+    assert_eq!(bands(Some(Command::Info), 5), "har");
+    assert_eq!(bands(Some(Command::Object(Touched::Plate)), 6), "ar");
+    assert_eq!(bands(None, 1_002), "hbr");
 }
 
 #[test]

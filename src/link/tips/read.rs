@@ -4,6 +4,8 @@ use super::deviation::of_eighths;
 use super::{
     ANSWER, BOARD, FAULTY, MAX_TIPS, OBJECT, READING_BYTES, READINGS, TIP, TipHello, TipsFrame, TipsMessage,
 };
+#[cfg(band)]
+use crate::link::band;
 use crate::link::command::{self, CommandKind, Outcome, Request};
 #[cfg(feature = "load-tip")]
 use crate::link::load::{self, LoadKind, LoadRequest};
@@ -92,6 +94,14 @@ pub fn read_body(body: &[u8]) -> Result<TipsFrame, DecodeError> {
         }
         TIP => TipsMessage::Tip(read_tip(&mut fields, time)?),
         ANSWER => read_answer(&mut fields, time)?,
+        #[cfg(band)]
+        band::BAND => {
+            let [tip] = fields.take()?;
+            TipsMessage::Band {
+                tip: numbered(tip, 14)?,
+                band: band::read(Reader(core::mem::take(&mut fields.0)), time, 15)?,
+            }
+        }
         #[cfg(feature = "load-tip")]
         load::DATA => {
             let [tip] = fields.take()?;

@@ -81,6 +81,7 @@ impl TipChoice {
             TipsMessage::Answer { tip, answer } => {
                 (self.number() == Some(tip)).then_some(Message::Answer(answer))
             }
+            TipsMessage::Band { tip, band } => (self.number() == Some(tip)).then_some(Message::Band(band)),
             TipsMessage::Load { tip, reply } => (self.number() == Some(tip)).then_some(Message::Load(reply)),
         }
     }

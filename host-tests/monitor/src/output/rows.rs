@@ -7,9 +7,9 @@ use std::io;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// The columns. `time_ms` is the board's clock since its reset, `host_time_s` the host's since 1970-01-01 UTC of the same instant;
-/// `missing_before` counts the frames that are missing right before the row; `design` is the hash in the board's hello, empty before it. The last two
-/// are empty of a design without a feedback actuator.
-pub const COLUMNS: [&str; 14] = [
+/// `missing_before` counts the frames that are missing right before the row; `design` is the hash in the board's hello, empty before it. The two of the
+/// feedback are empty of a design without such an actuator, the last four of a board that states no band.
+pub const COLUMNS: [&str; 18] = [
     "time_ms",
     "status",
     "touch",
@@ -24,6 +24,10 @@ pub const COLUMNS: [&str; 14] = [
     "design",
     "feedback_force_n",
     "sigma_feedback_force_n",
+    "force_lower_n",
+    "force_upper_n",
+    "indentation_lower_mm",
+    "indentation_upper_mm",
 ];
 
 /// How rows are written.
@@ -58,6 +62,14 @@ fn feedback(reading: &LiveReading) -> [Option<f64>; 2] {
     force.map_or([None; 2], |pair| pair.map(Some))
 }
 
+/// Least and largest force and indentation of an unknown object; empty where no band holds.
+fn band(reading: &LiveReading) -> [Option<f64>; 4] {
+    reading.band.map_or([None; 4], |band| {
+        let [[a, b], [c, d]] = [band.force_n, band.indentation_mm];
+        [a, b, c, d].map(Some)
+    })
+}
+
 /// A number of a row, or nothing.
 fn cell(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| format!("{value:.6}"))
@@ -82,6 +94,7 @@ pub(crate) fn object(reading: &LiveReading, began: SystemTime) -> Value {
     cells.push(reading.missing_before.into());
     cells.push(reading.design.map(|hash| format!("{hash:016x}")).into());
     cells.extend(feedback(reading).map(Value::from));
+    cells.extend(band(reading).map(Value::from));
     let named = COLUMNS.iter().map(|column| (*column).to_owned());
     Value::Object(named.zip(cells).collect::<Map<_, _>>())
 }
@@ -120,6 +133,7 @@ impl<W: WholeRows> Writer<W> {
                         .map_or_else(String::new, |hash| format!("{hash:016x}")),
                 );
                 cells.extend(feedback(reading).map(cell));
+                cells.extend(band(reading).map(cell));
                 line(&cells)?
             }
             Form::Json => format!("{}\n", object(reading, self.began)).into_bytes(),
@@ -140,7 +154,7 @@ fn line(cells: &[String]) -> io::Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::readings::LiveValues;
+    use crate::readings::{LiveBand, LiveValues};
     use fingertip::status::{Fault, Status, Touch, Warnings};
     use fingertip::units::Microseconds;
 
@@ -158,6 +172,7 @@ mod tests {
                 feedback_force_n: None,
             }),
             touch: Touch::Touched,
+            band: None,
         }
     }
 
@@ -176,12 +191,12 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[0], COLUMNS.join(","));
         let values =
-            "touched,1000.500000,1.250000,0.750000,2.000000,inf,0.002000,1.500000,3,00000000000000ab,,";
+            "touched,1000.500000,1.250000,0.750000,2.000000,inf,0.002000,1.500000,3,00000000000000ab,,,,,,";
         assert_eq!(lines[1], format!("1.250,ok,{values}"));
         assert_eq!(lines[2], format!("1.250,warning: saturated; clock,{values}"));
         assert_eq!(
             lines[3],
-            "1.250,fault: sensor open,touched,,,,,,,1.500000,3,00000000000000ab,,"
+            "1.250,fault: sensor open,touched,,,,,,,1.500000,3,00000000000000ab,,,,,,"
         );
         let mut felt = reading(Status::Ok);
         felt.values = felt.values.map(|values| LiveValues {
@@ -192,8 +207,25 @@ mod tests {
         let mut writer = Writer::new(Form::Csv, &mut text, UNIX_EPOCH).expect("a vector takes everything");
         writer.write(&felt).expect("a vector takes everything");
         let text = String::from_utf8(text).expect("text");
-        assert!(text.ends_with(",00000000000000ab,0.445000,0.001800\n"), "{text}");
+        assert!(
+            text.ends_with(",00000000000000ab,0.445000,0.001800,,,,\n"),
+            "{text}"
+        );
         assert_eq!(object(&felt, UNIX_EPOCH)["feedback_force_n"], 0.445);
+        let mut unsure = reading(Status::Ok);
+        unsure.band = Some(LiveBand {
+            force_n: [0.9, 1.5],
+            indentation_mm: [0.7, 1.0],
+        });
+        let mut text = Vec::new();
+        let mut writer = Writer::new(Form::Csv, &mut text, UNIX_EPOCH).expect("a vector takes everything");
+        writer.write(&unsure).expect("a vector takes everything");
+        let text = String::from_utf8(text).expect("text");
+        assert!(
+            text.ends_with(",00000000000000ab,,,0.900000,1.500000,0.700000,1.000000\n"),
+            "{text}"
+        );
+        assert_eq!(object(&unsure, UNIX_EPOCH)["force_upper_n"], 1.5);
     }
 
     #[test]

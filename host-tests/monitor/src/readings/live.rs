@@ -1,8 +1,10 @@
 //! A report in units that people read.
 
+use fingertip::link::band::BandMessage;
 use fingertip::signal::report::Report;
-use fingertip::status::{Status, Touch};
+use fingertip::status::{Status, Touch, Warnings};
 use fingertip::units::Microseconds;
+use model_tables::units::PressureRise;
 use std::time::Duration;
 
 /// A report as people read it.
@@ -22,6 +24,43 @@ pub struct LiveReading {
     pub values: Option<LiveValues>,
     /// Whether something presses.
     pub touch: Touch,
+    /// Where the truth lies, for an object that the board does not know; `None` of another board, of a fault or a bound, and below and above
+    /// the pressures of its band.
+    pub band: Option<LiveBand>,
+}
+
+/// The least and the largest that force and indentation may truly be: the band of an unknown object, without the standard deviations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LiveBand {
+    /// Force, newtons.
+    pub force_n: [f64; 2],
+    /// Indentation, millimetres.
+    pub indentation_mm: [f64; 2],
+}
+
+impl LiveBand {
+    /// Of a report, by the band that its board sent; nothing where that states nothing of it.
+    pub fn of(report: &Report, pressure_fraction_bits: u8, message: &BandMessage) -> Option<Self> {
+        let measurement = report.outcome.ok()?;
+        let bounds = [Warnings::SATURATED, Warnings::BELOW_ZERO, Warnings::RECOVERING];
+        if bounds.iter().any(|bound| measurement.warnings.contains(*bound)) {
+            return None;
+        }
+        // A frame of a hand may have fewer fraction bits than its tips.
+        let shift = u32::from(
+            message
+                .pressure_fraction_bits
+                .saturating_sub(pressure_fraction_bits),
+        );
+        let rise = i64::from(measurement.pressure_rise.0) << shift;
+        let row = message.band.at(PressureRise(i32::try_from(rise).ok()?))?;
+        let ends =
+            |value: f64, tenths: [i16; 2]| tenths.map(|tenths| value * (1.0 + 1e-3 * f64::from(tenths)));
+        Some(Self {
+            force_n: ends(measurement.force.newtons(), row.force),
+            indentation_mm: ends(1e3 * measurement.indentation.metres(), row.indentation),
+        })
+    }
 }
 
 /// The values of a report. A number at the end of what a frame can carry is infinite: it is a bound, not a value.
@@ -60,6 +99,7 @@ impl LiveReading {
             design: None,
             status: report.status(),
             values,
+            band: None,
             touch: report
                 .outcome
                 .map_or(Touch::Unknown, |measurement| measurement.touch),

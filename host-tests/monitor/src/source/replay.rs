@@ -1,7 +1,7 @@
 //! A log of this program played again, at its own pace.
 
 use crate::output::rows::COLUMNS;
-use crate::readings::{LiveReading, LiveValues};
+use crate::readings::{LiveBand, LiveReading, LiveValues};
 use fingertip::status::{Fault, Status, Touch, Warnings};
 use fingertip::units::Microseconds;
 use std::path::Path;
@@ -127,6 +127,15 @@ fn read<'a>(cell: &impl Fn(usize) -> &'a str) -> Result<LiveReading, String> {
         status,
         values,
         touch,
+        // A log of before there was a band has no such columns.
+        band: if cell(14).is_empty() {
+            None
+        } else {
+            Some(LiveBand {
+                force_n: [number(14)?, number(15)?],
+                indentation_mm: [number(16)?, number(17)?],
+            })
+        },
     })
 }
 

@@ -3,10 +3,12 @@
 //! [`draw`](draw::case) a design -> [`judge`](judge::judge) its states by virtual work and by a second discretisation
 //! -> [`Tally`].
 
+pub mod blends;
 pub mod draw;
 pub mod grasps;
 pub mod judge;
 pub mod lives;
+pub mod object_cost;
 pub mod objects;
 pub mod scaling;
 pub mod solids;

@@ -4,6 +4,7 @@
 //! own solid -> [`chip::play`] it with several zeros and noises, told the object and not told -> [`GraspTally`].
 
 pub mod chip;
+pub mod plates;
 pub mod scene;
 mod tally;
 

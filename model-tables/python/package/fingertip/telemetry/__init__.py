@@ -24,7 +24,7 @@ from ..errors import TelemetryError
 from .aio import AsyncClient
 from .client import Client, Counts
 from .codes import CommandKind, Fault, LastRun, Outcome, ResetCause, Stored, Touch, Warnings
-from .frames import Answer, FaultReport, Frame, Hello, Reading, TipData
+from .frames import Answer, Band, BandRow, FaultReport, Frame, Hello, Reading, TipData
 from .hand import ALL_TIPS, HandClient, TipHello
 from .load import Loaded, TipFile, load, read_back, roll_back
 
@@ -35,6 +35,8 @@ __all__ = [
     "ALL_TIPS",
     "Answer",
     "AsyncClient",
+    "Band",
+    "BandRow",
     "Batch",
     "Client",
     "CommandKind",

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from .codes import CommandKind, Fault, LastRun, Outcome, ResetCause, Stored, Touch, Warnings
 
-__all__ = ["Answer", "FaultReport", "Frame", "FrameError", "Hello", "Reading", "Splitter", "TipData", "body_of", "decode", "framed"]
+__all__ = ["Answer", "Band", "BandRow", "FaultReport", "Frame", "FrameError", "Hello", "Reading", "Splitter", "TipData", "body_of", "decode", "framed"]
 
 #: Version of the protocol that the commands have.
 VERSION = 2
@@ -136,6 +136,43 @@ class TipData(Frame):
     content: bytes
 
 
+@dataclass(frozen=True, slots=True)
+class BandRow:
+    """A part of a band: the truth less the reading, over the reading; lower and upper."""
+
+    #: The last pressure rise of the row, Pa.
+    to_pa: float
+    #: Of the force, over the force that is read.
+    force: tuple[float, float]
+    #: Of the indentation, over that which is read.
+    indentation: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Band(Frame):
+    """Where the truth lies, from a tip that is not told what it touches. It belongs to the hello before it: the next hello, or an
+    answer that an ``object`` is done, ends it."""
+
+    #: The first pressure rise of which it tells, Pa.
+    from_pa: float
+    #: Rising, one beside the other.
+    rows: tuple[BandRow, ...]
+
+    def of(self, reading: Reading) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Lower and upper force, N, and indentation, mm, of a reading, without its standard deviations; ``None`` where the band tells
+        nothing: outside of its pressures, and of a reading that is a bound."""
+        bounds = Warnings.SATURATED | Warnings.BELOW_ZERO | Warnings.RECOVERING
+        if reading.warnings & bounds or reading.pressure_rise_pa < self.from_pa:
+            return None
+        for row in self.rows:
+            if reading.pressure_rise_pa <= row.to_pa:
+                lower, upper = row.force
+                least, most = row.indentation
+                force, indentation = reading.force_n, reading.indentation_mm
+                return (force * (1 + lower), force * (1 + upper)), (indentation * (1 + least), indentation * (1 + most))
+        return None
+
+
 def stuffed(plain: bytes) -> bytes:
     """COBS, for fewer than 254 bytes."""
     return b"".join(bytes([len(part) + 1]) + part for part in plain.split(b"\0"))
@@ -176,7 +213,7 @@ _HEADER = struct.Struct("<BBHQH")
 _READING = struct.Struct("<HBB6i")
 _HELLO = struct.Struct("<3BBQIIBBB6I")
 _ANSWER = struct.Struct("<BHBH")
-_LENGTHS = {1: (42, 50), 2: (15,), 3: (61,), 4: (20, 36), 7: range(21, 77)}
+_LENGTHS = {1: (42, 50), 2: (15,), 3: (61,), 4: (20, 36), 7: range(21, 77), 8: range(32, 81, 12)}
 
 
 def decode(body: bytes) -> Frame:
@@ -244,7 +281,22 @@ def _tip_data(body: bytes, header: _Header) -> TipData:
     return TipData(*header, sequence, offset, body[20:])
 
 
-_FIELDS = {1: _reading, 2: _fault, 3: _hello, 4: _answer, 7: _tip_data}
+def _band(body: bytes, header: _Header) -> Band:
+    k, count, first = struct.unpack_from("<BBi", body, 14)
+    if k > 31 or len(body) != 20 + 12 * count or first < 0:
+        raise ValueError
+    rows = []
+    last = first
+    for to, *ends in struct.iter_unpack("<i4h", body[20:]):
+        if to <= last or ends[0] > ends[1] or ends[2] > ends[3]:
+            raise ValueError
+        last = to
+        low, high, least, most = (1e-3 * end for end in ends)
+        rows.append(BandRow(to * 2.0**-k, (low, high), (least, most)))
+    return Band(*header, first * 2.0**-k, tuple(rows))
+
+
+_FIELDS = {1: _reading, 2: _fault, 3: _hello, 4: _answer, 7: _tip_data, 8: _band}
 
 
 class Splitter:

@@ -71,7 +71,7 @@ def decode_hand(body: bytes) -> list[Frame]:
         if not isinstance(hello, Hello) or not 1 <= body[61] <= MAX_TIPS:
             raise FrameError("field")
         return [replace(hello, tips=body[61])]
-    if kind in (4, 7) and len(body) > 15:
+    if kind in (4, 7, 8) and len(body) > 15:
         own = decode(bytes([2]) + body[1:14] + body[15:])
         if body[14] >= MAX_TIPS:
             raise FrameError("field")

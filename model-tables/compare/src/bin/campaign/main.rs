@@ -1,21 +1,18 @@
 //! `cargo campaign NAME`: long seeded campaigns, of which the tests run a small part.
 
+mod designs;
+mod objects;
+
 use clap::{Args, Parser, Subcommand};
-use compare::campaign::draw::Case;
 use compare::campaign::grasps::GraspedTip;
-use compare::campaign::judge::{Judged, Verdict};
 use compare::campaign::lives::{self, tip};
-use compare::campaign::objects::{self, BandTally, ObjectWorld};
-use compare::campaign::{self, Tally, solids, walls};
+use compare::campaign::{solids, walls};
+use designs::MembraneArguments;
 use model_tables::design_file::DesignFile;
-use model_tables::generate;
-use model_tables::material::Law;
-use model_tables::membrane::TensionField;
-use output::{Refusal, files};
+use objects::{BlendArguments, CostArguments, ObjectArguments, PlateArguments};
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Instant;
 
 /// Long seeded campaigns.
 #[derive(Debug, Parser)]
@@ -42,9 +39,18 @@ enum Campaign {
     /// Presses random objects unknown to the chip, and checks the band that a design states
     #[command(after_help = "Example:\n  cargo campaign objects --objects 2000 --seed 2026")]
     Objects(ObjectArguments),
+    /// Measures what a state onto a ball costs beside one onto a plate
+    #[command(after_help = "Example:\n  cargo campaign cost --sweeps 15")]
+    Cost(CostArguments),
+    /// Compares the blend of tables of a plate and a ball with other ways to read a ball, on several domes
+    #[command(after_help = "Example:\n  cargo campaign blends --out blends")]
+    Blends(BlendArguments),
     /// Grasps random objects in time, through the firmware's own signal path
     #[command(after_help = "Example:\n  cargo campaign grasps --scenes 30 --worlds 4 --seed 2026")]
     Grasps(GraspArguments),
+    /// Grasps plates in time that are tilted or rub, by quoted figures
+    #[command(after_help = "Example:\n  cargo campaign plates --scenes 24 --worlds 2 --seed 2026")]
+    Plates(PlateArguments),
 }
 
 #[derive(Debug, Args)]
@@ -68,23 +74,6 @@ struct GraspArguments {
         ]
     )]
     design: Vec<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-struct ObjectArguments {
-    /// Objects to draw
-    #[arg(long, default_value_t = 2000)]
-    objects: u64,
-    /// What the draw depends on
-    #[arg(long, default_value_t = 2026)]
-    seed: u64,
-    /// A design without `[object]`
-    #[arg(
-        long,
-        value_name = "FILE",
-        default_value = "model-tables/designs/index-fingertip-elastic.toml"
-    )]
-    design: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -116,102 +105,17 @@ struct DrawArguments {
     seed: u64,
 }
 
-#[derive(Debug, Args)]
-struct MembraneArguments {
-    /// Designs to draw; each is pressed to 8 indentations
-    #[arg(long, default_value_t = 10_000)]
-    designs: u64,
-    /// What the draw depends on
-    #[arg(long, default_value_t = 2026)]
-    seed: u64,
-    /// Only this design of the draw, with a line for each of its states; repeatable
-    #[arg(long, value_name = "N")]
-    design: Vec<u64>,
-    /// Print one row per state
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-}
-
-const COLUMNS: [&str; 23] = [
-    "design",
-    "aspect",
-    "pole_stretch",
-    "law",
-    "c2_over_c1",
-    "c3_over_c1",
-    "radial_semi_axis_mm",
-    "thickness_mm",
-    "c1_pa",
-    "compliance",
-    "tension_field",
-    "part_of_limit",
-    "verdict",
-    "reason",
-    "work_error",
-    "work_rounding",
-    "second_error",
-    "margin",
-    "indentation_mm",
-    "pressure_kpa",
-    "force_n",
-    "wrinkled",
-    "message",
-];
-
-fn row(case: &Case, judged: &Judged) -> Vec<String> {
-    let membrane = &case.design.membrane;
-    let (law, c1, c2, c3) = match case.design.law {
-        Law::NeoHookean { c1 } => ("neo-hookean", c1, 0.0, 0.0),
-        Law::MooneyRivlin { c1, c2 } => ("mooney-rivlin", c1, c2, 0.0),
-        Law::Yeoh { c1, c2, c3 } => ("yeoh", c1, c2, c3),
-    };
-    let field = match case.tension_field {
-        TensionField::Relaxed => "relaxed",
-        TensionField::Plain => "plain",
-    };
-    let (verdict, reason) = match judged.verdict {
-        Verdict::Converged => ("converged", ""),
-        Verdict::Warned(judge) => ("warned", judge.unwrap_or_default()),
-        Verdict::Refused(reason) => ("refused", reason),
-        Verdict::Wrong(judge) => ("wrong", judge),
-    };
-    let of = |value: Option<f64>| value.map_or(String::new(), |v| v.to_string());
-    let state = judged.state.as_ref();
-    vec![
-        case.index.to_string(),
-        (membrane.axial_semi_axis / membrane.radial_semi_axis).to_string(),
-        case.pole_stretch.to_string(),
-        law.to_owned(),
-        (c2 / c1).to_string(),
-        (c3 / c1).to_string(),
-        (membrane.radial_semi_axis * 1e3).to_string(),
-        (membrane.thickness * 1e3).to_string(),
-        c1.to_string(),
-        case.compliance.to_string(),
-        field.to_owned(),
-        judged.part.to_string(),
-        verdict.to_owned(),
-        reason.to_owned(),
-        format!("{:e}", judged.work_error),
-        format!("{:e}", judged.work_rounding),
-        format!("{:e}", judged.second_error),
-        judged.margin.to_string(),
-        of(state.map(|s| s.indentation * 1e3)),
-        of(state.map(|s| s.shape.pressure * 1e-3)),
-        of(state.map(|s| s.force)),
-        state.map_or("", |s| s.shape.wrinkling.word()).to_owned(),
-        judged.message.clone(),
-    ]
-}
-
 fn main() -> ExitCode {
     let kept = match Arguments::parse().campaign {
-        Campaign::Designs(arguments) => designs(&arguments),
+        Campaign::Designs(arguments) => designs::designs(&arguments),
         Campaign::Walls(arguments) => Ok(judge_walls(&arguments)),
         Campaign::Solids(arguments) => Ok(judge_solids(&arguments)),
         Campaign::Lives(arguments) => Ok(judge_lives(&arguments)),
-        Campaign::Objects(arguments) => judge_objects(&arguments),
+        Campaign::Objects(arguments) => objects::judge_objects(&arguments),
+        Campaign::Cost(arguments) => objects::cost_of_balls(&arguments),
+        Campaign::Blends(arguments) => objects::blends_of_tables(&arguments),
         Campaign::Grasps(arguments) => judge_grasps(&arguments),
+        Campaign::Plates(arguments) => objects::plates(&arguments),
     };
     match kept {
         Ok(true) => ExitCode::SUCCESS,
@@ -309,46 +213,6 @@ fn judge_lives(arguments: &LivesArguments) -> bool {
     all.wrong == all.replaced
 }
 
-/// Whether 99 % of the objects lay in the band, of the plate's tables and of those for an unknown object.
-fn judge_objects(arguments: &ObjectArguments) -> Result<bool, Box<dyn Error>> {
-    let design = DesignFile::read(&arguments.design)?;
-    if design.object.is_some() {
-        return Err(format!(
-            "{}: [object] is given: leave it out, the campaign presses objects of its own",
-            arguments.design.display()
-        )
-        .into());
-    }
-    let world = ObjectWorld::solve(&design, |done| eprint!("\r{} balls solved", done + 1))?;
-    eprintln!();
-    let mut kept = true;
-    for design in [design.clone(), objects::with_unknown(&design)] {
-        let generated = generate::from_design(design)?;
-        let tally = BandTally::of(&generated, &world, arguments.seed, arguments.objects)
-            .ok_or("the design states no band: a ball of 5 or of 20 mm has no press")?;
-        if let Some(band) = &generated.band {
-            println!("{band}");
-            for row in &band.rows {
-                println!(
-                    "  {:>9.1} to {:>9.1} Pa: force {:+.1} to {:+.1} %, indentation {:+.1} to {:+.1} %",
-                    row.from,
-                    row.to,
-                    row.force_percent[0],
-                    row.force_percent[1],
-                    row.indentation_percent[0],
-                    row.indentation_percent[1]
-                );
-            }
-        }
-        println!("{tally}");
-        for object in &tally.outside {
-            println!("  outside: {object:?}");
-        }
-        kept &= tally.share() >= 0.99;
-    }
-    Ok(kept)
-}
-
 /// A table for each design; whether the solid found the states of most scenes.
 fn judge_grasps(arguments: &GraspArguments) -> Result<bool, Box<dyn Error>> {
     let mut kept = true;
@@ -373,59 +237,4 @@ fn judge_grasps(arguments: &GraspArguments) -> Result<bool, Box<dyn Error>> {
         kept &= tally.scenes > tally.unsolved();
     }
     Ok(kept)
-}
-
-/// Whether no state was wrong.
-fn designs(arguments: &MembraneArguments) -> Result<bool, Box<dyn Error>> {
-    if let Some(file) = &arguments.csv {
-        files::clear_away_on_interrupt();
-        files::expect_room(file).map_err(|Refusal(reason)| reason)?;
-    }
-    let started = Instant::now();
-    let chosen = |index: &u64| {
-        let case = campaign::draw::case(arguments.seed, *index);
-        eprintln!("{case:#?}");
-        let judged = campaign::judge::judge(&case);
-        for one in &judged {
-            eprintln!(
-                "{:.6} {:?} work {:.1e} ({:.1e}) second {:.1e} margin {:.3} {}",
-                one.part,
-                one.verdict,
-                one.work_error,
-                one.work_rounding,
-                one.second_error,
-                one.margin,
-                one.message
-            );
-        }
-        (case, judged)
-    };
-    let results = if arguments.design.is_empty() {
-        campaign::run(arguments.seed, arguments.designs, |done| {
-            if done % 200 == 0 || done == arguments.designs {
-                eprint!("\r{done} of {} designs", arguments.designs);
-            }
-        })
-    } else {
-        arguments.design.iter().map(chosen).collect()
-    };
-    eprintln!();
-    if let Some(file) = &arguments.csv {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(COLUMNS)?;
-        for (case, judged) in &results {
-            for judged in judged {
-                writer.write_record(row(case, judged))?;
-            }
-        }
-        files::write_one(file, writer.into_inner()?).map_err(|Refusal(reason)| reason)?;
-    }
-    let tally = Tally::of(results.iter().flat_map(|(_, judged)| judged));
-    println!(
-        "designs    {} in {:.1} s",
-        results.len(),
-        started.elapsed().as_secs_f64()
-    );
-    print!("{tally}");
-    Ok(tally.wrong.is_empty())
 }
