@@ -24,6 +24,10 @@ const STEP_NOISE_FLOORS: i64 = 8;
 /// The fastest press there is takes this long over the whole table, microseconds: 2.5 mm at 0.6 m/s.
 const FASTEST_PRESS: u64 = 4_000;
 
+/// A press over the whole table in 0.2 s, whose pressure grows with the power 2.5 of its depth, bends by the whole table times the
+/// square of a block over this, microseconds: at its end 2.5 x 1.5 times the square of a block over 0.2 s.
+const FAST_BEND: i64 = 100_000;
+
 /// Blocks without a number after a step that no press makes. One that comes back within them leaves no trace.
 const JUMP_HOLD: u8 = 8;
 
@@ -34,6 +38,8 @@ pub struct StepLimits {
     pub noise: i64,
     /// Above: no press.
     pub press: i64,
+    /// Above: a bend that no fast press makes; half of the noise at least.
+    pub bend: i64,
 }
 
 impl StepLimits {
@@ -48,8 +54,13 @@ impl StepLimits {
         // Below 2^31 * 2^32 / 4000 before the unit, which is at most 2^16 and clamped.
         let press = span as i64 * period as i64 * 1000 / FASTEST_PRESS as i64;
         let press = Pressure::from_millipascals(press, fraction_bits).0 as i64;
+        // Below 2^31 * 40 000^2, which is below 2^62: no round is longer.
+        let period = period as i64;
+        let bend = span as i64 * (period * period) / (FAST_BEND * FAST_BEND / 1000);
+        let bend = Pressure::from_millipascals(bend, fraction_bits).0 as i64;
         Self {
             noise,
+            bend: if 2 * bend > noise { bend } else { noise / 2 },
             press: if press > 2 * noise { press } else { 2 * noise },
         }
     }
@@ -142,7 +153,7 @@ impl Filter {
         in_line: bool,
     ) -> Result<(PressureRise, Warnings), Fault> {
         let [oldest, middle, newest] = self.history;
-        let StepLimits { noise, press } = self.step_limits;
+        let StepLimits { noise, press, bend } = self.step_limits;
         let (run_up, rising, leaving) = (
             step_between(before, oldest),
             step_between(oldest, middle),
@@ -172,11 +183,12 @@ impl Filter {
             return Ok(smooth(oldest, self.history[1], newest, even));
         }
         // A press that began between the samples slows down or goes on, or gets faster once where a block averages over its
-        // begin from a level; what turns, or is faster than any press, is neither on the line before nor on a new one.
+        // begin from a level; what turns, or is faster than any press, is neither on the line before, bent as far as a fast press
+        // bends it, nor on a new one.
         let begins = run_up.abs() <= noise && leaving.abs() <= press;
         let goes_on = leaving.abs() <= noise
             || (rising > 0) == (leaving > 0) && (leaving.abs() <= rising.abs() || begins);
-        if 2 * bent.abs() > noise && !goes_on {
+        if bent.abs() > bend && !goes_on {
             return Err(Fault::Jump);
         }
         // A corner, or an outlier as the newest, which only the next block will tell: the middle stands for itself.

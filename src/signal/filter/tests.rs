@@ -4,6 +4,7 @@ use proptest::prelude::*;
 const STEP_LIMITS: StepLimits = StepLimits {
     noise: 80,
     press: 1000,
+    bend: 40,
 };
 
 fn filtered(rises: &[i32]) -> Vec<Result<i32, Fault>> {
@@ -27,6 +28,9 @@ fn leaps_of_a_design_are_its_noise_and_its_fastest_press() {
     let step_limits = StepLimits::of(&Linear::CONSTANTS, 8, 1000);
     assert_eq!(step_limits.noise, 80 << 8);
     assert_eq!(step_limits.press, 10_000 << 8);
+    // 40 kPa bend by 4 Pa in 1 ms, half of the noise is more; in 20 ms by 1.6 kPa.
+    assert_eq!(step_limits.bend, 40 << 8);
+    assert_eq!(StepLimits::of(&Linear::CONSTANTS, 8, 20_000).bend, 1_600 << 8);
 }
 
 #[test]
@@ -102,6 +106,55 @@ fn the_turn_of_a_fast_tap_is_not_outlier() {
         filtered(&[0, 300, 600, 300, 0, 0])[2..],
         [Ok(300), Ok(600), Ok(300), Ok(0)]
     );
+}
+
+/// Pressure rise of `skin-light-touch` over the depth in millimetres, pascals: a fit to `designer solve` within 21 Pa.
+fn soft_dome(depth: f64) -> f64 {
+    373.2 * depth + 374.6 * depth * depth + 372.1 * depth * depth * depth
+}
+
+/// The limits of that dome, 1.5 mm deep at most, on a part that resolves a pascal.
+fn soft_limits(period: u32) -> StepLimits {
+    use crate::signal::test_design::Linear;
+    let mut constants = Linear::CONSTANTS;
+    constants.maximum_pressure = constants.rest_pressure + 2_658;
+    constants.transducer.resolution = 1_000;
+    constants.transducer.noise = 1_000;
+    StepLimits::of(&constants, 8, period)
+}
+
+/// Reports without a number while such a dome is pressed, held and released, sampled from any phase.
+fn missed(period: u32, depth: f64, seconds: f64) -> usize {
+    let step = f64::from(period) * 1e-6;
+    let mut missed = 0;
+    for phase in 0..16 {
+        let mut filter = Filter::new(soft_limits(period));
+        let samples = (2.5 * (seconds + 0.2) / step) as i32;
+        for sample in 0..samples {
+            let time = (f64::from(sample) + f64::from(phase) / 16.0) * step - 0.2;
+            let down = (time / seconds).clamp(0.0, 1.0);
+            let up = ((time - seconds - 0.2) / seconds).clamp(0.0, 1.0);
+            // A part of a pascal of noise.
+            let noise = f64::from(sample * sample * 7 % 13 - 6) / 6.0;
+            let rise = soft_dome(depth * (down - up)) + noise;
+            let found = filter.step(PressureRise((rise * 256.0) as i32), Warnings::NONE, true);
+            missed += usize::from(found == Err(Fault::Jump));
+        }
+    }
+    missed
+}
+
+#[test]
+fn fast_presses_of_a_part_of_a_pascal_are_read_in_a_long_round() {
+    for period in [14_000, 20_000, 40_000] {
+        for (depth, seconds) in [(0.9, 0.8), (0.9, 0.4), (1.5, 0.4), (1.5, 0.2)] {
+            assert_eq!(
+                missed(period, depth, seconds),
+                0,
+                "{period} us: {depth} mm in {seconds} s"
+            );
+        }
+    }
 }
 
 #[test]
