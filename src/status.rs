@@ -375,17 +375,20 @@ pub enum LastFault {
     Hang,
     /// The chip raised its non-maskable interrupt: the address in flash that its error correction gave up, or 0.
     NonMaskable,
+    /// The stack reached its end: what the fault left that came of it, as the detail of a hang or of a hard fault.
+    StackOverflow,
 }
 
 impl LastFault {
     /// Every kind with its code in telemetry.
-    pub const CODES: [(Self, u8); 6] = [
+    pub const CODES: [(Self, u8); 7] = [
         (Self::None, 0),
         (Self::Late, 1),
         (Self::Panic, 2),
         (Self::HardFault, 3),
         (Self::Hang, 4),
         (Self::NonMaskable, 5),
+        (Self::StackOverflow, 6),
     ];
 }
 

@@ -201,13 +201,13 @@ static enum ft_result read_hello(struct cursor *from, struct ft_frame *frame)
             return FT_VALUE;
         }
     }
-    return hello->reset_cause <= 6 && hello->stored <= 4 && hello->last_fault <= 5 ? FT_WHOLE : FT_VALUE;
+    return hello->reset_cause <= 6 && hello->stored <= 4 && hello->last_fault <= 6 ? FT_WHOLE : FT_VALUE;
 }
 
 static bool is_outcome(uint8_t code, bool load)
 {
     return load ? code == 0 || code == 3 || code == 5 || code == 6 || code == 8 || (code >= 10 && code <= 13) || code == 15
-                : code <= 9 || code == 14;
+                : code <= 9 || code == 14 || code == 16;
 }
 
 static enum ft_result read_answer(struct cursor *from, struct ft_frame *frame)

@@ -24,7 +24,8 @@ from fingertip.telemetry.frames import FrameError, Splitter, body_of, decode  # 
 STORED = {Stored.NONE: "none", Stored.IN_USE: "in use", Stored.OTHER_DESIGN: "another design's", Stored.DAMAGED: "damaged",
           Stored.UNREADABLE: "unreadable"}
 LAST = {LastRun.NOTHING_KNOWN: "nothing known", LastRun.LATE_TASK: "late task", LastRun.PANIC: "panic in line",
-        LastRun.HARD_FAULT: "hard fault at", LastRun.HANG: "hang", LastRun.NON_MASKABLE_INTERRUPT: "non-maskable interrupt"}
+        LastRun.HARD_FAULT: "hard fault at", LastRun.HANG: "hang", LastRun.NON_MASKABLE_INTERRUPT: "non-maskable interrupt",
+        LastRun.STACK_OVERFLOW: "stack overflow"}
 COMMANDS = {kind.word: kind for kind in CommandKind}
 
 

@@ -11,7 +11,9 @@ use embedded_storage_async::nor_flash::{
 use fingertip::signal::calibration::Calibration;
 use fingertip::storage::hand_store::{HandStore, TipIdentity};
 use fingertip::storage::store::{Identity, Store};
+use fingertip::units::Microseconds;
 use model_tables::random::Random;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Steps that one erasure is divided into: power may fail between and within them.
 pub const ERASE_STEPS: u64 = 16;
@@ -359,6 +361,14 @@ impl<const SLOT: usize, const UNIT: usize> NorFlash for SimulatedFlash<SLOT, UNI
     }
 }
 
+/// A time so long after all times before that a store allows the next save, also one that was opened since.
+pub fn later() -> Microseconds {
+    static LAST: AtomicU64 = AtomicU64::new(0);
+    // Longer than the pause of a slot of four records, 1882 units of 2^21 us, and short enough for all saves until it is worn out.
+    const STEP: u64 = 10_000 << 21;
+    Microseconds(LAST.fetch_add(STEP, Ordering::Relaxed) + STEP)
+}
+
 /// The bytes of two slots that a hand of these tips saved calibrations in, one after the other: each with the number of its tip.
 ///
 /// # Panics
@@ -371,7 +381,7 @@ pub fn saved_hand<const SLOT: usize, const TIPS: usize, const LENGTH: usize>(
     let mut store = HandStore::<_, TIPS, LENGTH>::new(flash, SLOT as u32, identities, [0, 1, 0]);
     block_on(store.load());
     for (tip, calibration) in calibrations {
-        block_on(store.save(*tip, Some(*calibration))).expect("the memory is sound");
+        block_on(store.save(later(), *tip, Some(*calibration))).expect("the memory is sound");
     }
     store.into_flash().bytes
 }
@@ -386,6 +396,6 @@ pub fn saved<const SLOT: usize>(identity: Identity, calibration: Calibration) ->
         SLOT as u32,
         identity,
     ));
-    block_on(store.save(Some(calibration))).expect("the memory is sound");
+    block_on(store.save(later(), Some(calibration))).expect("the memory is sound");
     store.into_flash().bytes
 }

@@ -7,7 +7,7 @@ use fingertip::storage::log::StoreError;
 use fingertip::storage::record::LENGTH;
 use fingertip::storage::store::{Identity, Store};
 use fingertip::units::Millipascals;
-use host_tests::nor_flash::{Defect, SimulatedFlash};
+use host_tests::nor_flash::{Defect, SimulatedFlash, later};
 use host_tests::{assert_faults_says, workspace};
 
 const IDENTITY: Identity = Identity {
@@ -45,7 +45,7 @@ fn save<const N: usize, const U: usize>(
     number: i32,
 ) -> (SimulatedFlash<N, U>, Result<(), StoreError>) {
     let (mut store, _) = open(flash);
-    let saved = block_on(store.save(Some(calibration(number))));
+    let saved = block_on(store.save(later(), Some(calibration(number))));
     (store.into_flash(), saved)
 }
 
@@ -60,7 +60,7 @@ fn histories<const N: usize, const U: usize>(saves: i32) -> Vec<SimulatedFlash<N
     let (mut store, _) = open(SimulatedFlash::erased(1));
     let mut flashes = vec![store.clone().into_flash()];
     for number in 0..saves {
-        assert_eq!(block_on(store.save(Some(calibration(number)))), Ok(()));
+        assert_eq!(block_on(store.save(later(), Some(calibration(number)))), Ok(()));
         flashes.push(store.clone().into_flash());
     }
     assert_eq!(
@@ -263,12 +263,12 @@ fn a_rotten_bit_of_the_last_record_never_brings_back_an_older_one_unsaid() {
     for saves in 1..=2 * places + 1 {
         let (mut store, _) = open(Flash::erased(1));
         for number in 0..saves {
-            assert_eq!(block_on(store.save(Some(calibration(number)))), Ok(()));
+            assert_eq!(block_on(store.save(later(), Some(calibration(number)))), Ok(()));
         }
         for last in [None, Some(calibration(99))] {
             let mut store = store.clone();
             let mut before = store.clone().into_flash();
-            assert_eq!(block_on(store.save(last)), Ok(()));
+            assert_eq!(block_on(store.save(later(), last)), Ok(()));
             let mut after = store.into_flash();
             let written: Vec<usize> = (0..2 * SLOT / LENGTH)
                 .filter(|place| {
@@ -306,7 +306,7 @@ fn the_slots_of_the_board_turn_over_too() {
     let places = (SECTOR / LENGTH) as i32;
     let (mut store, _) = open(flash);
     for number in 0..=places {
-        assert_eq!(block_on(store.save(Some(calibration(number)))), Ok(()));
+        assert_eq!(block_on(store.save(later(), Some(calibration(number)))), Ok(()));
     }
     flash = store.into_flash();
     assert_eq!(read_back(&flash), (Stored::InUse, Some(calibration(places))));
@@ -353,7 +353,7 @@ fn another_designs_record_is_refused_and_may_be_replaced() {
     };
     let (mut store, state) = block_on(Store::open(flash, SLOT as u32, other));
     assert_eq!((state, store.calibration()), (Stored::OtherDesign, None));
-    assert_eq!(block_on(store.save(Some(calibration(6)))), Ok(()));
+    assert_eq!(block_on(store.save(later(), Some(calibration(6)))), Ok(()));
     let (store, state) = block_on(Store::open(store.into_flash(), SLOT as u32, other));
     assert_eq!(
         (state, store.calibration()),
@@ -368,7 +368,7 @@ fn values_that_cannot_be_are_refused_though_their_check_fits() {
         gain: 2_000_000,
         ..Calibration::default()
     };
-    assert_eq!(block_on(store.save(Some(absurd))), Ok(()));
+    assert_eq!(block_on(store.save(later(), Some(absurd))), Ok(()));
     assert_eq!(read_back(&store.into_flash()), (Stored::Damaged, None));
 }
 
@@ -376,7 +376,7 @@ fn values_that_cannot_be_are_refused_though_their_check_fits() {
 fn what_was_stored_can_be_made_void() {
     let (flash, _) = save(Flash::erased(1), 5);
     let (mut store, _) = open(flash);
-    assert_eq!(block_on(store.save(None)), Ok(()));
+    assert_eq!(block_on(store.save(later(), None)), Ok(()));
     assert_eq!(read_back(&store.into_flash()), (Stored::None, None));
 }
 
@@ -402,7 +402,7 @@ fn what_is_stored_already_is_not_stored_again_and_wear_has_an_end() {
     // 8 saves to a slot: 20 000 erasures are 160 000 saves.
     let (mut store, _) = open(Flash::erased(1));
     let worn = (0..200_000)
-        .find(|&number| block_on(store.save(Some(calibration(number)))) == Err(StoreError::WornOut));
+        .find(|&number| block_on(store.save(later(), Some(calibration(number)))) == Err(StoreError::WornOut));
     assert_eq!(worn, Some(8 + 20_000 * 8));
     let last = worn.map_or(0, |worn| worn - 1);
     assert_eq!(

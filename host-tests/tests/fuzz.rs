@@ -99,7 +99,7 @@ fn readers_of_the_memory_take_anything() {
             table_version: 1,
             firmware: [0, 1, 0],
             calibration: None,
-            erasures: 0,
+            wear: 0,
         });
         let mut words = CrashRecord {
             detail: random.bits() as u32,

@@ -8,7 +8,7 @@ use fingertip::storage::hand_record::length;
 use fingertip::storage::hand_store::{HandStore, TipIdentity};
 use fingertip::storage::log::StoreError;
 use fingertip::units::Millipascals;
-use host_tests::nor_flash::{Defect, SimulatedFlash};
+use host_tests::nor_flash::{Defect, SimulatedFlash, later};
 
 const TIPS: usize = 5;
 const LENGTH: usize = length(TIPS);
@@ -77,7 +77,7 @@ fn histories<const S: usize, const U: usize>(saves: i32) -> Vec<(SimulatedFlash<
     let mut histories = vec![(store.clone().into_flash(), expected)];
     for number in 0..saves {
         assert_eq!(
-            block_on(store.save(tip(number), Some(calibration(number)))),
+            block_on(store.save(later(), tip(number), Some(calibration(number)))),
             Ok(())
         );
         expected[tip(number)] = (Stored::InUse, Some(calibration(number)));
@@ -102,7 +102,7 @@ fn sweep<const S: usize, const U: usize>(saves: std::ops::Range<i32>) -> usize {
                 cuts += 1;
                 let cut = before.clone().failing_after(steps).leaving(look, steps);
                 let mut store = open(cut);
-                let _ = block_on(store.save(tip(number), new));
+                let _ = block_on(store.save(later(), tip(number), new));
                 let flash = store.into_flash().powered_up();
                 let found = read_back(&flash);
                 for other in 0..TIPS {
@@ -126,7 +126,7 @@ fn sweep<const S: usize, const U: usize>(saves: std::ops::Range<i32>) -> usize {
                 }
                 // The save is done again, and every tip has its own.
                 let mut store = open(flash);
-                assert_eq!(block_on(store.save(tip(number), new)), Ok(()));
+                assert_eq!(block_on(store.save(later(), tip(number), new)), Ok(()));
                 let found = read_back(&store.into_flash());
                 for other in 0..TIPS {
                     let was = if other == tip(number) {
@@ -169,14 +169,14 @@ fn power_may_fail_while_the_slots_of_a_board_turn_over() {
 fn a_tip_that_is_forgotten_leaves_the_others_theirs() {
     let (flash, mut expected) = histories::<SLOT, WORD>(5).pop().expect("the last");
     let mut store = open(flash);
-    assert_eq!(block_on(store.save(3, None)), Ok(()));
+    assert_eq!(block_on(store.save(later(), 3, None)), Ok(()));
     expected[3] = (Stored::None, None);
     assert_eq!(read_back(&store.clone().into_flash()), expected);
     // It knows which save that was, and the others theirs.
     let numbers: Vec<u32> = (0..TIPS).map(|tip| store.stored(tip).number).collect();
     assert_eq!(numbers, [1, 4, 2, 6, 3]);
     // There is no sixth.
-    assert_eq!(block_on(store.save(5, None)), Err(StoreError::Failed));
+    assert_eq!(block_on(store.save(later(), 5, None)), Err(StoreError::Failed));
     assert_eq!(store.stored(5).state, Stored::None);
 }
 
@@ -186,7 +186,10 @@ fn what_is_stored_already_is_not_stored_again() {
     let before = flash.steps();
     let mut store = open(flash);
     for number in 0..5 {
-        assert_eq!(block_on(store.save(tip(number), expected[tip(number)].1)), Ok(()));
+        assert_eq!(
+            block_on(store.save(later(), tip(number), expected[tip(number)].1)),
+            Ok(())
+        );
     }
     assert_eq!(store.into_flash().steps(), before);
 }
@@ -203,7 +206,7 @@ fn a_renamed_or_moved_tip_or_one_of_another_design_has_none_and_the_others_their
     expected[4] = (Stored::OtherDesign, None);
     assert_eq!(kept(&store), expected);
     // A save of another tip keeps them: the hand of before finds its own.
-    assert_eq!(block_on(store.save(0, Some(calibration(9)))), Ok(()));
+    assert_eq!(block_on(store.save(later(), 0, Some(calibration(9)))), Ok(()));
     let found = read_back(&store.into_flash());
     assert_eq!([found[2].1, found[4].1], before);
     assert_eq!(found[0], (Stored::InUse, Some(calibration(9))));
@@ -217,7 +220,7 @@ fn where_a_later_record_may_be_lost_each_tip_is_told_until_its_own_save() {
     assert!((0..TIPS).all(|tip| store.stored(tip).state == Stored::Unreadable));
     // What is there is in use: of tip 2 the one before.
     assert_eq!(store.stored(tip(6)).calibration, Some(calibration(1)));
-    assert_eq!(block_on(store.save(0, Some(calibration(9)))), Ok(()));
+    assert_eq!(block_on(store.save(later(), 0, Some(calibration(9)))), Ok(()));
     let mut store = open(store.into_flash());
     let found = kept(&store);
     assert_eq!(found[0], (Stored::InUse, Some(calibration(9))));
@@ -225,7 +228,7 @@ fn where_a_later_record_may_be_lost_each_tip_is_told_until_its_own_save() {
         assert_eq!(found[other], (Stored::Unreadable, expected[other].1), "{other}");
     }
     // The same calibration again ends the doubt.
-    assert_eq!(block_on(store.save(1, expected[1].1)), Ok(()));
+    assert_eq!(block_on(store.save(later(), 1, expected[1].1)), Ok(()));
     assert_eq!(read_back(&store.into_flash())[1], (Stored::InUse, expected[1].1));
 }
 
@@ -244,7 +247,7 @@ fn the_record_of_a_board_of_one_tip_is_no_hands_and_is_written_over() {
     flash.bytes_mut().copy_from_slice(&bytes);
     let mut store = open(flash);
     assert!((0..TIPS).all(|tip| store.stored(tip).state == Stored::Damaged));
-    assert_eq!(block_on(store.save(1, Some(calibration(4)))), Ok(()));
+    assert_eq!(block_on(store.save(later(), 1, Some(calibration(4)))), Ok(()));
     let found = read_back(&store.into_flash());
     assert_eq!(found[1], (Stored::InUse, Some(calibration(4))));
     assert_eq!(found[0], (Stored::Unreadable, None));
@@ -258,7 +261,7 @@ fn every_operation_may_fail_once_or_for_ever() {
         for times in [1, u64::MAX] {
             for defect in [Defect::Fails { from, times }, Defect::Pretends { from, times }] {
                 let mut store = open(flash.clone().with(defect));
-                let saved = block_on(store.save(3, new));
+                let saved = block_on(store.save(later(), 3, new));
                 let found = read_back(&store.into_flash().powered_up());
                 for other in 0..TIPS {
                     let (state, own) = found[other];

@@ -473,11 +473,16 @@ fn the_reader_in_python_has_a_word_for_every_code() {
             format!("stored: {word}").replace("other", "another"),
         ));
     }
-    for ((last_fault, _), word) in
-        LastFault::CODES
-            .into_iter()
-            .zip(["nothing", "late", "panic", "hard fault", "hang", "non-maskable"])
-    {
+    let words = [
+        "nothing",
+        "late",
+        "panic",
+        "hard fault",
+        "hang",
+        "non-maskable",
+        "stack overflow",
+    ];
+    for ((last_fault, _), word) in LastFault::CODES.into_iter().zip(words) {
         let hello = Hello {
             last_fault,
             ..Hello::default()

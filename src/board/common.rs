@@ -60,7 +60,7 @@ pub struct Clock {
 
 impl Clock {
     /// The time.
-    #[inline]
+    #[inline(never)]
     pub fn now(self) -> Microseconds {
         Microseconds(Instant::now().as_micros().saturating_sub(self.start.as_micros()))
     }

@@ -21,10 +21,6 @@ use model_tables::units::Nanometres;
 /// From one hello to the next, microseconds.
 const HELLO_PERIOD: u64 = 1_000_000;
 
-/// From one save to the next at the least, microseconds: a client that saves for ever wears the memory out in
-/// months and not in days.
-const SAVE_PAUSE: u64 = 1_000_000;
-
 /// Findings of a self-test, one bit each; no bit: nothing found.
 pub mod findings {
     /// There are no readings.
@@ -104,7 +100,6 @@ pub struct Device<D: Design> {
     last: Option<(Nanometres, Warnings)>,
     tare: Option<Pending>,
     save: Option<(Pending, ToStore)>,
-    saved: Option<Microseconds>,
 }
 
 impl<D: Design> Device<D> {
@@ -157,7 +152,6 @@ impl<D: Design> Device<D> {
             last: None,
             tare: None,
             save: None,
-            saved: None,
         }
     }
 
@@ -284,10 +278,7 @@ impl<D: Design> Device<D> {
         calibration: Option<Calibration>,
         mut say: impl FnMut(&Message),
     ) -> Option<ToStore> {
-        let soon = self
-            .saved
-            .is_some_and(|saved| now.0.saturating_sub(saved.0) < SAVE_PAUSE);
-        if self.save.is_some() || soon {
+        if self.save.is_some() {
             say(&answered(now, pending, Outcome::Busy, 0));
             return None;
         }
@@ -307,7 +298,6 @@ impl<D: Design> Device<D> {
         let Some((pending, ToStore(calibration))) = self.save.take() else {
             return;
         };
-        self.saved = Some(now);
         let outcome = match result {
             Ok(()) => {
                 self.hello.stored = calibration.map_or(Stored::None, |_| Stored::InUse);
@@ -316,6 +306,7 @@ impl<D: Design> Device<D> {
                 Outcome::Done
             }
             Err(StoreError::Failed | StoreError::WornOut) => Outcome::MemoryFailed,
+            Err(StoreError::TooSoon) => Outcome::SavedTooOften,
         };
         say(&answered(now, pending, outcome, 0));
     }

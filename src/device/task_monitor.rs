@@ -83,7 +83,7 @@ pub struct CrashRecord {
 /// Words of a [`CrashRecord`] in memory.
 pub const WORDS: usize = 8;
 
-const MAGIC: u32 = 0x4642_5243;
+const MAGIC: u32 = 0x4642_5244;
 
 const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 

@@ -46,7 +46,7 @@ const NOT_READ: StoredTip = StoredTip {
 async fn main(spawner: Spawner) {
     // Before anything that can hang, so that every reset is counted.
     let reset_cause = board::begin();
-    let start = CrashRecord::start(retained::read(), reset_cause, NAMES.hash);
+    let start = CrashRecord::start(retained::begin(), reset_cause, NAMES.hash);
     retained::write(&start.crash_record);
     let kept = retained::read_zeros().zeros(NAMES.hash);
     #[cfg(not(feature = "load-tip"))]
@@ -139,7 +139,7 @@ async fn signal(
         let now = clock.now();
         if now.0 >= next_feed && waiting.frames.borrow().is_empty() {
             // All that was put there before was taken.
-            alive(SEND, clock);
+            alive(SEND, now);
         }
         if let Some(sample) = samples.iter().find_map(|sample| sample.ok()) {
             let measured = now.0.saturating_sub(u64::from(sample.age));
@@ -195,11 +195,12 @@ async fn signal(
 #[embassy_executor::task]
 async fn remember(mut store: Option<HandStore<FlashMemory, TIPS, RECORD>>, clock: Clock) {
     loop {
-        alive(REMEMBER, clock);
+        let now = clock.now();
+        alive(REMEMBER, now);
         if let Ok((tip, ToStore(calibration))) = with_timeout(IDLE, TO_STORE.receive()).await {
             let (result, number) = match &mut store {
                 Some(store) => {
-                    let result = store.save(usize::from(tip), calibration).await;
+                    let result = store.save(now, usize::from(tip), calibration).await;
                     (result, store.stored(usize::from(tip)).number)
                 }
                 None => (Err(StoreError::Failed), 0),

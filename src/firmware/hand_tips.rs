@@ -104,13 +104,14 @@ pub(super) async fn remember(
 ) {
     let judged = JUDGED.take();
     loop {
-        alive(REMEMBER, clock);
+        let now = clock.now();
+        alive(REMEMBER, now);
         match with_timeout(IDLE, select(TO_STORE.receive(), LOADS.receive())).await {
             Err(_idle) => {}
             Ok(Either::First((tip, ToStore(calibration)))) => {
                 let (result, number) = match &mut store {
                     Some(store) => {
-                        let result = store.save(usize::from(tip), calibration).await;
+                        let result = store.save(now, usize::from(tip), calibration).await;
                         (result, store.stored(usize::from(tip)).number)
                     }
                     None => (Err(StoreError::Failed), 0),

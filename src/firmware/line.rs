@@ -43,7 +43,7 @@ pub(super) async fn listen(mut serial_rx: SerialRx, clock: Clock) {
     let mut deframer = Deframer::default();
     let mut bytes = [0; 32];
     loop {
-        alive(LISTEN, clock);
+        alive(LISTEN, clock.now());
         let received = match with_timeout(IDLE, serial_rx.read(&mut bytes)).await {
             Ok(Ok(length)) => bytes.get(..length).unwrap_or(&[]),
             Ok(Err(_lost)) => {

@@ -1,6 +1,6 @@
-//! Memory that survives a reset, and the handlers that leave a crash record in it. This is the only file of the firmware with
-//! unsafe code. Two items are unsafe: the section, which start-up does not clear, so that it may have any bits, and the signature
-//! of the handler.
+//! Memory that survives a reset, the handlers that leave a crash record in it, and the paint of the stack. This is the only file of
+//! the firmware with unsafe code. Unsafe are the section, which start-up does not clear, so that it may have any bits, the
+//! signature of the handlers, and the words of the stack.
 #![allow(unsafe_code)]
 
 use core::cell::UnsafeCell;
@@ -40,6 +40,48 @@ pub(super) fn read_zeros() -> ZeroWords<TIPS> {
 pub(super) fn write_zeros(zeros: ZeroWords<TIPS>) {
     // SAFETY: as above; nothing holds a reference into it, and the signal task alone writes it.
     unsafe { ZEROS_KEPT.0.get().cast::<ZeroWords<TIPS>>().write_volatile(zeros) }
+}
+
+/// What the unused stack is filled with, as by the feature `paint-stack` of `cortex-m-rt`.
+const PAINT: u32 = 0xCCCC_CCCC;
+/// Words at the stack's end that are never used, or it overflowed: below them lies no memory, which is a fault of the bus.
+const GUARD: usize = 16;
+
+unsafe extern "C" {
+    /// The lowest word of the stack (`memory.x`).
+    static mut _stack_end: u32;
+}
+
+/// Paints the unused stack; whether the run before used its last [`GUARD`] words.
+fn repaint_stack() -> bool {
+    let end = &raw mut _stack_end;
+    // The stack is below the statics: from here down to its end nothing is in use.
+    let unused = (cortex_m::register::msp::read() as usize - end as usize) / size_of::<u32>();
+    let mut reached = false;
+    for place in 0..unused {
+        // SAFETY: words of the stack below its pointer; an interrupt meanwhile leaves nothing there that it reads again.
+        unsafe {
+            let word = end.add(place);
+            reached |= place < GUARD && word.read_volatile() != PAINT;
+            word.write_volatile(PAINT);
+        }
+    }
+    reached
+}
+
+/// What the run before left, at a start.
+pub(super) fn begin() -> Option<CrashRecord> {
+    let overflowed = repaint_stack();
+    // Without a record the run before painted nothing.
+    let left = read()?;
+    Some(CrashRecord {
+        fault: if overflowed {
+            LastFault::StackOverflow
+        } else {
+            left.fault
+        },
+        ..left
+    })
 }
 
 /// What the run before left, or this one so far.

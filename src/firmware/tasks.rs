@@ -42,7 +42,7 @@ const PERIOD: u32 = ImageDesign::PARAMETERS.period;
 async fn main(spawner: Spawner) {
     // Before anything that can hang, so that every reset is counted.
     let reset_cause = board::begin();
-    let start = CrashRecord::start(retained::read(), reset_cause, ImageDesign::CONSTANTS.hash);
+    let start = CrashRecord::start(retained::begin(), reset_cause, ImageDesign::CONSTANTS.hash);
     retained::write(&start.crash_record);
     #[cfg(not(feature = "load-tip"))]
     let board = Board::take(start.give_up, reset_cause);
@@ -138,7 +138,7 @@ async fn signal(
         let now = clock.now();
         if now.0 >= next_feed && waiting.frames.borrow().is_empty() {
             // All that was put there before was taken.
-            alive(SEND, clock);
+            alive(SEND, now);
         }
         if let Ok(sample) = sample {
             let measured = now.0.saturating_sub(u64::from(sample.age));
@@ -178,10 +178,11 @@ async fn signal(
 #[embassy_executor::task]
 async fn remember(mut store: Option<Store<FlashMemory>>, clock: Clock) {
     loop {
-        alive(REMEMBER, clock);
+        let now = clock.now();
+        alive(REMEMBER, now);
         if let Ok(ToStore(calibration)) = with_timeout(IDLE, TO_STORE.receive()).await {
             let result = match &mut store {
-                Some(store) => store.save(calibration).await,
+                Some(store) => store.save(now, calibration).await,
                 None => Err(StoreError::Failed),
             };
             let sequence = store.as_ref().map_or(0, Store::sequence);

@@ -89,12 +89,13 @@ pub(super) async fn remember(
 ) {
     let judged = JUDGED.take();
     loop {
-        alive(REMEMBER, clock);
+        let now = clock.now();
+        alive(REMEMBER, now);
         match with_timeout(IDLE, select(TO_STORE.receive(), LOADS.receive())).await {
             Err(_idle) => {}
             Ok(Either::First(ToStore(calibration))) => {
                 let result = match &mut store {
-                    Some(store) => store.save(calibration).await,
+                    Some(store) => store.save(now, calibration).await,
                     None => Err(StoreError::Failed),
                 };
                 let sequence = store.as_ref().map_or(0, Store::sequence);

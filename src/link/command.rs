@@ -147,11 +147,13 @@ pub enum Outcome {
     NotInImage,
     /// There are no tables of such an object.
     NoSuchObject,
+    /// More saves than the memory lasts ten years with: one is possible again after 6.5 minutes, or what PROTOCOL.md states.
+    SavedTooOften,
 }
 
 impl Outcome {
     /// Every outcome with its code on the wire.
-    pub const CODES: [(Self, u8); 11] = [
+    pub const CODES: [(Self, u8); 12] = [
         (Self::Done, 0),
         (Self::Touched, 1),
         (Self::Restless, 2),
@@ -163,6 +165,7 @@ impl Outcome {
         (Self::MemoryFailed, 8),
         (Self::NoSuchObject, 9),
         (Self::NotInImage, 14),
+        (Self::SavedTooOften, 16),
     ];
 }
 

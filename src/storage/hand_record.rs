@@ -8,7 +8,8 @@
 //! | 11 | 1 | number of tips |
 //! | 12 | 12 | 0 |
 //! | 24 | 32 a tip | the tips, below |
-//! | length - 8 | 4 | erasures so far, of both slots together |
+//! | length - 8 | 2 | erasures so far, of both slots together |
+//! | length - 6 | 2 | what the [budget](crate::storage::save_budget) of saves was owed then, in units of 2^21 us; 0 before version 0.1.0 knew it |
 //! | length - 4 | 4 | CRC-32/ISO-HDLC of the bytes before |
 //!
 //! | offset in a tip | bytes | field |
@@ -120,8 +121,8 @@ pub struct HandRecord<const TIPS: usize> {
     pub firmware: [u8; 3],
     /// The tips, in their order.
     pub tips: [TipEntry; TIPS],
-    /// Erasures so far, of both slots together.
-    pub erasures: u32,
+    /// [`LoggedRecord::wear`].
+    pub wear: u32,
 }
 
 impl<const TIPS: usize, const LENGTH: usize> LoggedRecord<LENGTH> for HandRecord<TIPS> {
@@ -129,12 +130,12 @@ impl<const TIPS: usize, const LENGTH: usize> LoggedRecord<LENGTH> for HandRecord
         self.sequence
     }
 
-    fn erasures(&self) -> u32 {
-        self.erasures
+    fn wear(&self) -> u32 {
+        self.wear
     }
 
-    fn set_erasures(&mut self, erasures: u32) {
-        self.erasures = erasures;
+    fn set_wear(&mut self, wear: u32) {
+        self.wear = wear;
     }
 
     fn encode(&self) -> [u8; LENGTH] {
@@ -149,7 +150,7 @@ impl<const TIPS: usize, const LENGTH: usize> LoggedRecord<LENGTH> for HandRecord
         for (place, tip) in tips.chunks_exact_mut(TIP).zip(&self.tips) {
             place.copy_from_slice(&tip.encode());
         }
-        end[..4].copy_from_slice(&self.erasures.to_le_bytes());
+        end[..4].copy_from_slice(&self.wear.to_le_bytes());
         seal(&mut bytes);
         bytes
     }
@@ -170,12 +171,12 @@ fn read<const TIPS: usize>(body: &[u8]) -> Option<HandRecord<TIPS>> {
     for tip in &mut tips {
         *tip = TipEntry::read(&mut fields)?;
     }
-    let erasures = u32::from_le_bytes(fields.take().ok()?);
+    let wear = u32::from_le_bytes(fields.take().ok()?);
     (usize::from(count) == TIPS && padding == [0; 12]).then_some(HandRecord {
         sequence,
         firmware,
         tips,
-        erasures,
+        wear,
     })
 }
 
@@ -210,7 +211,7 @@ mod tests {
                 doubtful: true,
             },
         ],
-        erasures: 2,
+        wear: 2,
     };
 
     /// By the tables above, with Python's `struct` and `binascii.crc32`:

@@ -9,6 +9,7 @@ use crate::signal::calibration::Calibration;
 use crate::status::Stored;
 use crate::storage::hand_record::{HandRecord, TipEntry};
 use crate::storage::log::{RecordLog, StoreError};
+use crate::units::Microseconds;
 use embedded_storage_async::nor_flash::NorFlash;
 #[cfg(feature = "load-tip")]
 use model_tables::constants::DesignConstants;
@@ -114,11 +115,16 @@ impl<F: NorFlash, const TIPS: usize, const LENGTH: usize> HandStore<F, TIPS, LEN
         self.log.flash_mut()
     }
 
-    /// Stores a tip's calibration, or that there is none.
+    /// Stores a tip's calibration, or that there is none, at `now` since the start.
     ///
     /// # Errors
     /// [`StoreError`]; what was stored before stays in use.
-    pub async fn save(&mut self, tip: usize, calibration: Option<Calibration>) -> Result<(), StoreError> {
+    pub async fn save(
+        &mut self,
+        now: Microseconds,
+        tip: usize,
+        calibration: Option<Calibration>,
+    ) -> Result<(), StoreError> {
         let identity = self.identities.get(tip).ok_or(StoreError::Failed)?;
         let before = self.log.latest().map(|latest| latest.tips);
         let mut tips = before.unwrap_or([TipEntry::NOTHING; TIPS]);
@@ -147,9 +153,9 @@ impl<F: NorFlash, const TIPS: usize, const LENGTH: usize> HandStore<F, TIPS, LEN
             sequence,
             firmware: self.firmware,
             tips,
-            erasures: 0,
+            wear: 0,
         };
-        self.log.save(&mut record).await?;
+        self.log.save(now, &mut record).await?;
         self.state = Stored::InUse;
         Ok(())
     }

@@ -2,8 +2,8 @@
 //!
 //! A new record goes behind the last one in its slot. When that is full the *other* slot is erased and written, never the one that
 //! holds the record in use: power may fail at any write or erasure, and what is read afterwards is the old record or the new one.
-//! Every record is read back before it counts. One erasure makes room for a slot full of saves. [`ENDURANCE`] stops saves before
-//! the memory wears out.
+//! Every record is read back before it counts. One erasure makes room for a slot full of saves. The
+//! [budget](crate::storage::save_budget) limits saves in time, and its [`ENDURANCE`] stops them before the memory wears out.
 //!
 //! Memory with error correction refuses to read a unit whose programming or erasure was interrupted. A place with such a unit has
 //! no record and is skipped. Saves continue behind it, and the next erasure of its slot makes it usable again. A place that may
@@ -14,11 +14,10 @@
 //! a power cut at every step (`host-tests/tests/calibration_store.rs`, `hand_store.rs`).
 
 use crate::status::Stored;
+use crate::storage::save_budget::{AT_ONCE, ENDURANCE, SaveBudget};
+use crate::units::Microseconds;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use embedded_storage_async::nor_flash::NorFlash;
-
-/// Erasures of a slot: what flash is specified for at the least (DS9405 table 49: 10 000 cycles).
-pub const ENDURANCE: u32 = 10_000;
 
 /// Places tried in one slot before it is given up for the other.
 const TRIES: u32 = 3;
@@ -45,11 +44,12 @@ pub trait LoggedRecord<const LENGTH: usize>: Copy + PartialEq {
     /// The highest is in use.
     fn sequence(&self) -> u32;
 
-    /// Erasures of both slots together when it was written.
-    fn erasures(&self) -> u32;
+    /// Lower 16 bits: erasures of both slots together when it was written. Upper 16 bits: what the
+    /// [budget](crate::storage::save_budget) of saves was owed, in units of 2^21 us.
+    fn wear(&self) -> u32;
 
-    /// It is written after so many erasures.
-    fn set_erasures(&mut self, erasures: u32);
+    /// It is written after so much wear.
+    fn set_wear(&mut self, wear: u32);
 
     /// Its bytes.
     fn encode(&self) -> [u8; LENGTH];
@@ -89,6 +89,8 @@ pub enum StoreError {
     Failed,
     /// The memory was erased as often as it stands.
     WornOut,
+    /// More saves than the [budget](crate::storage::save_budget) allows.
+    TooSoon,
 }
 
 /// The two slots.
@@ -109,6 +111,7 @@ pub struct RecordLog<F, R, const LENGTH: usize> {
     hidden: u32,
     /// The memory refused to read some place.
     refused: bool,
+    budget: SaveBudget,
 }
 
 /// What a place holds.
@@ -127,8 +130,8 @@ enum Place<R> {
 struct SlotScan {
     /// Places up to the last one that is not blank.
     used: u32,
-    /// Whether there is a record.
-    holds: bool,
+    /// Places up to the last record; 0: there is none.
+    last: u32,
     /// Spoilt places behind the last one.
     hidden: u32,
     /// The largest count of erasures in a record.
@@ -154,6 +157,7 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
             erasures: 0,
             hidden: 0,
             refused: false,
+            budget: SaveBudget::new(slot / Self::PLACE),
         }
     }
 
@@ -169,14 +173,23 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         };
         // Saves leave a slot when it is full, so behind a slot that is not full there is no newer one; and the records
         // of a slot are older than the first of the next.
-        let turned_over = !in_use.holds || in_use.used == self.places();
+        let is_full = in_use.used == self.places();
+        let turned_over = in_use.last == 0 || is_full;
         self.hidden = in_use.hidden;
-        if turned_over && !other.holds {
+        if turned_over && other.last == 0 {
             self.hidden += other.hidden;
         }
         self.current = self.home;
         self.next = in_use.used;
         self.erasures = in_use.erasures.max(other.erasures);
+        // Behind a full slot an erasure may have been cut, any number of times.
+        let cut = if is_full {
+            AT_ONCE
+        } else {
+            in_use.used - in_use.last
+        };
+        self.budget
+            .start(self.latest.as_ref().map_or(0, |latest| latest.wear() >> 16), cut);
         match &self.latest {
             Some(_) if self.hidden > 0 => Stored::Unreadable,
             Some(_) => Stored::InUse,
@@ -195,8 +208,8 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
                 Place::Blank => continue,
                 // A slot is written from its first place on: the last record is the newest.
                 Place::Record(record) => {
-                    log.erasures = log.erasures.max(record.erasures());
-                    log.holds = true;
+                    log.erasures = log.erasures.max(record.wear() & 0xFFFF);
+                    log.last = place + 1;
                     if self.home == which || record.sequence() > self.sequence() {
                         self.latest = Some(record);
                         self.home = which;
@@ -248,22 +261,29 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         &mut self.flash
     }
 
-    /// Stores a record, whose count of erasures is the log's.
+    /// Stores a record at `now` since the start; its wear is the log's.
     ///
     /// # Errors
     /// [`StoreError`]; the record from before stays in use.
     // By reference: the futures hold one copy of it.
-    pub async fn save(&mut self, record: &mut R) -> Result<(), StoreError> {
-        record.set_erasures(self.erasures);
+    pub async fn save(&mut self, now: Microseconds, record: &mut R) -> Result<(), StoreError> {
+        if !self.budget.take(now) {
+            return Err(StoreError::TooSoon);
+        }
+        record.set_wear(self.wear());
         if self.append(record).await {
             return Ok(());
         }
         self.turn_over().await?;
-        record.set_erasures(self.erasures);
+        record.set_wear(self.wear());
         if self.append(record).await {
             return Ok(());
         }
         Err(StoreError::Failed)
+    }
+
+    const fn wear(&self) -> u32 {
+        self.erasures | self.budget.owed() << 16
     }
 
     /// Writes into the next places of the current slot; whether one took it.

@@ -7,6 +7,7 @@ pub mod hand_record;
 pub mod hand_store;
 pub mod log;
 pub mod record;
+pub mod save_budget;
 pub mod store;
 #[cfg(feature = "load-tip")]
 pub mod tip_slots;

@@ -13,7 +13,8 @@
 //! | 30 | 2 | 0 |
 //! | 32 | 4 | what temperature adds to the zero, millipascals a kelvin |
 //! | 36 | 4 | gain trim, parts in a million |
-//! | 40 | 4 | erasures so far, of both slots together |
+//! | 40 | 2 | erasures so far, of both slots together |
+//! | 42 | 2 | what the [budget](crate::storage::save_budget) of saves was owed then, in units of 2^21 us; 0 before version 0.1.0 knew it |
 //! | 44 | 4 | CRC-32/ISO-HDLC of the bytes before |
 //!
 //! Numbers are little-endian. The check comes last: what was cut off while it was written has none.
@@ -41,8 +42,8 @@ pub struct Record {
     pub firmware: [u8; 3],
     /// The calibration; `None` voids the previous one.
     pub calibration: Option<Calibration>,
-    /// Erasures so far, of both slots together.
-    pub erasures: u32,
+    /// [`LoggedRecord::wear`].
+    pub wear: u32,
 }
 
 impl LoggedRecord<LENGTH> for Record {
@@ -50,12 +51,12 @@ impl LoggedRecord<LENGTH> for Record {
         self.sequence
     }
 
-    fn erasures(&self) -> u32 {
-        self.erasures
+    fn wear(&self) -> u32 {
+        self.wear
     }
 
-    fn set_erasures(&mut self, erasures: u32) {
-        self.erasures = erasures;
+    fn set_wear(&mut self, wear: u32) {
+        self.wear = wear;
     }
 
     fn encode(&self) -> [u8; LENGTH] {
@@ -86,7 +87,7 @@ pub fn encode(record: &Record) -> [u8; LENGTH] {
             .to_le_bytes(),
         &calibration.coefficient.to_le_bytes(),
         &calibration.gain.to_le_bytes(),
-        &record.erasures.to_le_bytes(),
+        &record.wear.to_le_bytes(),
     ];
     let mut bytes = [0; LENGTH];
     let mut at = 0;
@@ -118,7 +119,7 @@ fn read(body: &[u8]) -> Option<Record> {
     let [padding, more] = fields.take().ok()?;
     let coefficient = i32::from_le_bytes(fields.take().ok()?);
     let gain = i32::from_le_bytes(fields.take().ok()?);
-    let erasures = u32::from_le_bytes(fields.take().ok()?);
+    let wear = u32::from_le_bytes(fields.take().ok()?);
     let calibration = Calibration {
         zero: (zero != i32::MIN).then_some(Millipascals(zero)),
         temperature: (temperature != i16::MIN).then_some(Centidegrees(temperature)),
@@ -131,7 +132,7 @@ fn read(body: &[u8]) -> Option<Record> {
         table_version,
         firmware,
         calibration: (kind == 1).then_some(calibration),
-        erasures,
+        wear,
     })
 }
 
@@ -151,7 +152,7 @@ mod tests {
             coefficient: -2_000,
             gain: 25_000,
         }),
-        erasures: 2,
+        wear: 2,
     };
 
     /// By the table above, with Python's `struct` and `binascii.crc32`.
@@ -212,7 +213,7 @@ mod tests {
                 table_version: words[1],
                 firmware,
                 calibration,
-                erasures: words[2],
+                wear: words[2],
             })
     }
 

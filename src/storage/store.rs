@@ -5,6 +5,7 @@ use crate::signal::calibration::Calibration;
 use crate::status::Stored;
 use crate::storage::log::{RecordLog, StoreError};
 use crate::storage::record::{LENGTH, Record};
+use crate::units::Microseconds;
 use embedded_storage_async::nor_flash::NorFlash;
 
 /// Identity of the fingertip of the records.
@@ -94,11 +95,15 @@ impl<F: NorFlash> Store<F> {
         self.log.flash_mut()
     }
 
-    /// Stores a calibration, or that there is none.
+    /// Stores a calibration, or that there is none, at `now` since the start.
     ///
     /// # Errors
     /// [`StoreError`]; the record from before stays in use.
-    pub async fn save(&mut self, calibration: Option<Calibration>) -> Result<(), StoreError> {
+    pub async fn save(
+        &mut self,
+        now: Microseconds,
+        calibration: Option<Calibration>,
+    ) -> Result<(), StoreError> {
         let Identity {
             design_hash,
             table_version,
@@ -111,18 +116,18 @@ impl<F: NorFlash> Store<F> {
             table_version,
             firmware,
             calibration,
-            erasures: 0,
+            wear: 0,
         };
         let same = |latest: &Record| {
             Record {
                 sequence: record.sequence,
-                erasures: 0,
+                wear: 0,
                 ..*latest
             } == record
         };
         if !self.log.is_hidden() && self.log.latest().is_some_and(same) {
             return Ok(());
         }
-        self.log.save(&mut record).await
+        self.log.save(now, &mut record).await
     }
 }

@@ -7,10 +7,11 @@ use crate::scenario::Happening;
 use fingertip::link::command::{self, Request};
 use rigless::emulator::{Access, AccessKind, Driver, Hit, Host, Settled, Start, Stop, Watch};
 use rigless::session::{Reset, Session};
+use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 use std::collections::BTreeMap;
 use std::fmt;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 /// How often the listener gets what came over the wire, virtual nanoseconds.
 const LISTEN: u64 = 1_000_000;
@@ -19,6 +20,9 @@ const LISTEN: u64 = 1_000_000;
 /// bit in them that starts the counter.
 const TIMER_CONTROL: [u64; 4] = [0x4000_0000, 0x4000_0400, 0x4000_0800, 0x4000_0c00];
 const COUNTER_ENABLE: u64 = 1;
+
+/// What the image fills its unused stack with.
+const PAINT: u64 = 0xCCCC_CCCC;
 
 /// Hears what comes over the serial wire.
 pub trait Listener: Send + 'static {
@@ -59,6 +63,8 @@ pub struct RunOutcome<L> {
     pub arrivals: Arrivals,
     /// Resets after power-on, in words.
     pub resets: Vec<String>,
+    /// Bytes of the stack that were used since the last reset; `None` if the listener ended the run.
+    pub stack: Option<u64>,
     /// What the image asked of the part that the emulator does not model, in words. Empty, or the run proves
     /// less than it seems to.
     pub gaps: Vec<String>,
@@ -136,6 +142,8 @@ pub fn run_watching<L: Listener>(
         clock_zero: None,
         resets: 0,
         last_stop: 0.0,
+        stack_range: stack_of(image)?,
+        stack: None,
         end: VirtualNanos((duration * 1e9) as u64),
     };
     let mut images = vec![elf];
@@ -148,6 +156,7 @@ pub fn run_watching<L: Listener>(
         .stop
         .map_or((0.0, 0), |stop| (seconds(stop.at), stop.instruction_count));
     Ok(RunOutcome {
+        stack: finished.driver.stack,
         listener: finished.driver.listener,
         time,
         instructions,
@@ -156,6 +165,21 @@ pub fn run_watching<L: Listener>(
         resets: finished.session.resets().iter().map(describe).collect(),
         gaps: gaps(&finished.session),
     })
+}
+
+/// Where the stack of an image is: it grows from the end of this to the start.
+pub(crate) fn stack_of(image: &Image) -> Result<Range<u64>, ImageError> {
+    Ok(image.symbol("_stack_end")?..image.symbol("_stack_start")?)
+}
+
+/// Bytes of it that were used; `None` if it cannot be read.
+pub(crate) fn stack_depth(stack: &Range<u64>, host: &mut dyn Host) -> Option<u64> {
+    for address in stack.clone().step_by(4) {
+        if host.read(address, Width::W32).ok()? != PAINT {
+            return Some(stack.end - address);
+        }
+    }
+    Some(0)
 }
 
 pub(crate) fn emulator(error: impl fmt::Display) -> BenchError {
@@ -197,6 +221,8 @@ struct Bench<L> {
     resets: usize,
     /// Milliseconds.
     last_stop: f64,
+    stack_range: Range<u64>,
+    stack: Option<u64>,
     end: VirtualNanos,
 }
 
@@ -286,7 +312,11 @@ impl<L: Listener> Driver<Nucleo> for Bench<L> {
         if !words.is_empty() {
             session.board_mut().send(&words);
         }
-        (stop.at < self.end).then_some(VirtualNanos(stop.at.0 + LISTEN))
+        if stop.at >= self.end {
+            self.stack = stack_depth(&self.stack_range, host);
+            return None;
+        }
+        Some(VirtualNanos(stop.at.0 + LISTEN))
     }
 }
 

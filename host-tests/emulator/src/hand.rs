@@ -1,6 +1,8 @@
 //! The image of a hand on the board: several plants on the converter's channels, and what came over the serial wire.
 
-use crate::bench::{BenchError, CallCounter, Moment, emulator, gaps, seconds, starts_the_clock};
+use crate::bench::{
+    BenchError, CallCounter, Moment, emulator, gaps, seconds, stack_depth, stack_of, starts_the_clock,
+};
 use crate::board::Nucleo;
 use crate::image::Image;
 use crate::multiplexer::BusCommand;
@@ -16,6 +18,7 @@ use fingertip::signal::report::Report;
 use rigless::emulator::{Access, AccessKind, Driver, Host, Settled, Start, Stop, Watch};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
+use std::ops::Range;
 
 /// How often what came over the wire is taken, virtual nanoseconds.
 const LISTEN: u64 = 1_000_000;
@@ -39,9 +42,9 @@ pub struct EmulatedHand {
     pub places: Vec<BusPlace>,
     /// While these seconds of virtual time pass, the part of this tip holds the data line of its branch; `None`: no
     /// part does.
-    pub held: Option<(usize, std::ops::Range<f64>)>,
+    pub held: Option<(usize, Range<f64>)>,
     /// While these seconds of virtual time pass, each code lies in its neighbour's place.
-    pub shifted: std::ops::Range<f64>,
+    pub shifted: Range<f64>,
     /// Bytes that the host sends, each at its time, seconds, ascending.
     pub sent: Vec<(f64, Vec<u8>)>,
 }
@@ -93,6 +96,8 @@ pub struct HandRun {
     pub time: f64,
     /// Instructions retired.
     pub instructions: u64,
+    /// Bytes of the stack that were used since the last reset; `None` before the end.
+    pub stack: Option<u64>,
     /// The instructions of each call of the last function asked for, with those of the others before it.
     pub calls: Vec<u64>,
     /// The commands to the parts on the bus.
@@ -144,6 +149,8 @@ pub fn run(
         commands: vec![],
         scanning_since: None,
         clock_zero: None,
+        stack_range: stack_of(image)?,
+        stack: None,
         end: VirtualNanos((duration * 1e9) as u64),
     };
     let mut images = vec![elf];
@@ -160,6 +167,7 @@ pub fn run(
     let mut run = HandRun {
         time,
         instructions,
+        stack: driver.stack,
         gaps: gaps(&finished_session),
         ..read(&driver.bytes, driver.clock_zero.unwrap_or_default())
     };
@@ -231,6 +239,8 @@ struct HandBench {
     /// When the converter was started last, nanoseconds.
     scanning_since: Option<u64>,
     clock_zero: Option<f64>,
+    stack_range: Range<u64>,
+    stack: Option<u64>,
     end: VirtualNanos,
 }
 
@@ -326,7 +336,7 @@ impl Driver<Nucleo> for HandBench {
         &mut self,
         session: &mut Session<Nucleo>,
         stop: Stop,
-        _host: &mut dyn Host,
+        host: &mut dyn Host,
     ) -> Option<VirtualNanos> {
         let taken = session.board_mut().take_bytes();
         self.bytes
@@ -338,6 +348,10 @@ impl Driver<Nucleo> for HandBench {
             session.board_mut().send(bytes);
             self.sent += 1;
         }
-        (stop.at < self.end).then_some(VirtualNanos(stop.at.0 + LISTEN))
+        if stop.at >= self.end {
+            self.stack = stack_depth(&self.stack_range, host);
+            return None;
+        }
+        Some(VirtualNanos(stop.at.0 + LISTEN))
     }
 }

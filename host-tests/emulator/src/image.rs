@@ -274,6 +274,21 @@ impl Image {
         Ok(size)
     }
 
+    /// Value of a symbol of the linker.
+    ///
+    /// # Errors
+    /// [`ImageError::Symbol`] when there is none.
+    pub fn symbol(&self, name: &str) -> Result<u64, ImageError> {
+        let file = self.file()?;
+        let symbol = file.symbol_by_name(name);
+        symbol
+            .map(|symbol| symbol.address())
+            .ok_or_else(|| ImageError::Symbol {
+                name: name.to_owned(),
+                found: 0,
+            })
+    }
+
     /// Address of the one function called `name` whose demangled path has `owner` (a type or a module) in it.
     ///
     /// # Errors

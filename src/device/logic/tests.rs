@@ -172,9 +172,7 @@ fn a_save_is_answered_when_the_memory_has_it() {
     assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::Busy, 0)]);
     bench.stored(Ok(()));
     assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::Done, 0)]);
-    // The next one has to wait for a second, and keeps the gain.
-    assert_eq!(bench.ask(Command::Save { gain: None }), None);
-    bench.steps(1_001, 20_000.0);
+    // The next one keeps the gain.
     let again = bench
         .ask(Command::Save { gain: None })
         .and_then(|to_store| to_store.0);
@@ -182,6 +180,10 @@ fn a_save_is_answered_when_the_memory_has_it() {
     bench.emitted.clear();
     bench.stored(Err(StoreError::Failed));
     assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::MemoryFailed, 0)]);
+    // The store limits how often.
+    assert!(bench.ask(Command::Save { gain: None }).is_some());
+    bench.stored(Err(StoreError::TooSoon));
+    assert_eq!(bench.answers(), [(CommandKind::Save, Outcome::SavedTooOften, 0)]);
     bench.ask(Command::Info);
     let Some(Message::Hello(hello)) = bench.emitted.first() else {
         panic!("{:?}", bench.emitted);

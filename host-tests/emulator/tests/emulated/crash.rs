@@ -3,6 +3,7 @@
 
 use crate::{design, firmware};
 use emulator::bench;
+use emulator::image::Image;
 use emulator::inlined;
 use emulator::record::{Recorder, Recording, Row};
 use emulator::scenario::{Event, Happening, Scenario};
@@ -15,6 +16,9 @@ use fingertip::status::{Fault, LastFault, ResetCause, Status};
 const UNDEFINED: [u16; 2] = [0xDE00; 2];
 /// `B` to itself, twice (A7.7.12, encoding T2).
 const ENDLESS: [u16; 2] = [0xE7FE; 2];
+/// `PUSH {R0}`, `MOV R1, SP`, `LSLS R1, R1, #19` and `BNE` back until the stack of 8 KB is full, then `B` to itself (A7.7.101,
+/// A7.7.77, A7.7.68, A7.7.12). Not further: the emulator takes stores below it without the chip's fault of the bus.
+const FILLING: [[u16; 2]; 3] = [[0xB401, 0x4669], [0x04C9, 0xD1FB], [0xE7FE, 0xE7FE]];
 /// Functions that do nothing but panic: one of them is in every image.
 const PANICS: [(&str, &str); 4] = [
     ("core::result", "unwrap_failed"),
@@ -54,9 +58,16 @@ fn entry() -> u64 {
 
 /// Runs the image with these instructions at an address: what it says when it has given up, after `over` seconds.
 fn hello_with(address: u64, instructions: [u16; 2], over: f64, cause: ResetCause) -> Hello {
-    let image = firmware()
-        .with_code(address, instructions)
-        .expect("it is in a section");
+    hello_of(
+        &firmware()
+            .with_code(address, instructions)
+            .expect("it is in a section"),
+        over,
+        cause,
+    )
+}
+
+fn hello_of(image: &Image, over: f64, cause: ResetCause) -> Hello {
     let mut scenario = Scenario::named("press-hold-release").expect("it is shipped");
     scenario.event = (1..)
         .zip(ASKED)
@@ -71,7 +82,7 @@ fn hello_with(address: u64, instructions: [u16; 2], over: f64, cause: ResetCause
         .plant(scenario)
         .expect("the default design can be pressed");
     let recorder = Recorder::new(|_: &Row| {});
-    let outcome = bench::run(&image, plant, over + AFTER, &[], recorder).expect("the image runs");
+    let outcome = bench::run(image, plant, over + AFTER, &[], recorder).expect("the image runs");
     assert_eq!(
         outcome.resets.len(),
         usize::from(RESET_LIMIT) + 1,
@@ -139,6 +150,19 @@ fn a_hard_fault_after_each_start_leaves_its_address_and_ends_likewise() {
         (hello.last_fault, u64::from(hello.last_fault_detail)),
         (LastFault::HardFault, entry())
     );
+}
+
+#[test]
+fn a_stack_that_overflows_after_each_start_is_told_of_as_that() {
+    let mut image = firmware().clone();
+    for (address, instructions) in (entry()..).step_by(4).zip(FILLING) {
+        image = image
+            .with_code(address, instructions)
+            .expect("it is in a section");
+    }
+    // Where the chip stops, as the frame of its fault has no place, the emulated one hangs: either way the watchdog resets it.
+    let hello = hello_of(&image, HANGS_OVER, ResetCause::Watchdog);
+    assert_eq!(hello.last_fault, LastFault::StackOverflow);
 }
 
 #[test]

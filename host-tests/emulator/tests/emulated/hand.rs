@@ -98,12 +98,12 @@ fn image() -> &'static Image {
     IMAGE.get_or_init(|| Image::firmware(Some(&hand_file())).expect("the firmware builds"))
 }
 
-struct Run {
+pub(crate) struct Run {
     plants: Vec<Plant>,
-    hand: HandRun,
+    pub(crate) hand: HandRun,
 }
 
-fn run() -> &'static Run {
+pub(crate) fn run() -> &'static Run {
     static RUN: OnceLock<Run> = OnceLock::new();
     RUN.get_or_init(|| {
         let one = design()

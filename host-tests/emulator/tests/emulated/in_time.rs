@@ -25,6 +25,7 @@ fn run(name: &str) -> Run {
         time: outcome.time,
         calls: outcome.calls,
         resets: outcome.resets,
+        stack: outcome.stack,
         gaps: outcome.gaps,
     }
 }

@@ -20,6 +20,7 @@ mod press;
 mod service;
 mod size;
 mod solver;
+mod stack;
 mod stored;
 mod supply;
 mod transducers;
@@ -103,6 +104,7 @@ struct Run {
     time: f64,
     calls: Vec<u64>,
     resets: Vec<String>,
+    stack: Option<u64>,
     gaps: Vec<String>,
 }
 
@@ -123,6 +125,7 @@ fn run(scenario: &str) -> Run {
         time: outcome.time,
         calls: outcome.calls,
         resets: outcome.resets,
+        stack: outcome.stack,
         gaps: outcome.gaps,
     }
 }

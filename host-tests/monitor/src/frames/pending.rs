@@ -104,6 +104,9 @@ pub(crate) fn describe(answer: &Answer) -> String {
         Outcome::ZeroUnverified => "refused: no verified zero; tare first",
         Outcome::MemoryFailed => "failed: the memory did not take it",
         Outcome::NotInImage => "refused: the design in the image has no use for it",
+        Outcome::SavedTooOften => {
+            "refused: saved too often; one save in 6.5 minutes, or later on a hand's small flash"
+        }
         Outcome::NoSuchObject => "refused: the design has no tables of such an object",
     };
     let findings = match answer.command {

@@ -109,6 +109,7 @@ class LastRun(enum.IntEnum):
     HARD_FAULT = 3
     HANG = 4
     NON_MASKABLE_INTERRUPT = 5
+    STACK_OVERFLOW = 6
 
 
 class CommandKind(enum.IntEnum):
@@ -157,6 +158,7 @@ class Outcome(enum.IntEnum):
     OTHER_DESIGN = 13
     NOT_IN_THIS_IMAGE = 14
     NOT_ARMED = 15
+    SAVED_TOO_OFTEN = 16
 
     @property
     def word(self) -> str:
