@@ -129,10 +129,22 @@ impl Board {
 
         let mut serial = usart::Config::default();
         serial.baudrate = BAUD;
-        let (line, serial_rx) = Uart::new(
+        #[cfg(feature = "rs485")]
+        {
+            // Sixteenths of a bit: half a bit before the first start bit and after the last stop bit.
+            serial.de_assertion_time = 8;
+            serial.de_deassertion_time = 8;
+        }
+        #[cfg(not(feature = "rs485"))]
+        let new = Uart::new;
+        #[cfg(feature = "rs485")]
+        let new = Uart::new_with_de;
+        let (line, serial_rx) = new(
             pins.serial,
             pins.receive,
             pins.transmit,
+            #[cfg(feature = "rs485")]
+            pins.driver_enable,
             pins.transmit_dma,
             pins.receive_dma,
             Interrupts,

@@ -53,6 +53,11 @@ pub use chosen::{TIP_SLOT, TIPS};
 pub use chosen::{TIP_SLOTS, TIPS};
 pub use common::{Board, Clock, FlashMemory, Line, Port, SerialRx, Watchdog, begin};
 
+#[cfg(all(feature = "rs485", feature = "board-nucleo-f429zi"))]
+compile_error!(
+    "the STM32F4's serial ports have no driver enable: rs485 is for board-nucleo-l432kc and board-nucleo-g474re"
+);
+
 #[cfg(not(any(
     feature = "board-nucleo-f429zi",
     feature = "board-nucleo-l432kc",

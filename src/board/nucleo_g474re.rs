@@ -10,6 +10,7 @@
 //! | transducer, bus | PA15, PB7, I2C1 | pins 17 and 21 of CN7, with pull-ups at the transducer. Not D15: its pin PB8 is `BOOT0` at reset, and a pull-up there starts the boot loader instead of the image |
 //! | RESET of a hand's multiplexers | PA8 | D7 of the Arduino header, used for nothing else; open-drain, with the breakout's pull-up |
 //! | serial port | PA2, PA3, LPUART1 | the ST-LINK's virtual COM port by default |
+//! | serial port, shared (`rs485`) | PA9, PA10, USART1; driver enable PA12 | D8 and D2 of the Arduino header and pin 12 of CN10, to a transceiver with RE at DE |
 //! | calibration | flash from `0x0804_0000`, two pages of 2 KB | bank 2: erasing it does not stall code in bank 1, where the image is |
 //! | a loaded tip (`load-tip`) | the six pages behind it | the same |
 //! | loaded tips of a hand | six pages a tip | the same |
@@ -30,7 +31,7 @@ use embassy_stm32::flash::{self, Bank2Region, Flash};
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_stm32::i2c;
 use embassy_stm32::pac;
-use embassy_stm32::peripherals::{self, DMA1_CH2, DMA1_CH3, LPUART1};
+use embassy_stm32::peripherals::{self, DMA1_CH2, DMA1_CH3};
 use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllRDiv, PllSource, Sysclk, mux};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::{Config, Peri, bind_interrupts, dma, usart};
@@ -40,9 +41,20 @@ pins! {
         watchdog: IWDG,
         #[cfg(transducer = "ratiometric")]
         converter: ADC1,
+        #[cfg(not(feature = "rs485"))]
         serial: LPUART1,
+        #[cfg(not(feature = "rs485"))]
         receive: PA3,
+        #[cfg(not(feature = "rs485"))]
         transmit: PA2,
+        #[cfg(feature = "rs485")]
+        serial: USART1,
+        #[cfg(feature = "rs485")]
+        receive: PA10,
+        #[cfg(feature = "rs485")]
+        transmit: PA9,
+        #[cfg(feature = "rs485")]
+        driver_enable: PA12,
         transmit_dma: DMA1_CH3,
         receive_dma: DMA1_CH2,
         flash: FLASH,
@@ -62,7 +74,10 @@ bind_interrupts!(pub(super) struct Interrupts {
     DMA1_CHANNEL2 => dma::InterruptHandler<DMA1_CH2>;
     DMA1_CHANNEL3 => dma::InterruptHandler<DMA1_CH3>;
     FLASH => flash::InterruptHandler;
-    LPUART1 => usart::InterruptHandler<LPUART1>;
+    #[cfg(not(feature = "rs485"))]
+    LPUART1 => usart::InterruptHandler<peripherals::LPUART1>;
+    #[cfg(feature = "rs485")]
+    USART1 => usart::InterruptHandler<peripherals::USART1>;
 });
 
 #[cfg(not(transducer = "ratiometric"))]

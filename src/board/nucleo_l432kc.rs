@@ -9,6 +9,7 @@
 //! | transducer, bus | PB6, PB7, I2C1 | D5 and D4 of that header, with pull-ups at the transducer; A5 and A4 (PA5, PA6) are wired to them by default (SB16, SB18) and stay inputs |
 //! | RESET of a hand's multiplexers | PB0 | D3 of that header, used for nothing else; open-drain, with the breakout's pull-up |
 //! | serial port | PA2, PA15, USART2 | the ST-LINK's virtual COM port by default (UM1956 6.8) |
+//! | serial port, shared (`rs485`) | PA9, PA10, USART1; driver enable PA12 | D1, D0 and D2 of that header, to a transceiver with RE at DE |
 //! | calibration | the last two pages of flash, 2 KB each | erasing one stalls the code for 25 ms at most (DS11451 table 58): samples are lost, and counted |
 //! | a loaded tip (`load-tip`) | the six pages before them | erasing three stalls the code for 75 ms at most |
 //!
@@ -28,7 +29,7 @@ use embassy_stm32::flash::{self, Bank1Region, Flash};
 use embassy_stm32::i2c;
 #[cfg(any(transducer = "ratiometric", hand))]
 use embassy_stm32::pac;
-use embassy_stm32::peripherals::{self, DMA1_CH6, DMA1_CH7, USART2};
+use embassy_stm32::peripherals;
 use embassy_stm32::rcc::{Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk, mux};
 use embassy_stm32::{Config, Peri, bind_interrupts, dma, usart};
 
@@ -37,11 +38,28 @@ pins! {
         watchdog: IWDG,
         #[cfg(transducer = "ratiometric")]
         converter: ADC1,
+        #[cfg(not(feature = "rs485"))]
         serial: USART2,
+        #[cfg(not(feature = "rs485"))]
         receive: PA15,
+        #[cfg(not(feature = "rs485"))]
         transmit: PA2,
+        #[cfg(not(feature = "rs485"))]
         transmit_dma: DMA1_CH7,
+        #[cfg(not(feature = "rs485"))]
         receive_dma: DMA1_CH6,
+        #[cfg(feature = "rs485")]
+        serial: USART1,
+        #[cfg(feature = "rs485")]
+        receive: PA10,
+        #[cfg(feature = "rs485")]
+        transmit: PA9,
+        #[cfg(feature = "rs485")]
+        driver_enable: PA12,
+        #[cfg(feature = "rs485")]
+        transmit_dma: DMA1_CH4,
+        #[cfg(feature = "rs485")]
+        receive_dma: DMA1_CH5,
         flash: FLASH,
     }
     bus {
@@ -56,10 +74,19 @@ pins! {
 }
 
 bind_interrupts!(pub(super) struct Interrupts {
-    DMA1_CHANNEL6 => dma::InterruptHandler<DMA1_CH6>;
-    DMA1_CHANNEL7 => dma::InterruptHandler<DMA1_CH7>;
+    #[cfg(not(feature = "rs485"))]
+    DMA1_CHANNEL6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
+    #[cfg(not(feature = "rs485"))]
+    DMA1_CHANNEL7 => dma::InterruptHandler<peripherals::DMA1_CH7>;
+    #[cfg(not(feature = "rs485"))]
+    USART2 => usart::InterruptHandler<peripherals::USART2>;
+    #[cfg(feature = "rs485")]
+    DMA1_CHANNEL4 => dma::InterruptHandler<peripherals::DMA1_CH4>;
+    #[cfg(feature = "rs485")]
+    DMA1_CHANNEL5 => dma::InterruptHandler<peripherals::DMA1_CH5>;
+    #[cfg(feature = "rs485")]
+    USART1 => usart::InterruptHandler<peripherals::USART1>;
     FLASH => flash::InterruptHandler;
-    USART2 => usart::InterruptHandler<USART2>;
 });
 
 #[cfg(not(transducer = "ratiometric"))]

@@ -5,6 +5,15 @@ use crate::firmware::hand_tips::LOADS;
 use crate::firmware::queues::{IDLE, LISTEN, REQUESTS, Waiting, alive, refuse};
 #[cfg(all(not(hand), feature = "load-tip"))]
 use crate::firmware::tip::LOADS;
+#[cfg(feature = "rs485")]
+use core::cell::RefCell;
+use embassy_stm32::usart::Error;
+#[cfg(feature = "rs485")]
+use embassy_sync::blocking_mutex::ThreadModeMutex;
+#[cfg(feature = "rs485")]
+use embassy_sync::blocking_mutex::raw::ThreadModeRawMutex;
+#[cfg(feature = "rs485")]
+use embassy_sync::signal::Signal;
 use embassy_time::with_timeout;
 use fingertip::board::{Clock, Line, SerialRx};
 #[cfg(not(hand))]
@@ -13,6 +22,9 @@ use fingertip::image;
 use fingertip::link::command;
 #[cfg(feature = "load-tip")]
 use fingertip::link::load;
+use fingertip::link::sink::FrameSink;
+#[cfg(feature = "rs485")]
+use fingertip::link::sink::Turn;
 #[cfg(all(hand, feature = "load-tip"))]
 use fingertip::link::tips::read_load;
 #[cfg(hand)]
@@ -23,16 +35,78 @@ use fingertip::link::wire::{Deframer, Encoded};
 #[cfg(not(hand))]
 const OBJECT: bool = image::HAS_OBJECT || cfg!(feature = "load-tip");
 
-/// Sends frames. Period: as they come. Deadline: a period on average (a report takes 0.5 ms on the line); when late,
-/// the queue drops its oldest, and the signal task is none the later for it.
+/// Whose turn it is on a shared line, and that it became the board's.
+#[cfg(feature = "rs485")]
+static TURN: ThreadModeMutex<RefCell<Turn>> = ThreadModeMutex::new(RefCell::new(Turn::HOSTS));
+#[cfg(feature = "rs485")]
+static GIVEN: Signal<ThreadModeRawMutex, ()> = Signal::new();
+
+/// Takes a byte of the host; it may give the board the turn.
+#[cfg(feature = "rs485")]
+fn hear(byte: u8, ends_command: bool, clock: Clock) {
+    if TURN.lock(|turn| turn.borrow_mut().hear(byte, ends_command, clock.now())) {
+        GIVEN.signal(());
+    }
+}
+
+/// A line of the board's own.
+#[cfg(not(feature = "rs485"))]
+struct Way(Line);
+
+#[cfg(not(feature = "rs485"))]
+impl FrameSink for Way {
+    type Outcome = Result<(), Error>;
+
+    fn send(&mut self, frame: &[u8]) -> impl Future<Output = Self::Outcome> {
+        self.0.write(frame)
+    }
+}
+
+/// A shared line: the serial port drives it while it sends, and listens at other times.
+#[cfg(feature = "rs485")]
+struct Way(Line, Clock);
+
+#[cfg(feature = "rs485")]
+impl FrameSink for Way {
+    type Outcome = Result<(), Error>;
+
+    fn has_turn(&mut self) -> bool {
+        TURN.lock(|turn| turn.borrow().is_boards(self.1.now()))
+    }
+
+    async fn send(&mut self, frame: &[u8]) -> Self::Outcome {
+        let sent = self.0.write(frame).await;
+        TURN.lock(|turn| turn.borrow_mut().sent(self.1.now()));
+        sent
+    }
+
+    fn end_turn(&mut self) {
+        TURN.lock(|turn| turn.borrow_mut().end());
+    }
+}
+
+/// Sends frames. Period: as they come, on a shared line as the host gives the turn. Deadline: a period on average (a report takes 0.5 ms on
+/// the line); when late, the queue drops its oldest, and the signal task is none the later for it.
 #[embassy_executor::task]
-pub(super) async fn send(mut line: Line, waiting: &'static Waiting, mut frame: &'static mut Encoded) {
+pub(super) async fn send(
+    line: Line,
+    waiting: &'static Waiting,
+    #[cfg(feature = "rs485")] clock: Clock,
+    mut frame: &'static mut Encoded,
+) {
+    #[cfg(not(feature = "rs485"))]
+    let mut way = Way(line);
+    #[cfg(feature = "rs485")]
+    let mut way = Way(line, clock);
     loop {
+        #[cfg(not(feature = "rs485"))]
         waiting.more.wait().await;
-        while waiting.frames.borrow_mut().take(&mut frame) {
-            // The line has no receiver that could refuse; a failed transfer shows as a gap in the sequence.
-            let _ = line.write(frame.as_slice()).await;
+        #[cfg(feature = "rs485")]
+        GIVEN.wait().await;
+        while way.has_turn() && waiting.frames.borrow_mut().take(&mut frame) {
+            let _ = way.send(frame.as_slice()).await;
         }
+        way.end_turn();
     }
 }
 
@@ -54,11 +128,16 @@ pub(super) async fn listen(mut serial_rx: SerialRx, clock: Clock) {
         };
         for &byte in received {
             let Some(body) = deframer.push(byte) else {
+                #[cfg(feature = "rs485")]
+                hear(byte, false, clock);
                 continue;
             };
-            if !body.is_ok_and(|body| is_taken(&body)) {
+            let is_command = body.is_ok_and(|body| is_taken(&body));
+            if !is_command {
                 refuse();
             }
+            #[cfg(feature = "rs485")]
+            hear(byte, is_command, clock);
         }
         embassy_futures::yield_now().await;
     }

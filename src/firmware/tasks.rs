@@ -98,7 +98,16 @@ async fn main(spawner: Spawner) {
     );
     let clock = board.clock;
     let waiting = queues::outbox();
-    spawner.spawn(send(board.line, waiting, SENT.take()).expect("spawned once"));
+    spawner.spawn(
+        send(
+            board.line,
+            waiting,
+            #[cfg(feature = "rs485")]
+            clock,
+            SENT.take(),
+        )
+        .expect("spawned once"),
+    );
     spawner.spawn(listen(board.serial_rx, clock).expect("spawned once"));
     #[cfg(not(feature = "load-tip"))]
     spawner.spawn(remember(store, clock).expect("spawned once"));
@@ -136,8 +145,8 @@ async fn signal(
             None => Err(Fault::ResetLoop),
         };
         let now = clock.now();
-        if now.0 >= next_feed && waiting.frames.borrow().is_empty() {
-            // All that was put there before was taken.
+        if now.0 >= next_feed && (waiting.frames.borrow().is_empty() || cfg!(feature = "rs485")) {
+            // All that was put there before was taken; on a shared line it waits for the host.
             alive(SEND, now);
         }
         if let Ok(sample) = sample {

@@ -7,6 +7,7 @@ pub mod command;
 #[cfg(feature = "load-tip")]
 pub mod load;
 pub mod outbox;
+pub mod sink;
 pub mod telemetry;
 #[cfg(tips)]
 pub mod tips;
