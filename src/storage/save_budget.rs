@@ -28,8 +28,7 @@ const TEN_YEARS: u32 = (315_576_000_000_000_u64 >> UNIT) as u32;
 
 /// From one save to the next after those at once, in units, for slots of so many records.
 const fn pause(places: u32) -> u32 {
-    // What is over pays for the saves at once.
-    let lasting = (TEN_YEARS / (2 * ENDURANCE)) / places + 1;
+    let lasting = TEN_YEARS / (2 * ENDURANCE * places - AT_ONCE) + 1;
     let slowest = (SLOWEST >> UNIT) as u32 + 1;
     if lasting > slowest { lasting } else { slowest }
 }
