@@ -278,7 +278,7 @@ pub(crate) fn assert_names_exist(line: &str, arguments: &[String]) {
             "-p" | "--package" | "--target" | "--config" => {
                 value();
             }
-            "--test" | "--bin" | "--bench" => {
+            "--test" | "--bin" | "--bench" | "--example" => {
                 let name = value();
                 let found = targets(&word[2..], name);
                 assert!(!found.is_empty(), "{line}: no {} `{name}`", &word[2..]);
