@@ -14,6 +14,9 @@
 //!
 //! The tables of a design are a constant, so the compiler folds everything but the coefficients.
 
+/// Most fraction bits of the input's unit.
+pub(crate) const MAX_FRACTION_BITS: u32 = 16;
+
 /// Powers of `s` beside 1 that a segment's sums are made of.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Powers {

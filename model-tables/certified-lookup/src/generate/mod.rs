@@ -15,7 +15,7 @@ mod shape;
 mod tally;
 mod truth;
 
-use crate::loaded::MAX_FRACTION_BITS;
+use crate::layout::MAX_FRACTION_BITS;
 use candidate::Work;
 use truth::Truth;
 
