@@ -73,8 +73,10 @@ const HELD: [Way; 7] = [
     [200.0, 0.6, 1.0],
 ];
 
-/// Most that the force may be off, percent of the peak before, of the five; and at the end of the hold, percent of the force.
+/// Most that the force may be off, percent of the peak before, of the five; the same of a tall dome whose wall is a sixth of its radius; and
+/// at the end of the hold, percent of the force.
 const MOST: [f64; 5] = [6.0, 6.0, 10.0, 8.0, 6.0];
+const MOST_TALL: [f64; 5] = [6.0, 8.0, 10.0, 8.0, 6.0];
 const LAST: f64 = 1.0;
 
 fn dome([radial, axial, wall]: [f64; 3]) -> DesignFile {
@@ -140,11 +142,13 @@ fn off(file: &DesignFile, design: &impl Design, deep: f64, ways: &[Way]) -> [f64
 
 #[test]
 fn a_wall_touched_again_is_read_within_a_few_percent_of_the_peak() {
-    for size in [
-        [9.0, 7.0, 1.0],
-        [8.0, 8.0, 0.8],
-        [10.0, 6.0, 1.0],
-        [6.0, 5.0, 0.6],
+    for (size, most) in [
+        ([9.0, 7.0, 1.0], MOST),
+        ([8.0, 8.0, 0.8], MOST),
+        ([10.0, 6.0, 1.0], MOST),
+        ([6.0, 5.0, 0.6], MOST),
+        ([8.0, 8.0, 1.5], MOST),
+        ([7.0, 9.0, 1.2], MOST_TALL),
     ] {
         let file = dome(size);
         let block = generate::from_design(file.clone())
@@ -160,7 +164,7 @@ fn a_wall_touched_again_is_read_within_a_few_percent_of_the_peak() {
         let without = found.map(|[.., without]| without);
         println!("without the share: {without:.1?} % of the peak");
         assert!(without[1] > 2.0 * of_peak[1] && without[3] > 2.0 * of_peak[3]);
-        for (found, most) in of_peak.into_iter().zip(MOST) {
+        for (found, most) in of_peak.into_iter().zip(most) {
             assert!(found < most, "{size:?}: {found}");
         }
         // What is left of the old contact is forgotten while the new one is held.

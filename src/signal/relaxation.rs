@@ -18,13 +18,15 @@
 //! `F = phi A P + (1 - phi) g * F_e` with `A = F_e / P_e`.
 //!
 //! A wall that is touched again before it has recovered is still pressed in: the contact begins with no area, at the settled pressure `P_l` where the
-//! force was last 0. There the force is less by `rho P_l / P_e`. The contact grows beyond the old one, and forgets it within seconds.
+//! force was last 0. There the force `F` is less by `rho (F + 4 A P_0) P_l / P_e`, with the pressure below rest `P_0` of then: the new contact bears at once
+//! what the fluid pulled. The contact grows beyond the old one, and forgets it within seconds. `P_l` is at most `-4 P_0`: a wall that pulls
+//! little has recovered, whatever its series says at another temperature.
 //!
 //! `kappa`, `P_2`, `phi_0`, `P_1` and `rho` belong to the design: its tables' generator fits them to a press of the solid in time.
 //!
 //! A plate cannot pull: there is no force below zero.
 //!
-//! All states are 64-bit integers. A change of pressure, of at most 2^57, is divided among the terms, and no term grows beyond it.
+//! All states are integers, those of the memory of 64 bits. A change of pressure, of at most 2^57, is divided among the terms, and no term grows beyond it.
 
 use crate::signal::design::Design;
 use crate::signal::report::Contact;
@@ -43,6 +45,8 @@ const AREA_SHIFT: u32 = 8;
 const FORCE_BITS: u32 = 16;
 /// One as a share.
 pub const WHOLE: u32 = 1 << 16;
+/// The force that is less on a wall touched again begins at `2^PULL_SHIFT` times what the fluid pulled before.
+const PULL_SHIFT: u32 = 2;
 /// Reading from the pressure of a relaxing wall.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct RelaxedReading {
@@ -71,8 +75,10 @@ pub struct Relaxing<const TERMS: usize> {
     forces: [i64; TERMS],
     /// The largest force, forgotten with the slowest term.
     peak_force: i64,
-    /// `P_l`, which a new contact forgets: counts with [`FORCE_BITS`].
-    left: i64,
+    /// `P_l`, which a new contact forgets, counts.
+    left: i32,
+    /// `2^PULL_SHIFT A P` there.
+    pull: i64,
 }
 
 /// What the tables have at an elastic pressure, between two counts.
@@ -115,6 +121,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         forces: [0; TERMS],
         peak_force: 0,
         left: 0,
+        pull: 0,
     };
 
     /// It has been at a pressure for ever.
@@ -151,14 +158,20 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         if let Some(slowest) = step.terms().last() {
             self.peak_force -= scaled(slowest.lost, self.peak_force);
         }
-        let place = i64::from(at.elastic.0) << FORCE_BITS;
-        self.left -= scaled(step.forgets, self.left);
-        if force <= 0 || place < self.left {
-            self.left = place;
+        self.left -= scaled(step.forgets, i64::from(self.left)) as i32;
+        if force <= 0 {
+            let twice = rise.0.saturating_add(rise.0);
+            self.left = self.left.max(0_i32.saturating_sub(twice.saturating_add(twice)));
+            self.pull = by_fluid << PULL_SHIFT;
         }
-        let again = part((self.left >> FORCE_BITS) as i32, at.elastic.0);
+        self.left = self.left.min(at.elastic.0);
+        let again = part(self.left, at.elastic.0);
         let less = share(((u64::from(again) * u64::from(wall.retouch.min(WHOLE))) >> 16) as u32);
-        let force = force - scaled(less, force);
+        let force = if force > 0 {
+            force - scaled(less, (force + self.pull).max(-force))
+        } else {
+            0
+        };
         let force = (force >> FORCE_BITS).clamp(0, i64::from(i32::MAX)) as i32;
         self.peak_force = self.peak_force.max(i64::from(force) << FORCE_BITS);
 

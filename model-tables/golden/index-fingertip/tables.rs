@@ -57,7 +57,7 @@ pub const RELAXATION: model_tables::material::series::WallSeries = model_tables:
     fluid_half: 925880,
     weight_gain: 20722,
     weight_half: 67294,
-    retouch: 17359,
+    retouch: 17317,
     temperature_gain: 25493,
     step: model_tables::material::series::SeriesStep {
         count: 7,

@@ -49,6 +49,10 @@ const WEIGHT: [[f64; 2]; 2] = [[-4.2, 1.5], [0.0, 2.0]];
 const SHARE: [[f64; 2]; 2] = [[-4.2, 4.2], [0.0, 1.0]];
 /// Largest share that a wall touched again may bear less.
 const MAX_RETOUCH: f64 = 0.75;
+/// Where a wall was left, and the force from which on it is less: so many times the pressure below rest, and what the fluid pulls. See
+/// the firmware's `signal::relaxation`.
+const LEFT_PULLS: f64 = 4.0;
+const PULL: f64 = 4.0;
 /// Steps of the first look, and halvings of them.
 const LOOK: u32 = 7;
 const HALVINGS: u32 = 8;
@@ -300,17 +304,18 @@ impl Press {
 
     /// Least squares of what the second press is read too high.
     fn retouch(&self, elastic: &[f64], share: [f64; 2]) -> f64 {
-        let (mut left, mut above, mut square) = (0.0, 0.0, 0.0);
+        let (mut left, mut pull, mut above, mut square) = (0.0, 0.0, 0.0, 0.0);
         let read = self.forces(elastic, share);
         for ((step, read), &elastic) in self.steps.iter().zip(read).zip(elastic) {
             left *= libm::exp(-step.seconds / LEFT_TIME);
-            left = if read > 0.0 {
-                f64::min(left, elastic)
-            } else {
-                elastic
-            };
-            if step.phase == 4 && left > 0.0 {
-                let less = read * left / elastic;
+            if read <= 0.0 {
+                left = left.max(-LEFT_PULLS * step.pressure);
+                let positive = elastic.max(1e-6 * self.end).min(self.settled.end().pressure_rise);
+                pull = PULL * self.settled.at_pressure_rise(positive).force / positive * step.pressure;
+            }
+            left = left.min(elastic);
+            if step.phase == 4 && read > 0.0 && left > 0.0 {
+                let less = f64::max(read + pull, -read) * left / elastic;
                 above += less * (read - step.truth[0]);
                 square += less * less;
             }
