@@ -76,7 +76,7 @@ const HELD: [Way; 7] = [
 /// Most that the force may be off, percent of the peak before, of the five; the same of a tall dome whose wall is a sixth of its radius; and
 /// at the end of the hold, percent of the force.
 const MOST: [f64; 5] = [6.0, 6.0, 10.0, 8.0, 6.0];
-const MOST_TALL: [f64; 5] = [6.0, 8.0, 10.0, 8.0, 6.0];
+const TALL: [f64; 5] = [6.0, 8.0, 10.0, 8.0, 6.0];
 const LAST: f64 = 1.0;
 
 fn dome([radial, axial, wall]: [f64; 3]) -> DesignFile {
@@ -148,7 +148,7 @@ fn a_wall_touched_again_is_read_within_a_few_percent_of_the_peak() {
         ([10.0, 6.0, 1.0], MOST),
         ([6.0, 5.0, 0.6], MOST),
         ([8.0, 8.0, 1.5], MOST),
-        ([7.0, 9.0, 1.2], MOST_TALL),
+        ([7.0, 9.0, 1.2], TALL),
     ] {
         let file = dome(size);
         let block = generate::from_design(file.clone())
