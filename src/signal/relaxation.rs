@@ -260,7 +260,7 @@ fn by_area(design: &impl Design, elastic: i64, at: &Lookup, rise: PressureRise) 
     let parameters = design.parameters();
     let below_count = FRACTION_BITS - parameters.pressure_fraction_bits;
     let last = i64::from(design.last_rise().0) << below_count;
-    let place = elastic.clamp(last >> AREA_SHIFT, last);
+    let place = elastic.max(last >> AREA_SHIFT).min(last);
     let force = if place == elastic {
         at.force
     } else {
@@ -269,7 +269,8 @@ fn by_area(design: &impl Design, elastic: i64, at: &Lookup, rise: PressureRise) 
     // `force / place` to 2^-15 of itself: 32 bits over 16, each shifted to the top of its word.
     let (force, place) = (force.max(1) as u64, place.max(1) as u64);
     let (up, down) = (force.leading_zeros(), place.leading_zeros());
-    let ratio = ((force << up) >> 32) as u32 / ((place << down) >> 48) as u32;
+    // Its highest bit is set, which the compiler does not see: without a way to panic the image is smaller.
+    let ratio = ((force << up) >> 32) as u32 / (((place << down) >> 48) as u32).max(1);
     // 16 or 17 bits. From a pressure with 32 bits below a pascal to a force with 16 below a micronewton: an area is below 32 768 mm2.
     let area = Factor {
         mantissa: ratio << 15,
@@ -293,7 +294,7 @@ pub fn part(of: i32, whole: i32) -> u32 {
     }
     // As many of 16 bits as the word has room for come before the division.
     let up = whole.leading_zeros().min(16);
-    ((of << up) / (whole >> (16 - up))).min(WHOLE)
+    ((of << up) / (whole >> (16 - up)).max(1)).min(WHOLE)
 }
 
 /// A share as a factor; one is the largest there is.

@@ -89,7 +89,7 @@ pub fn coefficient(
         return None;
     }
     // 2^32 * 100 over at least 500.
-    let coefficient = (i64::from(after.0) - i64::from(before.0)) * 100 / apart;
+    let coefficient = ((i64::from(after.0) - i64::from(before.0)) * 100).checked_div(apart)?;
     // In thousandths of a pascal, as the share is.
     let largest = (i64::from(to) - i64::from(from)) * LARGEST_SHARE / 1000;
     i32::try_from(coefficient).ok().filter(|coefficient| {

@@ -160,7 +160,8 @@ impl Interval {
         self.high = evident.min(self.high + air);
         let follows = travelled(limits.follows, passed, LONGEST);
         let rise = seen - self.value;
-        let followed = self.value + rise.clamp(-follows, follows);
+        // Not `clamp`, which panics where its limits are the wrong way round.
+        let followed = self.value + rise.max(-follows).min(follows);
         self.value = followed.min(evident);
         if !limits.absolute {
             // A wall that creeps back lies below its rest for a while: neither goes there.

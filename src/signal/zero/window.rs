@@ -143,7 +143,7 @@ impl Window {
         self.since = Some(time);
         let mut window = None;
         if time.0.saturating_sub(self.begun.0) >= LENGTH {
-            let samples = i64::from(self.samples);
+            let samples = i64::from(self.samples).max(1);
             window = Some(Seen {
                 level: Pressure(saturate((self.sum + samples / 2) / samples)),
                 spread: self.range.high.saturating_sub(self.range.low),
