@@ -231,12 +231,7 @@ impl Image {
             Some([folder, std::path::MAIN_SEPARATOR_STR.as_bytes().to_vec()].concat())
         });
         let mut total = 0;
-        for section in self.file()?.sections() {
-            if !matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & u64::from(object::elf::SHF_ALLOC) != 0)
-            {
-                continue;
-            }
-            let data = section.data().map_err(|error| self.malformed(error))?;
+        for data in self.loaded()? {
             for (at, _) in data.iter().enumerate() {
                 let found = folders
                     .iter()
@@ -246,6 +241,28 @@ impl Image {
             }
         }
         Ok(total)
+    }
+
+    /// Whether its flash holds a text. A source file that can panic is named there.
+    ///
+    /// # Errors
+    /// [`ImageError::Malformed`].
+    pub fn holds(&self, text: &str) -> Result<bool, ImageError> {
+        let is_in = |data: &&[u8]| data.windows(text.len()).any(|part| part == text.as_bytes());
+        Ok(self.loaded()?.iter().any(is_in))
+    }
+
+    /// The bytes of the sections that are in the chip's memory.
+    fn loaded(&self) -> Result<Vec<&[u8]>, ImageError> {
+        let file = self.file()?;
+        let mut loaded = Vec::new();
+        for section in file.sections() {
+            if matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & u64::from(object::elf::SHF_ALLOC) != 0)
+            {
+                loaded.push(section.data().map_err(|error| self.malformed(error))?);
+            }
+        }
+        Ok(loaded)
     }
 
     /// What it takes of flash and RAM.

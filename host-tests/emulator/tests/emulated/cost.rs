@@ -3,6 +3,7 @@
 use crate::{SIGNAL_PATH, firmware, firmware_for, press_hold_release, small_board, small_board_for};
 use emulator::bench::{self, RunOutcome};
 use emulator::fingertip_design::FingertipDesign;
+use emulator::image::Image;
 use emulator::record::{Recorder, Row};
 use emulator::scenario::Scenario;
 use host_tests::{assert_measured_figure, design};
@@ -94,6 +95,22 @@ fn relaxing() -> FingertipDesign {
     FingertipDesign::read(&design("index-fingertip")).expect("it is shipped")
 }
 
+/// Asserts that from a sample to a frame nothing can panic: a panic names its source file in flash. Transducers, storage and tasks are
+/// asynchronous functions, each with the compiler's own panic for a use after its end.
+fn assert_no_panic(image: &Image) {
+    let holds = |text| image.holds(text).expect("it is an image");
+    for place in [
+        "src/signal/",
+        "src/link/",
+        "src/units",
+        "src/status",
+        "model-tables/",
+    ] {
+        assert!(!holds(place), "{place} can panic");
+    }
+    assert!(holds("src/storage/"), "no panic names its source file");
+}
+
 #[test]
 fn the_image_of_a_wall_that_relaxes_is_small_on_every_board() {
     let relaxing = relaxing();
@@ -108,6 +125,7 @@ fn the_image_of_a_wall_that_relaxes_is_small_on_every_board() {
         ),
     ];
     for (label, image) in boards {
+        assert_no_panic(image);
         let size = image.size().expect("it is an image");
         // Their length is the building machine's: some 1.4 kB where the user's name is short.
         let folders = image.folder_bytes().expect("it is an image");
