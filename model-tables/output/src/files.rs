@@ -41,6 +41,13 @@ fn remove(partial: &mut Vec<PathBuf>) {
     }
 }
 
+/// Ends what one writer had on its way; what others have on theirs stays.
+fn clear(own: &[PathBuf]) {
+    let mut partial = PARTIAL.lock().unwrap_or_else(PoisonError::into_inner);
+    partial.retain(|path| !own.contains(path));
+    remove(&mut own.to_vec());
+}
+
 /// Writes one file, as [`write_all`] does.
 ///
 /// # Errors
@@ -68,7 +75,7 @@ pub fn write_durably(path: &Path, content: &[u8]) -> Result<(), Refusal> {
         .and_then(|()| fs::rename(&temporary, path))
         .and_then(|()| sync_folder(folder))
         .map_err(|error| cannot(path, &error));
-    remove(&mut PARTIAL.lock().unwrap_or_else(PoisonError::into_inner));
+    clear(&[temporary]);
     written
 }
 
@@ -110,7 +117,7 @@ pub fn expect_folder(folder: &Path, names: &[&str]) -> Result<(), Refusal> {
         .unwrap_or_else(PoisonError::into_inner)
         .push(probe.clone());
     let written = fs::write(&probe, PROBE).map_err(|error| cannot(there, &error));
-    remove(&mut PARTIAL.lock().unwrap_or_else(PoisonError::into_inner));
+    clear(&[probe]);
     written
 }
 
@@ -185,10 +192,11 @@ pub fn write_all<N: AsRef<str>>(folder: &Path, contents: &[(N, Vec<u8>)]) -> Res
             (folder.join(temporary), folder.join(name))
         })
         .collect();
+    let temporaries: Vec<PathBuf> = places.iter().map(|(temporary, _)| temporary.clone()).collect();
     PARTIAL
         .lock()
         .unwrap_or_else(PoisonError::into_inner)
-        .extend(places.iter().map(|(temporary, _)| temporary.clone()));
+        .extend_from_slice(&temporaries);
     let written = places
         .iter()
         .zip(contents)
@@ -196,7 +204,7 @@ pub fn write_all<N: AsRef<str>>(folder: &Path, contents: &[(N, Vec<u8>)]) -> Res
             fs::write(temporary, content).map_err(|error| cannot(temporary, &error))
         })
         .and_then(|()| move_in(&places));
-    remove(&mut PARTIAL.lock().unwrap_or_else(PoisonError::into_inner));
+    clear(&temporaries);
     written
 }
 
@@ -241,6 +249,29 @@ mod tests {
         assert!(moved.is_err());
         assert_eq!(fs::read_to_string(folder.join("a")).expect("moved in"), "new");
         assert!(!folder.join("mark").exists(), "an old mark beside a new file");
+        fs::remove_dir_all(&folder).expect("cleared away");
+    }
+
+    /// Writers side by side in one program: none takes away what another has on its way.
+    #[test]
+    fn writers_side_by_side_do_not_disturb_each_other() {
+        let folder = scratch("many");
+        std::thread::scope(|scope| {
+            for writer in 0..4 {
+                let own = folder.join(writer.to_string());
+                scope.spawn(move || {
+                    for round in 0..200 {
+                        expect_folder(&own, &["a"]).expect("room");
+                        let text = format!("{writer} {round}").into_bytes();
+                        write_all(&own, &[("a", text.clone()), ("mark", text)]).expect("a set");
+                    }
+                });
+            }
+        });
+        for writer in 0..4 {
+            let text = fs::read_to_string(folder.join(writer.to_string()).join("mark")).expect("the last");
+            assert_eq!(text, format!("{writer} 199"));
+        }
         fs::remove_dir_all(&folder).expect("cleared away");
     }
 

@@ -350,15 +350,15 @@ fn values_and_tables_out_of_their_ranges_are_refused_by_name() {
     assert_eq!(word(116, 4), of_constants("kind"));
     let tables = 128;
     for (at, value, field) in [
-        (0, 17, "pressure_fraction_bits"),
+        (0, 17, "fraction_bits"),
         (4, 0, "maximum"),
         (4, i32::MIN, "maximum"),
         (8, 0, "bias"),
         (12, 3, "octaves"),
         (16, 4, "halvings"),
         (28, 27, "first_index"),
-        (32, 32, "force_shift"),
-        (36, -1, "indentation_shift"),
+        (32, 32, "first shift"),
+        (36, -1, "second shift"),
     ] {
         let expected = BlockError::Tables(TablesError::Layout(field));
         assert_eq!(word(tables + at, value), expected, "{value} at {at}");

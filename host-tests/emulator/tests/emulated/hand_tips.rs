@@ -57,6 +57,8 @@ const END: f64 = 1.7;
 /// The ball that a tip touches from then on, micrometres, and when it is told.
 const BALL: i32 = 8_000;
 const TOLD: f64 = 1.4;
+/// So long around it a report may be of either: its instant lies before the board's work on it, seconds.
+const EITHER: f64 = 5e-3;
 
 /// The slots of the tips, from [`BASE`] on.
 fn slots() -> [[Slot; 2]; TIPS] {
@@ -277,7 +279,7 @@ fn five_kinds_of_tips_pressed_at_once_are_each_right() {
     assert_eq!(hand.gaps, Vec::<String>::new());
     assert!(hand.broken.is_empty() && hand.lost == 0, "{:?}", hand.broken);
     let mut worst = [0.0_f64; TIPS];
-    let before = held(hand).filter(|instant| instant.time < TOLD);
+    let before = held(hand).filter(|instant| instant.time < TOLD - EITHER);
     for (count, instant) in before.enumerate() {
         for (tip, plant) in plants.iter().enumerate() {
             let found = instant.reports[tip].outcome;
@@ -381,10 +383,10 @@ fn one_tip_of_a_hand_is_told_what_it_touches() {
             let [low, high] = [0, (1 << shift(instant)) - 1].map(|add| design.lookup(rise(add)).force.0);
             (low..=high).contains(&found.force.0)
         };
-        if instant.time < TOLD {
+        if instant.time < TOLD - EITHER {
             before += 1;
             assert!(within(&plate) && !within(&ball), "{found:?}");
-        } else if instant.time > TOLD + 5e-3 {
+        } else if instant.time > TOLD + EITHER {
             after += 1;
             assert!(within(&ball) && !within(&plate), "{found:?}");
         }
@@ -582,9 +584,13 @@ fn an_image_of_a_hand_has_the_objects_of_its_designs() {
     let mut ball = plate;
     ball.touch(Touched::Ball(BALL)).expect("it has tables of that");
     let mut seen = 0;
-    for instant in held(&hand).filter(|instant| (instant.time - TOLD).abs() > 5e-3) {
+    for instant in held(&hand).filter(|instant| (instant.time - TOLD).abs() > EITHER) {
         seen += 1;
-        let design = if instant.time < TOLD { &plate } else { &ball };
+        let design = if instant.time < TOLD - EITHER {
+            &plate
+        } else {
+            &ball
+        };
         let found = instant.reports[1].outcome.expect("a reading");
         let shift = plate.parameters().pressure_fraction_bits - u32::from(instant.pressure_fraction_bits);
         let [low, high] = [0, (1 << shift) - 1].map(|add| {
