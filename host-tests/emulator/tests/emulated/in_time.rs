@@ -7,6 +7,8 @@ use emulator::fingertip_design::{FingertipDesign, workspace};
 use emulator::record::{Recorder, Row};
 use emulator::scenario::Scenario;
 use fingertip::link::command::{CommandKind, Outcome};
+use fingertip::status::Status;
+use model_tables::units::PressureRise;
 
 /// A shipped scenario with its own design.
 fn run(name: &str) -> Run {
@@ -109,4 +111,57 @@ fn an_object_is_read_better_when_the_chip_is_told() {
         "told {told} %, taken for a plate {cup} %"
     );
     nothing_else_happened(&run);
+}
+
+/// Nobody names the object: the truth is in the band that the board sends, beside three standard deviations; when it is named, there is
+/// no band.
+#[test]
+fn the_truth_of_an_unknown_object_is_in_the_band_on_the_line() {
+    let run = run("unknown");
+    nothing_else_happened(&run);
+    let bands = &run.record.bands;
+    let [first, .., last] = &bands[..] else {
+        panic!("{bands:?}");
+    };
+    assert!(bands.iter().all(|band| band.band == first.band));
+    // A band each second while nothing is named, which is at 4.2 s.
+    assert!(bands.len() >= 4 && last.time.0 < 4_300_000, "{bands:?}");
+    let bits = u32::from(first.pressure_fraction_bits);
+    let mut judged = [0; 3];
+    for row in run.record.rows.iter().filter(|row| row.status == Status::Ok) {
+        let phase = run.plant.scenario().phase_at(row.time);
+        let objects = ["plate", "ball of 8 mm", "ball of 20 mm"];
+        let Some(object) = objects.iter().position(|object| *object == phase) else {
+            continue;
+        };
+        let (Some(read), Some(sigma)) = (row.reported, row.sigma) else {
+            continue;
+        };
+        let Some(band) = first
+            .band
+            .at(PressureRise::from_pascals(read.pressure_rise, bits))
+        else {
+            continue;
+        };
+        judged[object] += 1;
+        for (read, sigma, truth, ends) in [
+            (read.force, sigma.force, row.truth.force, band.force),
+            (
+                read.indentation,
+                sigma.indentation,
+                row.truth.indentation,
+                band.indentation,
+            ),
+        ] {
+            let [least, most] = ends.map(|end| read * (1.0 + 1e-3 * f64::from(end)));
+            // The filter lags behind a ramp by a millisecond or two.
+            let room = 3.0 * sigma + 0.01 * read;
+            assert!(
+                (least - room..=most + room).contains(&truth),
+                "{phase} at {:.3} s: {read}, {truth}, {band:?}",
+                row.time
+            );
+        }
+    }
+    assert!(judged.iter().all(|count| *count > 500), "{judged:?}");
 }
