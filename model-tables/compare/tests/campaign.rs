@@ -98,3 +98,12 @@ fn grasps_in_time_are_read_better_by_a_chip_that_is_told_and_within_the_band_by_
     // What no longer touches is not felt.
     assert!(tally.free()[1] < 2.0, "{:?}", tally.free());
 }
+
+/// Thin, tall walls whose 24 elements are off by two thirds of the reading and more: no number is stated for that.
+#[test]
+fn an_error_beyond_measure_is_stated_as_not_known() {
+    for index in [350, 1218] {
+        let judged = solids::judge(index);
+        assert_eq!(judged.verdict, solids::SolidVerdict::NotKnown, "{judged:?}");
+    }
+}

@@ -39,7 +39,7 @@ const OF_THE_JUDGE: f64 = 6e-3;
 pub enum SolidVerdict {
     /// Every way gives the same bits, and the stated error covers that of the judge.
     Agrees,
-    /// The same, and a finer mesh has no such state: the error is stated as not known.
+    /// The same, and a finer mesh has no such state, or is off by too much: the error is stated as not known.
     NotKnown,
     /// It has no rest state, for this reason.
     NoRest(&'static str),
@@ -171,6 +171,7 @@ pub fn judge(index: u64) -> JudgedSolid {
         .map(|truth| wanted.distance(&in_list, &truth));
     let stated = MeshError::of(&design, ASKED, &in_list)
         .ok()
+        .filter(MeshError::is_known)
         .map(|error| error.bound);
     judged.verdict = match (stated, found) {
         (Some(stated), Some(found)) => {
