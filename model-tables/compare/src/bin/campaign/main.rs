@@ -11,7 +11,8 @@ use designs::MembraneArguments;
 use model_tables::design_file::DesignFile;
 use objects::{BlendArguments, CostArguments, ObjectArguments, PlateArguments};
 use std::error::Error;
-use std::path::PathBuf;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Long seeded campaigns.
@@ -213,28 +214,50 @@ fn judge_lives(arguments: &LivesArguments) -> bool {
     all.wrong == all.replaced
 }
 
-/// A table for each design; whether the solid found the states of most scenes.
-fn judge_grasps(arguments: &GraspArguments) -> Result<bool, Box<dyn Error>> {
+/// A design of a file; `does` is what the campaign does with objects of its own.
+fn without_object(file: &Path, does: &str) -> Result<DesignFile, Box<dyn Error>> {
+    let design = DesignFile::read(file)?;
+    if design.object.is_some() {
+        return Err(format!(
+            "{}: [object] is given: leave it out, the campaign {does}",
+            file.display()
+        )
+        .into());
+    }
+    Ok(design)
+}
+
+/// A table for each design, of what `run` makes of it; whether each is kept.
+fn grasp_each<T: Display>(
+    files: &[PathBuf],
+    does: &str,
+    run: impl Fn(&GraspedTip) -> T,
+    is_kept: impl Fn(&T) -> bool,
+) -> Result<bool, Box<dyn Error>> {
     let mut kept = true;
-    for (number, file) in arguments.design.iter().enumerate() {
-        let design = DesignFile::read(file)?;
-        if design.object.is_some() {
-            return Err(format!(
-                "{}: [object] is given: leave it out, the campaign grasps objects of its own",
-                file.display()
-            )
-            .into());
-        }
-        let tip = GraspedTip::new(&design, None)?;
-        let tally = tip.run(arguments.seed, arguments.scenes, arguments.worlds, |done| {
-            eprint!("\r{done} of {} scenes", arguments.scenes);
-        });
+    for (number, file) in files.iter().enumerate() {
+        let design = without_object(file, does)?;
+        let tally = run(&GraspedTip::new(&design, None)?);
         eprintln!();
         if number > 0 {
             println!();
         }
         print!("### {}\n\n{tally}", design.name);
-        kept &= tally.scenes > tally.unsolved();
+        kept &= is_kept(&tally);
     }
     Ok(kept)
+}
+
+/// A table for each design; whether the solid found the states of most scenes.
+fn judge_grasps(arguments: &GraspArguments) -> Result<bool, Box<dyn Error>> {
+    grasp_each(
+        &arguments.design,
+        "grasps objects of its own",
+        |tip| {
+            tip.run(arguments.seed, arguments.scenes, arguments.worlds, |done| {
+                eprint!("\r{done} of {} scenes", arguments.scenes);
+            })
+        },
+        |tally| tally.scenes > tally.unsolved(),
+    )
 }

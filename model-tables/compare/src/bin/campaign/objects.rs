@@ -1,8 +1,8 @@
 //! Campaigns of what touches: the band of an unknown object, the cost of a ball.
 
+use crate::{grasp_each, without_object};
 use clap::Args;
 use compare::campaign::blends::{self, page};
-use compare::campaign::grasps::GraspedTip;
 use compare::campaign::object_cost;
 use compare::campaign::objects::{self, BandTally, ObjectWorld};
 use model_tables::design_file::DesignFile;
@@ -31,14 +31,7 @@ pub(super) struct ObjectArguments {
 
 /// Whether 99 % of the objects lay in the band, of the plate's tables and of those for an unknown object.
 pub(super) fn judge_objects(arguments: &ObjectArguments) -> Result<bool, Box<dyn Error>> {
-    let design = DesignFile::read(&arguments.design)?;
-    if design.object.is_some() {
-        return Err(format!(
-            "{}: [object] is given: leave it out, the campaign presses objects of its own",
-            arguments.design.display()
-        )
-        .into());
-    }
+    let design = without_object(&arguments.design, "presses objects of its own")?;
     let world = ObjectWorld::solve(&design, |done| eprint!("\r{} balls solved", done + 1))?;
     eprintln!();
     let mut kept = true;
@@ -173,26 +166,14 @@ pub(super) struct PlateArguments {
 
 /// A table for each design; whether the solid found the states of most scenes.
 pub(super) fn plates(arguments: &PlateArguments) -> Result<bool, Box<dyn Error>> {
-    let mut kept = true;
-    for (number, file) in arguments.design.iter().enumerate() {
-        let design = DesignFile::read(file)?;
-        if design.object.is_some() {
-            return Err(format!(
-                "{}: [object] is given: leave it out, the campaign grasps plates",
-                file.display()
-            )
-            .into());
-        }
-        let tip = GraspedTip::new(&design, None)?;
-        let tally = tip.run_plates(arguments.seed, arguments.scenes, arguments.worlds, |done| {
-            eprint!("\r{done} of {} scenes", arguments.scenes);
-        });
-        eprintln!();
-        if number > 0 {
-            println!();
-        }
-        print!("### {}\n\n{tally}", design.name);
-        kept &= arguments.scenes > 2 * tally.unsolved;
-    }
-    Ok(kept)
+    grasp_each(
+        &arguments.design,
+        "grasps plates",
+        |tip| {
+            tip.run_plates(arguments.seed, arguments.scenes, arguments.worlds, |done| {
+                eprint!("\r{done} of {} scenes", arguments.scenes);
+            })
+        },
+        |tally| arguments.scenes > 2 * tally.unsolved,
+    )
 }
