@@ -139,19 +139,19 @@ pub fn tables_with(
     resolution: f64,
     beside: &Beside,
 ) -> Result<Certified, NoTables> {
-    let goal = goal(accuracy);
-    let attainable = certified_lookup::generate::attainable(curve, curve_point(end), &goal, resolution);
-    let (made, (object, feedback)) = tables_that(curve, curve_point(end), &goal, resolution, |tables| {
-        let object = match &beside.objects {
-            None => None,
-            Some(objects) => Some(objects.tables(tables, end, &attainable)?),
-        };
-        let feedback = match &beside.feedback {
-            None => None,
-            Some(feedback) => Some(feedback.tables(tables, end.pressure_rise, &attainable)?),
-        };
-        Some((object, feedback))
-    })?;
+    let asked = goal(accuracy);
+    let (made, (object, feedback)) =
+        tables_that(curve, curve_point(end), &asked, resolution, |tables, goal| {
+            let object = match &beside.objects {
+                None => None,
+                Some(objects) => Some(objects.tables(tables, end, goal)?),
+            };
+            let feedback = match &beside.feedback {
+                None => None,
+                Some(feedback) => Some(feedback.tables(tables, end.pressure_rise, goal)?),
+            };
+            Some((object, feedback))
+        })?;
     Ok(Certified {
         tables: made.tables,
         certificate: made.proof.into(),

@@ -136,11 +136,12 @@ pub fn tables(
     goal: &AccuracyGoal,
     resolution: f64,
 ) -> Result<ProvenTables, NoTables> {
-    Ok(tables_that(curve, end, goal, resolution, |_| Some(()))?.0)
+    Ok(tables_that(curve, end, goal, resolution, |_, _| Some(()))?.0)
 }
 
 /// The same, with a condition of one's own: of tables that meet the accuracy the first for which `accept` has an answer. For
-/// instance that further curves have tables of the same layout ([`beside`]).
+/// instance that further curves have tables of the same layout ([`beside`]). It is given the accuracy that the tables are held to:
+/// that of [`attainable`].
 ///
 /// # Errors
 /// [`NoTables`], with the numbers.
@@ -149,12 +150,12 @@ pub fn tables_that<T>(
     end: CurvePoint,
     goal: &AccuracyGoal,
     resolution: f64,
-    mut accept: impl FnMut(&OwnedTables) -> Option<T>,
+    mut accept: impl FnMut(&OwnedTables, &AccuracyGoal) -> Option<T>,
 ) -> Result<(ProvenTables, T), NoTables> {
     let resolvable = resolvable_percent(curve, end, goal, resolution);
     let goal = &held_to(goal, resolvable);
     let found = search(curve, end, goal, resolution, |tables, truth| {
-        let accepted = accept(tables)?;
+        let accepted = accept(tables, goal)?;
         let proof = certify::certify(tables, curve, truth, goal).filter(Proof::holds)?;
         Some((proof, accepted))
     })?;
