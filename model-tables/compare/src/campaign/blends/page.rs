@@ -140,8 +140,7 @@ pub fn svg(dome: &DomeBlends) -> String {
         .collect();
     let mut heights: Vec<f64> = ends.iter().map(|end| end[1] + 4.0).collect();
     spread(&mut heights, 16.0, [TOP + 8.0, bottom]);
-    for (way, (end, y)) in WAYS.iter().zip(ends.iter().zip(heights)) {
-        let color = COLORS[WAYS.iter().position(|other| other == way).unwrap_or(0)];
+    for ((way, color), (end, y)) in WAYS.iter().zip(COLORS).zip(ends.iter().zip(heights)) {
         let x = LEFT + SIZE[0] + 10.0;
         drawing.line([end[0] + 2.0, end[1]], [x - 2.0, y - 4.0], color, 0.6);
         drawing.text([x, y], Anchor::Start, 12.0, color, &way.to_string());
