@@ -39,6 +39,47 @@ fn last(design: &Design, elements: Elements, indentations: &[f64]) -> [f64; 2] {
     found
 }
 
+/// A very thin, prolate dome, whose contact is an element wide: on 2 x 24 elements it ends early, and has a gap before that.
+const VERY_THIN: Design = Design {
+    membrane: Membrane {
+        radial_semi_axis: 9.578_976_870_304_453e-3,
+        axial_semi_axis: 18.080_290_426_147_443e-3,
+        thickness: 0.174_096_935_837_935_46e-3,
+    },
+    law: Law::MooneyRivlin {
+        c1: 129_696.251_442_141_69,
+        c2: 81_791.877_541_738_53,
+    },
+    ..THIN
+};
+
+/// Each of 75 indentations up to where 2 x 24 elements end is found on 2 x 40; what 2 x 24 lack is refused, and the refusal names the remedy.
+#[test]
+fn a_state_that_a_mesh_lacks_is_refused_with_the_remedy() {
+    let found = |along: usize| {
+        let mut press = Press::new(&VERY_THIN, Elements { through: 2, along }).expect("a rest state");
+        (1..=75)
+            .map(|k| press.contact_at(1e-5 * f64::from(k)))
+            .collect::<Vec<_>>()
+    };
+    assert!(found(40).iter().all(Result::is_ok));
+    let refused: Vec<String> = found(24)
+        .into_iter()
+        .filter_map(|found| Some(found.err()?.to_string()))
+        .collect();
+    let lost = refused
+        .iter()
+        .filter(|error| error.contains("was not found"))
+        .count();
+    assert!((1..10).contains(&lost), "{refused:?}");
+    assert!(
+        refused
+            .iter()
+            .all(|error| error.contains("model.along") || error.contains("where the press ends")),
+        "{refused:?}"
+    );
+}
+
 /// Alone, in lists up and down, and by half steps: the same bits; and on finer meshes the same branch. By small steps, by an earlier solver
 /// that took 288 of them: 23.27 to 23.34 Pa on 2 x 24 to 3 x 96 elements.
 #[test]

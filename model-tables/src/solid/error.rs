@@ -90,7 +90,10 @@ impl fmt::Display for SolidError {
                 asked,
                 reached,
                 failure,
-            } => refuse_unsolved(f, asked, reached, &failure),
+            } => {
+                refuse_unsolved(f, asked, reached, &failure)?;
+                f.write_str("; more elements along the wall (model.along) may have it")
+            }
         }
     }
 }

@@ -47,7 +47,9 @@ pub enum SolidVerdict {
     DependsOnTheWay,
     /// The judge finds more than the stated error.
     Silent,
-    /// A state before the end of the press was not found, or the end is no state.
+    /// A state before the end of the press was not found and is refused; the judge has it.
+    NotOnThisMesh,
+    /// The same, and the judge does not have it either, or the end is no state.
     Lost,
 }
 
@@ -140,7 +142,13 @@ pub fn judge(index: u64) -> JudgedSolid {
     judged.ends_by = limit.ends_by.word();
     let deepest = (DEPTH * design.membrane.axial_semi_axis).min(limit.indentation);
     let depths = PARTS.map(|part| part * deepest);
+    let by_judge = Press::new(&design, JUDGE)
+        .ok()
+        .and_then(|mut press| list(&mut press, &depths).ok());
     let Ok(in_list) = list(&mut rest.clone(), &depths) else {
+        if by_judge.is_some() {
+            judged.verdict = SolidVerdict::NotOnThisMesh;
+        }
         return judged;
     };
     let alone: Result<Vec<Contact>, SolidError> = depths
@@ -165,10 +173,7 @@ pub fn judge(index: u64) -> JudgedSolid {
         from: FROM,
         deepest,
     };
-    let found = Press::new(&design, JUDGE)
-        .ok()
-        .and_then(|mut press| list(&mut press, &depths).ok())
-        .map(|truth| wanted.distance(&in_list, &truth));
+    let found = by_judge.map(|truth| wanted.distance(&in_list, &truth));
     let stated = MeshError::of(&design, ASKED, &in_list)
         .ok()
         .filter(MeshError::is_known)
