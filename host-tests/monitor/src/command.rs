@@ -1,6 +1,6 @@
 //! `designer monitor`: live readings of a board in a terminal, or as rows in a pipe.
 use crate::keys::{KeyAction, Keyboard};
-use crate::link::{Address, BAUD, Link, LinkEvent};
+use crate::link::{Address, BAUD, Link, LinkEvent, SILENCE, silence};
 use crate::output::capture::Capture;
 use crate::output::rows::{Form, Writer};
 use crate::output::whole::{RowFile, RowOutput};
@@ -43,6 +43,9 @@ struct Arguments {
     /// Speed of the serial port, bits a second
     #[arg(long, value_name = "BAUD", default_value_t = BAUD)]
     baud: u32,
+    /// Of a shared line (RS-485, firmware with the feature rs485): give the board the turn after so many milliseconds of silence
+    #[arg(long, value_name = "MS", num_args = 0..=1, require_equals = true, default_missing_value = SILENCE, value_parser = silence, conflicts_with = "replay")]
+    poll: Option<Duration>,
     /// For a hand: number or name of the tip to show and log
     #[arg(long, value_name = "TIP", default_value = "0")]
     tip: String,
@@ -193,7 +196,10 @@ fn run(arguments: &Arguments) -> Result<ExitCode, String> {
             let name = format!("{path} at {} times its pace", replay.speed());
             (Source::Replay(replay), name)
         }
-        (None, Some(address)) => (Source::Link(Link::start(address.clone())), address.to_string()),
+        (None, Some(address)) => (
+            Source::Link(Link::start(address.clone(), arguments.poll)),
+            address.to_string(),
+        ),
         (None, None) => return Err("there is no board to listen to".to_owned()),
     };
     let watch = Watch {

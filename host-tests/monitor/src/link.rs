@@ -1,15 +1,19 @@
-//! The bytes of a board, both ways, and the connection again when it is lost.
+//! The bytes of a board, both ways, and the connection again when it is lost. On a shared line the host gives the board its turns.
 
+use fingertip::link::sink::Turn;
+use fingertip::link::wire::MAXIMUM_FRAME;
 use std::fmt;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs as _};
 use std::str::FromStr;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, TryRecvError, channel, sync_channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Speed of the board's serial port, bits a second.
 pub const BAUD: u32 = 921_600;
+/// `--poll` alone, milliseconds: a board that reports each millisecond is asked each sixth, before its eighth report.
+pub const SILENCE: &str = "3";
 /// How long a read waits for bytes.
 const PATIENCE: Duration = Duration::from_millis(20);
 /// How long a connection may take.
@@ -22,6 +26,13 @@ const WAITING: usize = 1024;
 const BUFFER: usize = 4096;
 /// From a lost connection to the next try.
 const RETRY: Duration = Duration::from_millis(500);
+
+/// How long a polled board may say nothing: it greets once a second.
+const UNANSWERED: Duration = Duration::from_millis(2500);
+/// Most bytes of a board's turn.
+const LONGEST_TURN: usize = Turn::FRAMES as usize * MAXIMUM_FRAME;
+/// An empty frame: the host has nothing to say, and gives the turn.
+const POLL: [u8; 1] = [0];
 
 /// Where a board is.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -70,15 +81,27 @@ impl fmt::Display for Address {
     }
 }
 
+/// The value of `--poll`: milliseconds of silence after which the host gives the turn.
+///
+/// # Errors
+/// It is no number from [`Turn::QUIET`] to a second.
+pub fn silence(text: &str) -> Result<Duration, String> {
+    text.parse()
+        .ok()
+        .filter(|silence| (1e-3 * Turn::QUIET as f64..=1000.0).contains(silence))
+        .map(|silence| Duration::from_secs_f64(1e-3 * silence))
+        .ok_or_else(|| "not a number of milliseconds from 1 to 1000".to_owned())
+}
+
 /// Both ways of a wire.
 trait Wire: Read + Write + Send {}
 impl<T: Read + Write + Send> Wire for T {}
 
 impl Address {
-    fn open(&self) -> io::Result<Box<dyn Wire>> {
+    fn open(&self, patience: Duration) -> io::Result<Box<dyn Wire>> {
         match self {
             Self::Serial { port, baud } => {
-                let port = serialport::new(port, *baud).timeout(PATIENCE).open()?;
+                let port = serialport::new(port, *baud).timeout(patience).open()?;
                 Ok(Box::new(port))
             }
             Self::Tcp(address) => {
@@ -86,7 +109,7 @@ impl Address {
                 for address in address.to_socket_addrs()? {
                     match TcpStream::connect_timeout(&address, CONNECTING) {
                         Ok(stream) => {
-                            stream.set_read_timeout(Some(PATIENCE))?;
+                            stream.set_read_timeout(Some(patience))?;
                             stream.set_write_timeout(Some(WRITING))?;
                             stream.set_nodelay(true)?;
                             return Ok(Box::new(stream));
@@ -107,7 +130,7 @@ pub enum LinkEvent {
     Connected,
     /// Bytes came.
     Bytes(Vec<u8>),
-    /// It is not connected, and why; it will try again.
+    /// It is not connected, or a polled board does not answer, and why; it will try again.
     Lost(String),
 }
 
@@ -119,11 +142,12 @@ pub struct Link {
 }
 
 impl Link {
-    /// Connects in the background, again and again.
-    pub fn start(address: Address) -> Self {
+    /// Connects in the background, again and again. `poll`: the line is shared (RS-485); the host gives the turn again after so long a
+    /// silence, at least [`Turn::QUIET`] and what the port holds bytes back for. `None`: the line is the board's own, and it sends unasked.
+    pub fn start(address: Address, poll: Option<Duration>) -> Self {
         let (say, events) = sync_channel(WAITING);
         let (outgoing, to_send) = channel();
-        thread::spawn(move || keep(&address, &say, &to_send));
+        thread::spawn(move || keep(&address, poll, &say, &to_send));
         Self { events, outgoing }
     }
 
@@ -132,7 +156,8 @@ impl Link {
         self.events.recv_timeout(within).ok()
     }
 
-    /// Sends bytes; those sent while there is no connection are lost, as a board that is off loses them.
+    /// Sends bytes, of a shared line one frame at a time; those sent while there is no connection are lost, as a board that is off loses
+    /// them.
     pub fn send(&self, bytes: &[u8]) {
         // Its thread ends only after this.
         let _ = self.outgoing.send(bytes.to_vec());
@@ -140,15 +165,20 @@ impl Link {
 }
 
 /// Keeps the connection until nobody listens.
-fn keep(address: &Address, say: &SyncSender<LinkEvent>, to_send: &Receiver<Vec<u8>>) {
+fn keep(address: &Address, poll: Option<Duration>, say: &SyncSender<LinkEvent>, to_send: &Receiver<Vec<u8>>) {
+    let patience = poll.map_or(PATIENCE, |quiet| quiet.min(PATIENCE));
     loop {
-        let reason = match address.open() {
+        let reason = match address.open(patience) {
             Ok(mut wire) => {
                 while to_send.try_recv().is_ok() {}
                 if say.send(LinkEvent::Connected).is_err() {
                     return;
                 }
-                match carry(wire.as_mut(), say, to_send) {
+                let carried = match poll {
+                    None => carry(wire.as_mut(), say, to_send),
+                    Some(quiet) => take_turns(wire.as_mut(), quiet, say, to_send),
+                };
+                match carried {
                     Ok(()) => return,
                     Err(error) => error.to_string(),
                 }
@@ -162,36 +192,92 @@ fn keep(address: &Address, say: &SyncSender<LinkEvent>, to_send: &Receiver<Vec<u
     }
 }
 
+/// Bytes that are there, none if none came in the wire's patience.
+fn read(wire: &mut dyn Wire, buffer: &mut [u8]) -> io::Result<usize> {
+    match wire.read(buffer) {
+        Ok(0) => Err(io::Error::new(
+            ErrorKind::UnexpectedEof,
+            "the other end closed the connection",
+        )),
+        Err(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted
+            ) =>
+        {
+            Ok(0)
+        }
+        read => read,
+    }
+}
+
 /// Carries bytes until the wire breaks, or nobody listens.
 fn carry(wire: &mut dyn Wire, say: &SyncSender<LinkEvent>, to_send: &Receiver<Vec<u8>>) -> io::Result<()> {
     let mut buffer = [0; BUFFER];
     loop {
-        match wire.read(&mut buffer) {
-            Ok(0) => {
-                return Err(io::Error::new(
-                    ErrorKind::UnexpectedEof,
-                    "the other end closed the connection",
-                ));
-            }
-            Ok(count) => {
-                if say.send(LinkEvent::Bytes(buffer[..count].to_vec())).is_err() {
-                    return Ok(());
-                }
-            }
-            Err(error)
-                if matches!(
-                    error.kind(),
-                    ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted
-                ) => {}
-            Err(error) => return Err(error),
+        let count = read(wire, &mut buffer)?;
+        if count > 0 && say.send(LinkEvent::Bytes(buffer[..count].to_vec())).is_err() {
+            return Ok(());
         }
         loop {
-            match to_send.recv_timeout(Duration::ZERO) {
+            match to_send.try_recv() {
                 Ok(bytes) => wire.write_all(&bytes)?,
-                Err(RecvTimeoutError::Timeout) => break,
-                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+                Err(TryRecvError::Empty) => break,
+                Err(TryRecvError::Disconnected) => return Ok(()),
             }
         }
+    }
+}
+
+/// The host's end of a shared line: a command or a poll gives the board the turn, which is over when it is quiet. Until the wire breaks,
+/// or nobody listens.
+fn take_turns(
+    wire: &mut dyn Wire,
+    quiet: Duration,
+    say: &SyncSender<LinkEvent>,
+    to_send: &Receiver<Vec<u8>>,
+) -> io::Result<()> {
+    let mut buffer = [0; BUFFER];
+    let (mut answered, mut is_silent) = (Instant::now(), false);
+    loop {
+        // Also before the first turn: another program may have given the board one.
+        let (mut heard, mut came) = (Instant::now(), 0);
+        while heard.elapsed() < quiet {
+            let count = read(wire, &mut buffer)?;
+            if count == 0 {
+                continue;
+            }
+            heard = Instant::now();
+            came += count;
+            if came > LONGEST_TURN {
+                return Err(io::Error::other(
+                    "the board does not stop sending, so its line is not a shared one: leave --poll out",
+                ));
+            }
+            if std::mem::take(&mut is_silent) && say.send(LinkEvent::Connected).is_err()
+                || say.send(LinkEvent::Bytes(buffer[..count].to_vec())).is_err()
+            {
+                return Ok(());
+            }
+        }
+        if came > 0 {
+            answered = heard;
+        } else if !is_silent && answered.elapsed() > UNANSWERED {
+            is_silent = true;
+            let reason = format!(
+                "no answer to polls for {} s; see that the board has power, and firmware with the feature rs485",
+                UNANSWERED.as_secs_f64()
+            );
+            if say.send(LinkEvent::Lost(reason)).is_err() {
+                return Ok(());
+            }
+        }
+        match to_send.try_recv() {
+            Ok(bytes) => wire.write_all(&bytes)?,
+            Err(TryRecvError::Empty) => wire.write_all(&POLL)?,
+            Err(TryRecvError::Disconnected) => return Ok(()),
+        }
+        wire.flush()?;
     }
 }
 
@@ -231,7 +317,7 @@ mod tests {
     fn a_link_carries_both_ways_and_comes_back() {
         let server = TcpListener::bind("127.0.0.1:0").expect("a port");
         let address = server.local_addr().expect("bound");
-        let link = Link::start(Address::Tcp(address.to_string()));
+        let link = Link::start(Address::Tcp(address.to_string()), None);
         for round in 0..2_u8 {
             let (mut peer, _) = server.accept().expect("it connects");
             assert_eq!(link.next(LONG), Some(LinkEvent::Connected));
@@ -251,12 +337,13 @@ mod tests {
         let free = TcpListener::bind("127.0.0.1:0").expect("a port");
         let address = free.local_addr().expect("bound");
         drop(free);
-        let link = Link::start(Address::Tcp(address.to_string()));
+        let link = Link::start(Address::Tcp(address.to_string()), None);
         assert!(matches!(link.next(LONG), Some(LinkEvent::Lost(reason)) if !reason.is_empty()));
-        let link = Link::start(Address::Serial {
+        let port = Address::Serial {
             port: "/dev/no-such-port".to_owned(),
             baud: BAUD,
-        });
+        };
+        let link = Link::start(port, None);
         assert!(matches!(link.next(LONG), Some(LinkEvent::Lost(reason)) if !reason.is_empty()));
     }
 }

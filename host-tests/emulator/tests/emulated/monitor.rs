@@ -76,7 +76,7 @@ fn the_monitor_shows_the_force_that_presses_and_a_refused_tare() {
         bench::run(image, plant, f64::INFINITY, &[], server).map(|outcome| outcome.gaps)
     });
     let mut program = Program {
-        link: Link::start(Address::Tcp(address)),
+        link: Link::start(Address::Tcp(address), None),
         monitor: Monitor::default(),
         start: Instant::now(),
         readings: Vec::new(),

@@ -2,7 +2,7 @@
 
 use super::tip;
 use model_tables::block::read::TipBlock;
-use monitor::link::{Address, BAUD, Link, LinkEvent};
+use monitor::link::{Address, BAUD, Link, LinkEvent, SILENCE, silence};
 use monitor::load::{LoadJob, Loaded, Loading};
 use output::files;
 use output::progress::Ticks;
@@ -53,6 +53,16 @@ pub(super) struct Arguments {
     /// Speed of the serial port, bits a second
     #[arg(long, value_name = "BAUD", default_value_t = BAUD)]
     baud: u32,
+    /// Of a shared line (RS-485, firmware with the feature rs485): give the board the turn after so many milliseconds of silence
+    #[arg(long, value_name = "MS", num_args = 0..=1, require_equals = true, default_missing_value = SILENCE, value_parser = silence)]
+    poll: Option<Duration>,
+}
+
+/// Where the board is.
+struct LoadLine {
+    port: Address,
+    /// Of a shared line: silence before a turn.
+    poll: Option<Duration>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
@@ -60,20 +70,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
     if let Address::Serial { baud, .. } = &mut port {
         *baud = arguments.baud;
     }
+    let line = LoadLine {
+        port,
+        poll: arguments.poll,
+    };
     let name = arguments.name.as_deref();
     if let Some(file) = &arguments.file {
-        return load(port, file, name);
+        return load(line, file, name);
     }
     if let Some(out) = &arguments.read_back {
-        return read_back(port, out, name);
+        return read_back(line, out, name);
     }
-    let (loaded, seconds) = carry(port, LoadJob::RollBack, name)?;
+    let (loaded, seconds) = carry(line, LoadJob::RollBack, name)?;
     let tip = loaded.tip.as_deref().unwrap_or("0");
     let rows = row("rolled back", tip, loaded.hash, 0, seconds);
     Ok(answer(rows, &loaded))
 }
 
-fn load(port: Address, file: &Path, name: Option<&str>) -> Result<CommandAnswer, Refusal> {
+fn load(line: LoadLine, file: &Path, name: Option<&str>) -> Result<CommandAnswer, Refusal> {
     let block = tip::needed(file)?;
     let held = TipBlock::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let (hash, own) = (held.constants.hash, held.name.to_owned());
@@ -83,16 +97,16 @@ fn load(port: Address, file: &Path, name: Option<&str>) -> Result<CommandAnswer,
         hash,
         name: own.clone(),
     };
-    let (loaded, seconds) = carry(port, job, name)?;
+    let (loaded, seconds) = carry(line, job, name)?;
     let tip = loaded.tip.as_ref().unwrap_or(&own);
     let rows = row("loaded", tip, loaded.hash, length, seconds);
     Ok(answer(rows, &loaded))
 }
 
-fn read_back(port: Address, out: &Path, name: Option<&str>) -> Result<CommandAnswer, Refusal> {
+fn read_back(line: LoadLine, out: &Path, name: Option<&str>) -> Result<CommandAnswer, Refusal> {
     files::expect_room(out)?;
-    let address = port.to_string();
-    let (mut loaded, seconds) = carry(port, LoadJob::ReadBack, name)?;
+    let address = line.port.to_string();
+    let (mut loaded, seconds) = carry(line, LoadJob::ReadBack, name)?;
     let block = std::mem::take(&mut loaded.block);
     let held = TipBlock::read(&block).map_err(|error| {
         Refusal(format!(
@@ -108,14 +122,14 @@ fn read_back(port: Address, out: &Path, name: Option<&str>) -> Result<CommandAns
 }
 
 /// Carries a job over the line to its end; how long it took, seconds.
-fn carry(port: Address, job: LoadJob, tip: Option<&str>) -> Result<(Loaded, f64), Refusal> {
-    let address = port.to_string();
+fn carry(line: LoadLine, job: LoadJob, tip: Option<&str>) -> Result<(Loaded, f64), Refusal> {
+    let address = line.port.to_string();
     let whole = match &job {
         LoadJob::Load { block, .. } => block.len(),
         LoadJob::RollBack | LoadJob::ReadBack => 0,
     };
     let start = Instant::now();
-    let link = Link::start(port);
+    let link = Link::start(line.port, line.poll);
     let mut loading = Loading::new(job, tip);
     let done = Arc::new(AtomicUsize::new(0));
     let shown = Arc::clone(&done);

@@ -20,17 +20,25 @@ __all__ = ["AsyncClient"]
 class AsyncClient:
     """A board, for ``async with`` and ``async for``; arguments and errors are those of :class:`Client`."""
 
-    def __init__(self, address: str, *, baud: int = BAUD, capacity: int = CAPACITY, reconnect: bool = True) -> None:
-        self._arguments = (address, baud, capacity, reconnect)
+    def __init__(
+        self,
+        address: str,
+        *,
+        baud: int = BAUD,
+        capacity: int = CAPACITY,
+        reconnect: bool = True,
+        poll: float | None = None,
+    ) -> None:
+        self._arguments = (address, baud, capacity, reconnect, poll)
         self._client: Client | None = None
         self._came = asyncio.Event()
         self._loop: asyncio.AbstractEventLoop | None = None
 
     async def __aenter__(self) -> AsyncClient:
-        address, baud, capacity, reconnect = self._arguments
+        address, baud, capacity, reconnect, poll = self._arguments
         self._loop = asyncio.get_running_loop()
         self._client = await asyncio.to_thread(
-            Client, address, baud=baud, capacity=capacity, reconnect=reconnect
+            Client, address, baud=baud, capacity=capacity, reconnect=reconnect, poll=poll
         )
         self._client.listen(self._wake)
         return self

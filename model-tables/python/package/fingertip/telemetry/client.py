@@ -13,7 +13,8 @@ from ..errors import TelemetryError
 from . import commands
 from .codes import CommandKind, Outcome
 from .frames import LONGEST, Answer, FaultReport, Frame, FrameError, Hello, Reading, Splitter, body_of, decode
-from .ports import BAUD, Address, Line
+from .ports import BAUD, PATIENCE, Address, Line
+from .shared import QUIET, turns
 
 if TYPE_CHECKING:
     from .batch import Batch
@@ -59,20 +60,35 @@ class Client:
         baud: speed of a serial port, bits a second.
         capacity: frames that wait unread at most; beyond it the oldest leaves and is counted.
         reconnect: whether a lost connection is sought again, twice a second.
+        poll: for a shared line (RS-485): how long it is silent, s, before the host gives the board the turn, 0.001 to 1; more than the
+            adapter holds bytes back. 0.003 suits a board that reports each millisecond. A board that does not answer for 2.5 s is a lost
+            connection. ``None``: the line is the board's own, and it sends unasked.
 
     Raises:
-        TelemetryError: the first connection is not to be had.
+        TelemetryError: the first connection is not to be had, or an argument is out of its range.
     """
 
     #: Bytes of the longest frame without its zero.
     _longest = LONGEST
 
     def __init__(
-        self, address: str, *, baud: int = BAUD, capacity: int = CAPACITY, reconnect: bool = True
+        self,
+        address: str,
+        *,
+        baud: int = BAUD,
+        capacity: int = CAPACITY,
+        reconnect: bool = True,
+        poll: float | None = None,
     ) -> None:
         if capacity < 1:
             raise TelemetryError(f"capacity is {capacity}: must be 1 or more")
-        self.address = Address(address, baud)
+        if poll is not None and not QUIET <= poll <= 1.0:
+            raise TelemetryError(f"poll is {poll}: must be {QUIET} to 1 s")
+        self._poll = poll
+        self._outgoing: deque[bytes] = deque()
+        self.address = Address(address, baud, PATIENCE if poll is None else min(poll, PATIENCE))
+        if poll is not None and self.address.is_file:
+            raise TelemetryError(f"{address}: a file of recorded bytes is no shared line; leave poll out")
         self._reconnect = reconnect and not self.address.is_file
         self._buffer: deque[Frame] = deque()
         self._capacity = capacity
@@ -166,6 +182,12 @@ class Client:
         """Reads the line until it ends or breaks."""
         splitter = Splitter(self._longest)
         self._last = None
+        if self._poll is not None:
+            self._outgoing.clear()
+            for heard in turns(line, self._poll, self._longest, self._outgoing):
+                self._take(splitter.feed(heard))
+                if self._closing:
+                    return
         while not self._closing:
             read = line.read()
             if read is None:
@@ -306,7 +328,7 @@ class Client:
     # Commands.
 
     def write(self, content: bytes) -> None:
-        """Sends bytes.
+        """Sends bytes, on a shared line one frame in the host's next turn.
 
         Raises:
             OSError: there is no connection, or it took nothing.
@@ -314,6 +336,9 @@ class Client:
         line = self._line
         if line is None:
             raise ConnectionError("there is no connection")
+        if self._poll is not None:
+            self._outgoing.append(content)
+            return
         with self._writing:
             line.write(content)
 

@@ -146,10 +146,17 @@ class HandClient(Client):
     _longest = LONGEST
 
     def __init__(
-        self, address: str, *, tip: int = 0, baud: int = HAND_BAUD, capacity: int = CAPACITY, reconnect: bool = True
+        self,
+        address: str,
+        *,
+        tip: int = 0,
+        baud: int = HAND_BAUD,
+        capacity: int = CAPACITY,
+        reconnect: bool = True,
+        poll: float | None = None,
     ) -> None:
         self.tip = tip
-        super().__init__(address, baud=baud, capacity=capacity, reconnect=reconnect)
+        super().__init__(address, baud=baud, capacity=capacity, reconnect=reconnect, poll=poll)
 
     def _decode(self, body: bytes) -> list[Frame]:
         return decode_hand(body)

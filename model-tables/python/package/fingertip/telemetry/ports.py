@@ -49,6 +49,8 @@ class Address:
     text: str
     #: Bits a second, of a serial port.
     baud: int = BAUD
+    #: How long a read waits for bytes, s.
+    patience: float = PATIENCE
 
     def __post_init__(self) -> None:
         if not self.text:
@@ -77,18 +79,19 @@ class Address:
             TelemetryError: pyserial is missing.
         """
         if self.text.startswith("tcp:"):
-            return _Socket(self.text[4:])
+            return _Socket(self.text[4:], self.patience)
         if self.is_file:
             return _File(self.text)
-        return _Serial(self.text, self.baud)
+        return _Serial(self.text, self.baud, self.patience)
 
 
 class _Socket:
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, patience: float) -> None:
+        self._patience = patience
         host, _, port = address.rpartition(":")
         self._socket = socket.create_connection((host.strip("[]"), int(port)), timeout=CONNECTING)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self._socket.settimeout(PATIENCE)
+        self._socket.settimeout(self._patience)
 
     def read(self) -> bytes:
         try:
@@ -104,7 +107,7 @@ class _Socket:
         try:
             self._socket.sendall(content)
         finally:
-            self._socket.settimeout(PATIENCE)
+            self._socket.settimeout(self._patience)
 
     def close(self) -> None:
         self._socket.close()
@@ -126,7 +129,7 @@ class _File:
 
 
 class _Serial:
-    def __init__(self, port: str, baud: int) -> None:
+    def __init__(self, port: str, baud: int, patience: float) -> None:
         try:
             import serial
         except ImportError:
@@ -135,7 +138,7 @@ class _Serial:
             ) from None
         # One reader alone: two would have half of the bytes each.
         exclusive = None if os.name == "nt" else True
-        self._port = serial.Serial(port, baud, timeout=PATIENCE, write_timeout=WRITING, exclusive=exclusive)
+        self._port = serial.Serial(port, baud, timeout=patience, write_timeout=WRITING, exclusive=exclusive)
 
     def read(self) -> bytes:
         first = self._port.read(1)
