@@ -14,13 +14,23 @@ fn main() {
     if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
         return;
     }
+    // The macro of the tests asks for it.
+    println!("cargo::rustc-check-cfg=cfg(rust_analyzer)");
     let package = env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it");
     let root = Path::new(&package).join("../..");
     println!("cargo::rerun-if-changed={}", root.join("memory.x").display());
     println!("cargo::rustc-link-search={}", root.display());
+    for board in ["l432kc", "g474re"] {
+        if env::var_os(format!("CARGO_FEATURE_BOARD_NUCLEO_{}", board.to_uppercase())).is_some() {
+            // Comes first, and so before the sizes of memory.x.
+            let sizes = root.join(format!("src/board/nucleo_{board}.x"));
+            println!("cargo::rustc-link-arg-bins=-T{}", sizes.display());
+        }
+    }
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");
     }
+    println!("cargo::rustc-link-arg-bin=board_test=-Tembedded-test.x");
     println!("cargo::rustc-link-arg-bin=kernel_probe=--defsym=_stack_length={KERNELS_STACK}");
     println!("cargo::rustc-link-arg-bin=solver_probe=--defsym=_stack_length={SOLVER_STACK}");
 }
