@@ -1,4 +1,4 @@
-//! The values of one fingertip besides its design; the calibration record stores them.
+//! Values that belong to one fingertip and not to its design. The calibration record stores them.
 
 use crate::signal::scale::Scale;
 use crate::signal::temperature;
@@ -7,35 +7,35 @@ use model_tables::block::StoredCalibration;
 use model_tables::constants::{Quantity, Transducer};
 use model_tables::units::PressureRise;
 
-/// Largest gain trim that is believed, parts in a million: 10 %.
+/// Largest gain trim that is accepted, parts in a million: 10 %.
 pub const LARGEST_GAIN: i32 = 100_000;
 
-/// The calibration of one fingertip; the default is none.
+/// The calibration of one fingertip. The default is no calibration.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Calibration {
-    /// The zero, seen untouched, in the transducer's own quantity; `None`: the design's.
+    /// The zero, measured on the untouched fingertip, in the transducer's own quantity. `None` uses the zero of the design.
     pub zero: Option<Millipascals>,
     /// The transducer's temperature when that zero was stored; `None` where the part does not measure it.
     pub temperature: Option<Centidegrees>,
-    /// What temperature adds to the zero, millipascals a kelvin, at most
+    /// Temperature coefficient of the zero, millipascals a kelvin, at most
     /// [`LARGEST_COEFFICIENT`](temperature::LARGEST_COEFFICIENT) either way.
     pub coefficient: i32,
-    /// Added to the pressure rise, parts in a million of it, at most [`LARGEST_GAIN`] either way.
+    /// Gain trim: the share added to the pressure rise, parts in a million, at most [`LARGEST_GAIN`] either way.
     pub gain: i32,
 }
 
 impl Calibration {
-    /// Whether every value is possible.
+    /// Whether every value is within its limits, for a transducer of this range in pascals.
     pub fn is_plausible(&self, range: [i32; 2]) -> bool {
         let span = i64::from(range[1]) - i64::from(range[0]);
-        // Gauge or absolute, a fingertip rests within its transducer's range or some of it and an atmosphere beside.
+        // A gauge part rests within its range. An absolute part may have an atmosphere in addition.
         let beyond = 1000 * (span + 110_000);
         self.zero.is_none_or(|zero| i64::from(zero.0).abs() <= beyond)
             && self.coefficient.unsigned_abs() <= temperature::LARGEST_COEFFICIENT.unsigned_abs()
             && self.gain.unsigned_abs() <= LARGEST_GAIN.unsigned_abs()
     }
 
-    /// The one that a block of a tip's data holds, for a transducer of this range in pascals; nothing where a value cannot be.
+    /// Reads the calibration in a block of a tip's data, for a transducer of this range in pascals. `None` if a value is outside its limits.
     pub fn stored(stored: &StoredCalibration, range: [i32; 2]) -> Option<Self> {
         let temperature = match stored.temperature {
             i32::MIN => None,
@@ -50,9 +50,9 @@ impl Calibration {
         calibration.is_plausible(range).then_some(calibration)
     }
 
-    /// This with a new zero; where the old one was at another temperature, the two give the coefficient. Not of an absolute
-    /// transducer: between its two zeros the air changed too, and what of the difference is temperature cannot be told. Nor where
-    /// more is between them than temperature moves the zero of such a part by.
+    /// This calibration with a new zero. If the old zero was measured at another temperature, the two zeros give the
+    /// temperature coefficient. An absolute transducer gives no coefficient, because the air pressure changed between the two
+    /// zeros as well. A difference larger than temperature can cause gives none either.
     #[must_use]
     pub fn rezeroed(
         self,
@@ -75,7 +75,7 @@ impl Calibration {
         }
     }
 
-    /// The zero in counts of `1 / 2^fraction_bits` pascal.
+    /// The zero in counts of `1 / 2^fraction_bits` pascal. `None` if no zero is stored.
     pub fn zero_counts(&self, scale: Scale) -> Option<Pressure> {
         self.zero.map(|zero| scale.pressure(zero))
     }
@@ -92,7 +92,7 @@ impl Gain {
         Self((((1_000_000 + trim as i64) << 24) / 1_000_000) as i32)
     }
 
-    /// A rise times the gain, held at the ends of what a rise can be.
+    /// Multiplies a rise by the gain. The result saturates at the largest and smallest rise.
     #[inline]
     pub const fn apply_to(self, rise: PressureRise) -> PressureRise {
         // 2^31 * 2^25.

@@ -5,8 +5,8 @@ use crate::signal::report::{Contact, Feedback, FeedbackForce, Sigma};
 use crate::status::Warnings;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-/// Force and indentation at a rise, with what the tables add to the warnings. Below zero both are 0; below
-/// [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) that is flagged.
+/// Force and indentation at a rise, with the warnings that the tables add. Below zero both are 0. Below
+/// [`lowest_rest`](model_tables::constants::Transducer::lowest_rest) a warning is set.
 #[inline]
 pub fn contact(design: &impl Design, rise: PressureRise, warnings: Warnings) -> Contact {
     let reading = design.lookup(rise);
@@ -19,13 +19,15 @@ pub fn contact(design: &impl Design, rise: PressureRise, warnings: Warnings) -> 
     }
 }
 
-/// One deviation of the rise through the tables: what they give so much further on, or back at their end; from that end where
-/// the rise is beyond it, and from zero where it is below. At least one unit: what is uncertain in the pressure is so in all three.
-// On its own: woven into the reading's own lookup it takes the registers that this one needs.
+/// Converts one standard deviation of the rise into deviations of force and indentation. It compares the table values at the
+/// rise and one deviation above it. Near the end of the tables it takes one deviation below instead. A rise beyond the end
+/// counts as the end, and a rise below zero counts as zero. Each deviation is at least one unit, because an uncertain pressure
+/// makes all three values uncertain.
+// Not inlined: merged with the lookup of the reading, it would take registers that the lookup needs.
 #[inline(never)]
 pub fn through_tables(design: &impl Design, rise: PressureRise, at: &Contact, sigma: PressureRise) -> Sigma {
     let other = design.lookup(beside(design, rise, sigma));
-    // Outputs of the tables are not negative, so no difference exceeds the word.
+    // Outputs of the tables are not negative, so a difference cannot overflow.
     let apart = |one: i32, another: i32| (one - another).abs().max(1);
     Sigma {
         pressure_rise: sigma,
@@ -34,7 +36,7 @@ pub fn through_tables(design: &impl Design, rise: PressureRise, at: &Contact, si
     }
 }
 
-/// A rise one deviation on, or back at the end of the tables.
+/// The rise one deviation above, or one deviation below near the end of the tables.
 #[inline]
 fn beside(design: &impl Design, rise: PressureRise, sigma: PressureRise) -> PressureRise {
     let last = design.last_rise().0;
@@ -47,8 +49,8 @@ fn beside(design: &impl Design, rise: PressureRise, sigma: PressureRise) -> Pres
     })
 }
 
-/// What the feedback actuator presses with at a rise, with its 1-sigma as [`through_tables`] has it. It knows the pressure alone: whatever touches
-/// the fingertip, and whatever its wall remembers.
+/// Force of the feedback actuator at a rise, with its 1-sigma computed as in [`through_tables`]. It depends on the pressure
+/// only, not on the touched object or on the memory of the wall.
 #[inline]
 pub fn feedback(design: &impl Design, rise: PressureRise, sigma: PressureRise) -> Feedback {
     let Some(force) = design.feedback(rise) else {

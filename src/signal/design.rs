@@ -21,20 +21,20 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 /// A design with its tables.
 pub trait Design {
-    /// What its wall remembers.
+    /// Memory of its wall.
     type Wall: Wall;
-    /// Room for what is measured around the fingertip and moves its zero.
+    /// Storage for the measured surroundings that move the zero.
     type Around: Around;
 
-    /// What the signal path needs of the design beside its tables.
+    /// Parameters of the design for the signal path, apart from the tables.
     fn parameters(&self) -> &Parameters;
 
-    /// The wall in time; nothing of an elastic one.
+    /// Relaxation series of the wall. `None` for an elastic wall.
     fn series(&self) -> Option<&WallSeries> {
         None
     }
 
-    /// The limits of a zero among them: a copy, which in an image leaves nothing of the others.
+    /// The limits of a zero, as a copy. With a copy, the image does not have to keep the other parameters.
     fn limits(&self) -> Limits {
         self.parameters().limits
     }
@@ -42,38 +42,38 @@ pub trait Design {
     /// Force and indentation at a pressure rise. Total: every `i32` has an answer.
     fn lookup(&self, rise: PressureRise) -> Reading;
 
-    /// Force of the feedback actuator at a pressure rise; nothing of a design without one.
+    /// Force of the feedback actuator at a pressure rise. `None` for a design without an actuator.
     #[inline]
     fn feedback(&self, _rise: PressureRise) -> Option<Micronewtons> {
         None
     }
 
-    /// The last rise that the lookup covers now.
+    /// The largest rise that the lookup covers for the current object.
     #[inline]
     fn last_rise(&self) -> PressureRise {
         self.parameters().last_rise
     }
 
-    /// Something else is touched from now on. A design without `[object]` has tables of the plate alone.
+    /// Selects the object that is touched from now on. A design without `[object]` has tables for the plate only.
     ///
     /// # Errors
-    /// [`NoSuchObject`]; what was touched before still is.
+    /// [`NoSuchObject`]; the previous object stays selected.
     fn touch(&mut self, _touched: Touched) -> Result<(), NoSuchObject> {
         Err(NoSuchObject)
     }
 
-    /// The band of an unknown object; nothing of a design that is told what it touches, and while another object than that of the band is
-    /// named.
+    /// The band of an unknown object. `None` if the host states the touched object, or while the host names an object other
+    /// than that of the band.
     #[cfg(band)]
     fn band(&self) -> Option<&ChipBand> {
         None
     }
 
-    /// What was read last, if anything was that a known indentation tells more of. A design without `[object]` forgets it.
+    /// Stores the last reading for use with a known indentation; `None` if it cannot be used. A design without `[object]` ignores it.
     #[inline]
     fn note(&mut self, _read: Option<ReadPair>) {}
 
-    /// What a known indentation, above 0, tells beside what was read last; nothing where nothing was.
+    /// The contact from a known indentation, above 0, and the last stored reading. `None` without a stored reading.
     #[inline]
     fn tell(&self, _known: Nanometres) -> Option<KnownContact> {
         None
@@ -83,66 +83,66 @@ pub trait Design {
 /// A pressure rise to be read.
 #[derive(Clone, Copy, Debug)]
 pub struct Rise {
-    /// When it was.
+    /// Time of the rise.
     pub time: Microseconds,
     /// The rise.
     pub rise: PressureRise,
     /// Its 1-sigma.
     pub sigma: PressureRise,
-    /// What qualifies it.
+    /// Warnings about the rise.
     pub warnings: Warnings,
 }
 
-/// Memory of a wall of its past.
+/// Memory that a wall keeps of its past pressure.
 pub trait Wall: Clone + core::fmt::Debug {
-    /// A wall of whose past nothing is known.
+    /// A wall whose past is unknown.
     const NEW: Self;
 
     /// Force and indentation at a rise, with their 1-sigma.
     fn read(&mut self, design: &impl Design, rise: Rise) -> (Contact, Sigma);
 
-    /// Whether its memory lowers the pressure so that this says nothing of the zero.
+    /// Whether the wall's memory lowers the pressure. If so, the pressure is no evidence for the zero.
     fn lowers_the_pressure(&self) -> bool;
 
-    /// The zero moved, and with it every rise so far, by so many counts.
+    /// The zero moved: adds `by` counts to every rise so far.
     fn shift(&mut self, design: &impl Design, by: PressureRise);
 
-    /// What happened since the last reading is not known.
+    /// The pressure since the last reading is unknown.
     fn lose_track(&mut self);
 }
 
-/// There are no tables for an object: the design has none, or the radius is smaller than the smallest solved one.
+/// The design has no tables for this object, or the radius is smaller than the smallest solved radius.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct NoSuchObject;
 
-/// Parameters of a design for the stages, each in its own form, computed once: for an image by the compiler.
+/// Parameters of a design, prepared for each stage. They are computed once; for an image, by the compiler.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Parameters {
     /// The design itself.
     pub constants: DesignConstants,
     /// `k`: pressures are counted in `1 / 2^k` pascal, 0 to 16.
     pub pressure_fraction_bits: u32,
-    /// The last rise that the tables cover; beyond it they are saturated.
+    /// The largest rise that the tables cover. Above it, readings saturate.
     pub last_rise: PressureRise,
     /// Below this rise a reading is flagged.
     pub lowest_rest: PressureRise,
-    /// A pressure below the transducer's range, millipascals, may be lower than it is read.
+    /// Lower end of the transducer's range, millipascals. The true pressure may be lower than a reading below it.
     pub lowest_read: i32,
-    /// From one sample to the next, microseconds.
+    /// Time from one sample to the next, microseconds.
     pub period: u32,
-    /// Of the transducer's pressure.
+    /// Conversion of the transducer's pressure to counts.
     pub scale: Scale,
-    /// Of a zero, without a stored calibration.
+    /// Limits of a zero without a stored calibration.
     pub limits: Limits,
-    /// Of what is measured around the fingertip and moves a zero.
+    /// Rates at which the measured surroundings move a zero.
     pub rates: Rates,
-    /// Of the filter.
+    /// Step limits of the filter.
     pub step_limits: StepLimits,
-    /// Of a touch.
+    /// Thresholds of a touch.
     pub thresholds: Thresholds,
-    /// Of the zero, when it is a leak.
+    /// Fall of the zero that indicates a leak.
     pub fall: Fall,
-    /// Of a rise.
+    /// Uncertainty of a rise.
     pub uncertainty: Uncertainty,
 }
 
@@ -171,7 +171,7 @@ impl Parameters {
         }
     }
 
-    /// The same of a tip of a hand: a sample each `period` microseconds, made of so many codes of the converter.
+    /// The same for a tip of a hand: one sample every `period` microseconds, averaged from `codes` codes of the converter.
     ///
     /// # Panics
     /// As [`Parameters::of`].
@@ -190,7 +190,7 @@ impl Parameters {
         }
     }
 
-    /// The same of a tip of a hand on a bus: a sample each `period` microseconds.
+    /// The same for a tip of a hand on a bus: one sample every `period` microseconds.
     ///
     /// # Panics
     /// As [`Parameters::of`].
@@ -208,7 +208,7 @@ impl Parameters {
         }
     }
 
-    /// Two samples further apart than this are not next to each other, microseconds.
+    /// Longest time between two neighbouring samples, microseconds. A longer time is a gap.
     pub const fn gap(&self) -> u64 {
         20 * self.period as u64
     }

@@ -13,32 +13,33 @@ use crate::units::Pressure;
 use model_tables::constants::DesignConstants;
 use model_tables::units::PressureRise;
 
-/// By how many blocks the output lags the newest input; one, because it is about the one before.
+/// Delay of the output, in blocks. It is one, because the output belongs to the block before the newest one.
 pub const GROUP_DELAY: u32 = 1;
 
-/// A bend of three blocks that noise does not explain, in noise floors of the transducer: a second difference has 2.4 times the
-/// noise of a block, so white noise of a whole noise floor gets there once in a thousand blocks, which then are not averaged;
-/// a converter's, a tenth of that, never.
+/// Largest bend of three blocks that noise explains, in noise floors of the transducer. A second difference has 2.4 times the
+/// noise of a block. White noise of a whole noise floor therefore exceeds this once in a thousand blocks, and those blocks are
+/// not averaged. The noise of a converter is a tenth of that and never exceeds it.
 const STEP_NOISE_FLOORS: i64 = 8;
 
-/// The fastest press there is takes this long over the whole table, microseconds: 2.5 mm at 0.6 m/s.
+/// Duration of the fastest possible press over the whole table, microseconds: 2.5 mm at 0.6 m/s.
 const FASTEST_PRESS: u64 = 4_000;
 
-/// A press over the whole table in 0.2 s, whose pressure grows with the power 2.5 of its depth, bends by the whole table times the
-/// square of a block over this, microseconds: at its end 2.5 x 1.5 times the square of a block over 0.2 s.
+/// Sets the bend of a fast press, microseconds. The press covers the whole table in 0.2 s, and its pressure grows with the
+/// power 2.5 of its depth. Its bend is the whole table times the square of (block / this time). At the end of the press this is
+/// 2.5 x 1.5 times the square of (block / 0.2 s).
 const FAST_BEND: i64 = 100_000;
 
-/// Blocks without a number after a step that no press makes. One that comes back within them leaves no trace.
+/// Number of blocks that report no value after a step too fast for any press. A step that returns within these blocks has no further effect.
 const JUMP_HOLD: u8 = 8;
 
 /// How far a rise may step or bend from one block to the next, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct StepLimits {
-    /// Above: not noise.
+    /// A larger bend is not noise.
     pub noise: i64,
-    /// Above: no press.
+    /// A larger step is too fast for a press.
     pub press: i64,
-    /// Above: a bend that no fast press makes; half of the noise at least.
+    /// A larger bend is too sharp for a fast press; at least half of `noise`.
     pub bend: i64,
 }
 
@@ -79,17 +80,17 @@ pub struct Filter {
     step_limits: StepLimits,
     /// Oldest first.
     history: [Block; 3],
-    /// How many of them there are, the newest ones.
+    /// Number of valid blocks in `history`; they are the newest ones.
     filled: u8,
-    /// Blocks left of a [`JUMP_HOLD`].
+    /// Remaining blocks of a [`JUMP_HOLD`].
     hold: u8,
-    /// Whether the last sample came as evenly as the one before it.
+    /// Whether the last sample was evenly spaced in time.
     even: bool,
     rejected: u32,
 }
 
 impl Filter {
-    /// A filter that has seen nothing yet.
+    /// A filter without any block yet.
     pub const fn new(step_limits: StepLimits) -> Self {
         let none = Block {
             rise: PressureRise(0),
@@ -110,13 +111,13 @@ impl Filter {
         self.rejected
     }
 
-    /// The filtered rise of the block before this one. What qualifies any of the three qualifies the result. `even`: the
-    /// last three are equally far apart in time; if not the one in the middle stands for itself, for an average would
-    /// be of another time.
+    /// The filtered rise of the block before this one. The result has the warnings of all three blocks. `even`: the last three
+    /// blocks are equally spaced in time. If they are not, the middle block is returned unchanged, because an average would
+    /// belong to another time.
     ///
     /// # Errors
-    /// [`Fault::Settling`] for the first two blocks after the start or a gap, [`Fault::Jump`] where the rise steps as
-    /// no press does.
+    /// [`Fault::Settling`] for the first two blocks after the start or a gap, [`Fault::Jump`] if the rise steps faster than any
+    /// press.
     #[inline]
     pub fn step(
         &mut self,
@@ -132,7 +133,7 @@ impl Filter {
             self.filled += 1;
             return Err(Fault::Settling);
         }
-        // At the start and after a gap the line before is taken to be level.
+        // At the start and after a gap, the rise before the first block is assumed constant.
         let before = if self.filled == 2 { oldest } else { before };
         self.filled = 3;
         let bend = step_between(middle, newest) - step_between(oldest, middle);
@@ -144,7 +145,7 @@ impl Filter {
         Ok(smooth(oldest, middle, newest, even))
     }
 
-    /// The same where the line of samples bends by more than noise, or steps.
+    /// The same if the samples bend by more than noise, or step.
     #[cold]
     fn stepped(
         &mut self,
@@ -160,8 +161,8 @@ impl Filter {
             step_between(middle, newest),
         );
         let (bent, bends) = (rising - run_up, leaving - rising);
-        // The newest lies on the line of the two before the middle, and the middle does not: that one is the outlier. (Of
-        // samples that come unevenly the line cannot be told.)
+        // The middle block is the outlier if the newest lies on the line through the two blocks before the middle, and the
+        // middle does not. (Unevenly spaced samples do not define a line.)
         let on_line = (rising + leaving - 2 * run_up).abs() <= noise;
         let outlier =
             in_line && bends.abs() > noise && 2 * bent.abs() > noise && (bent > 0) != (bends > 0) && on_line;
@@ -182,20 +183,20 @@ impl Filter {
         if outlier || bends.abs() <= noise {
             return Ok(smooth(oldest, self.history[1], newest, even));
         }
-        // A press that began between the samples slows down or goes on, or gets faster once where a block averages over its
-        // begin from a level; what turns, or is faster than any press, is neither on the line before, bent as far as a fast press
-        // bends it, nor on a new one.
+        // A press that began between two samples slows down or continues. It gets faster once, if a block averages over its
+        // start from a constant level. A rise that turns, or is faster than any press, lies neither on the old line, with the
+        // bend of a fast press, nor on a new one.
         let begins = run_up.abs() <= noise && leaving.abs() <= press;
         let goes_on = leaving.abs() <= noise
             || (rising > 0) == (leaving > 0) && (leaving.abs() <= rising.abs() || begins);
         if bent.abs() > bend && !goes_on {
             return Err(Fault::Jump);
         }
-        // A corner, or an outlier as the newest, which only the next block will tell: the middle stands for itself.
+        // Either a corner, or the newest block is an outlier. Only the next block can decide, so the middle block is returned unchanged.
         Ok((middle.rise, oldest.warnings.and(middle.warnings)))
     }
 
-    /// The zero moved, and with it the rises so far, by so many counts.
+    /// The zero moved: adds `by` counts to the rises so far.
     #[cold]
     pub fn shift(&mut self, by: i32) {
         for block in &mut self.history {
@@ -220,7 +221,7 @@ fn smooth(oldest: Block, middle: Block, newest: Block, even: bool) -> (PressureR
     if !even {
         return (middle.rise, warnings);
     }
-    // Four words of 31 bits and the sign: 34 bits; a quarter of it fits the word again.
+    // The sum of four 32-bit values has 34 bits. A quarter of it fits 32 bits again.
     let sum = i64::from(oldest.rise.0) + 2 * i64::from(middle.rise.0) + i64::from(newest.rise.0);
     (PressureRise(((sum + 2) >> 2) as i32), warnings)
 }

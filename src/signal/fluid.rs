@@ -14,29 +14,29 @@ use crate::units::{Microseconds, Pressure};
 use model_tables::constants::{DesignConstants, Quantity};
 use model_tables::units::Nanometres;
 
-/// Fallen by this share of the rest pressure, as a divisor, it is a leak.
+/// A fall by this share of the rest pressure is a leak, as a divisor.
 const SHARE: i32 = 8;
 
-/// But by no less than this, in noise floors of the transducer.
+/// Smallest fall that is a leak, in noise floors of the transducer.
 const MIN_FLOORS: i64 = 10;
 
-/// Below zero for this long it is no wall that creeps back, microseconds.
+/// A wall that creeps back stays below zero for less than this, microseconds.
 const STANDS: u64 = 60_000_000;
 
-/// A known indentation is read smaller than this share of it: in the fingertip there is something softer than
-/// liquid. Permille.
+/// Smallest share of a known indentation that a liquid-filled fingertip reads, permille. A smaller reading means that something
+/// softer than liquid is inside.
 const SOFT_PERMILLE: i64 = 850;
 
 /// Limits for a leak, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Fall {
-    /// Further below the lowest zero to be expected: a leak.
+    /// Distance below the lowest expected zero from which on it is a leak.
     pub leak: i32,
 }
 
 impl Fall {
-    /// The fall that is a leak for a design. The thinnest air does not have the transducer's offset in it; a gauge zero
-    /// has, but for what it wanders from day to day.
+    /// The fall that is a leak for a design. The limit of the thinnest air does not include the transducer's offset. A gauge
+    /// zero includes it, except for the change from day to day.
     pub const fn of(constants: &DesignConstants, fraction_bits: u32, limits: &Limits) -> Self {
         let share = constants.rest_pressure / SHARE;
         let floors = constants.transducer.noise_floor() * MIN_FLOORS;
@@ -77,12 +77,12 @@ impl FluidHealth {
         self.suspicions
     }
 
-    /// The fluid was seen to.
+    /// The fluid was checked: clears all suspicions.
     pub fn clear(&mut self) {
         *self = Self::new(self.fall);
     }
 
-    /// A quiet window that lies so far over the lowest zero to be expected, counts.
+    /// Takes a quiet window that lies `over` counts above the lowest expected zero.
     pub fn look(&mut self, time: Microseconds, over: i32) {
         if over >= -self.fall.leak {
             self.below_since = None;
@@ -99,8 +99,8 @@ impl FluidHealth {
         self.below_since = None;
     }
 
-    /// Someone presses to a known indentation: whether the reading agrees. Too little raises the suspicion, enough
-    /// lays it.
+    /// Compares a reading with a known indentation, and returns whether they agree. A reading that is too small raises the
+    /// suspicion of a bubble; otherwise the suspicion is cleared.
     pub fn compare(&mut self, read: Nanometres, known: Nanometres) -> bool {
         let firm = i64::from(read.0) * 1000 >= i64::from(known.0) * SOFT_PERMILLE;
         let others = self.suspicions.without(Warnings::BUBBLE_SUSPECTED);

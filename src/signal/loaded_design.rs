@@ -26,13 +26,13 @@ pub struct LoadedDesign<'a> {
     relaxation: Option<WallSeries>,
     objects: Option<LoadedObjects<'a>>,
     feedback: Option<LoadedFeedback<'a>>,
-    /// Of what is touched, unless that is a plate.
+    /// Tables for the touched object; `None` for a plate.
     blended: Option<BlendedTables>,
     read: Option<ReadPair>,
 }
 
 impl<'a> LoadedDesign<'a> {
-    /// The design in a block of a tip's data, with what is stored there of the one fingertip.
+    /// Reads the design in a block of a tip's data, and the calibration of that fingertip if the block has one.
     ///
     /// # Errors
     /// [`BlockError`].
@@ -64,7 +64,7 @@ impl<'a> LoadedDesign<'a> {
         Ok((design, calibration))
     }
 
-    /// The same of a tip of a hand: a sample each `period` microseconds, made of so many codes of the converter.
+    /// The same for a tip of a hand: one sample every `period` microseconds, averaged from `codes` codes of the converter.
     #[cfg(tips)]
     #[must_use]
     pub fn of_scan(self, [period, codes]: [u32; 2]) -> Self {

@@ -28,11 +28,11 @@ use model_tables::units::{Nanometres, PressureRise};
 pub struct Pipeline<D: Design> {
     design: D,
     calibration: Calibration,
-    /// What qualifies every reading since start-up.
+    /// Warnings of every reading since start-up.
     standing: Warnings,
     stuck: StuckDetector,
     temperature: Temperature,
-    /// The last one measured.
+    /// The last measured temperature.
     celsius: Option<Centidegrees>,
     zero: Estimator,
     around: D::Around,
@@ -42,7 +42,7 @@ pub struct Pipeline<D: Design> {
     touch: Touch,
     fluid: FluidHealth,
     wall: D::Wall,
-    /// When the last sample was measured, and how long after the one before it.
+    /// Time of the last sample, and its distance from the one before it.
     measured: Microseconds,
     spacing: u64,
 }
@@ -80,14 +80,14 @@ impl<D: Design> Pipeline<D> {
     }
 
     /// The report of one sample, or of its absence. `now` is when the transducer gave it.
-    // A boundary that stays in the image, so that the instructions of a report can be counted there.
+    // Not inlined, so that the instructions of a report can be counted in the image.
     #[inline(never)]
     pub fn step(&mut self, now: Microseconds, sample: Result<Sample, Fault>) -> Report {
         let period = self.parameters().period;
         let age = sample.map_or(period / 2, |sample| sample.age);
         let measured = Microseconds(now.0.saturating_sub(u64::from(age)));
         let sample = sample.and_then(|sample| self.stuck.step(measured, sample.raw).map(|()| sample));
-        // A reading is of the sample before this one, however long ago that was.
+        // A reading belongs to the sample before this one, whatever the time between them.
         let before = core::mem::replace(&mut self.measured, measured);
         let spacing = measured.0.saturating_sub(before.0);
         let uneven = spacing.abs_diff(core::mem::replace(&mut self.spacing, spacing));
@@ -174,7 +174,7 @@ impl<D: Design> Pipeline<D> {
             },
         );
         let lowered = self.wall.lowers_the_pressure();
-        // Below its rest a wall may be touched again, and not show it.
+        // While the pressure is below rest, a new touch may stay hidden.
         self.touch = match touch {
             Touch::Untouched if lowered => Touch::Unknown,
             touch => touch,
@@ -182,7 +182,7 @@ impl<D: Design> Pipeline<D> {
 
         let doubtful =
             missed != 0 && self.zero.is_ok() && bound.saturating_add(missed) > parameters.limits.bound;
-        // What a window will tell at its end is not read as ok until then.
+        // A rise this far below zero is not reported as ok before the window ends.
         let fallen =
             verified && !lowered && bound <= parameters.limits.bound && rise.0 < -parameters.limits.bound;
         let moved = moved != 0 && verified && bound > parameters.limits.bound;
@@ -202,7 +202,7 @@ impl<D: Design> Pipeline<D> {
         })
     }
 
-    /// What is no pressure is no hum either.
+    /// A jump is not a pressure, so the window must not count it as hum.
     #[cold]
     fn unfiltered(&mut self, fault: Fault) -> Fault {
         if fault == Fault::Jump {
@@ -211,7 +211,7 @@ impl<D: Design> Pipeline<D> {
         fault
     }
 
-    /// A quiet window ended at this pressure; the zero from before it moved with it.
+    /// A quiet window ended at pressure `level`. The zero may have moved from `before`.
     #[cold]
     fn look(&mut self, time: Microseconds, level: Pressure, before: Option<Zero>) {
         if let (Some(before), Some(now)) = (before, self.zero()) {
@@ -237,7 +237,7 @@ impl<D: Design> Pipeline<D> {
         self.filter.interrupt();
     }
 
-    /// What is measured around the fingertip may have moved the zero by so many counts, >= 0.
+    /// Largest movement of the zero by the measured surroundings, counts, >= 0.
     #[inline]
     fn moved_around(&self) -> i32 {
         let rates = &self.parameters().rates;
@@ -245,7 +245,7 @@ impl<D: Design> Pipeline<D> {
         around.map_or(0, |around| around.moved(rates, self.measured))
     }
 
-    /// What it has moved the zero by so far stays in the bound: another zero is asked for.
+    /// Adds the movement by the surroundings so far to the bound, because another zero was requested.
     #[inline]
     fn fold_surroundings(&mut self) {
         let (moved, now) = (self.moved_around(), self.measured);
@@ -255,7 +255,7 @@ impl<D: Design> Pipeline<D> {
         }
     }
 
-    /// Takes the air pressure around an absolute part from the host; the zero moves with it.
+    /// Takes the air pressure around an absolute part from the host, in pascals. The zero moves with it.
     ///
     /// # Errors
     /// [`AirRefusal`].
@@ -280,7 +280,7 @@ impl<D: Design> Pipeline<D> {
         Ok(())
     }
 
-    /// What was measured over the old zero is void.
+    /// Discards the values that were measured over the old zero.
     #[cold]
     fn zero_moved(&mut self) {
         let now = self.measured;
@@ -300,7 +300,7 @@ impl<D: Design> Pipeline<D> {
     /// [`TareRefusal`] if the refusal is certain at once.
     pub fn tare(&mut self) -> Result<(), TareRefusal> {
         if self.wall.lowers_the_pressure() {
-            // It may be touched again, and not show it.
+            // A new touch may stay hidden.
             return Err(TareRefusal::Touched);
         }
         self.fold_surroundings();
@@ -316,12 +316,12 @@ impl<D: Design> Pipeline<D> {
         self.zero.undo()
     }
 
-    /// The outcome of the last commanded tare, once.
+    /// The outcome of the last commanded tare, returned once. `None` before it is known and after it was taken.
     pub fn take_tare_answer(&mut self) -> Option<Result<(), TareRefusal>> {
         self.zero.take_answer()
     }
 
-    /// The present zero, drift included, to keep across an unrequested reset.
+    /// The present zero, drift included, to keep across an unrequested reset. `None` before the first zero.
     pub fn zero(&self) -> Option<Zero> {
         let moved = self.moved_around();
         self.zero.zero().map(|zero| Zero {
@@ -330,7 +330,7 @@ impl<D: Design> Pipeline<D> {
         })
     }
 
-    /// The calibration with the zero of now, to be stored; nothing while that zero is neither ok nor commanded.
+    /// The calibration with the present zero, to be stored. `None` while that zero is neither ok nor commanded.
     pub fn calibration_to_store(&self) -> Option<Calibration> {
         let zero = self.zero.to_store()?;
         let parameters = self.parameters();
@@ -351,7 +351,7 @@ impl<D: Design> Pipeline<D> {
     pub fn calibrated(&mut self, calibration: Option<Calibration>) {
         self.standing = self.standing.without(Warnings::CALIBRATION_REFUSED);
         self.fluid.clear();
-        // What was stored is the zero of now. Temperature goes on being compensated as since start-up.
+        // The stored zero is the present one. Temperature compensation continues as since start-up.
         let limits = match (calibration, self.zero()) {
             (Some(_), Some(zero)) => self.design.limits().with_stored(zero.pressure),
             _ => self.design.limits(),
@@ -390,7 +390,7 @@ impl<D: Design> Pipeline<D> {
         self.design.touch(touched)
     }
 
-    /// The band of an unknown object; nothing where the object is known.
+    /// The band of an unknown object. `None` if the object is known.
     #[cfg(band)]
     pub fn band(&self) -> Option<&ChipBand> {
         self.design.band()
@@ -406,7 +406,7 @@ impl<D: Design> Pipeline<D> {
         self.filter.rejected()
     }
 
-    /// Someone presses to a known indentation while `read` is reported: whether the fingertip is as firm as its model.
+    /// Compares the reading `read` with the `known` indentation: whether the fingertip is as firm as its model.
     pub fn compare(&mut self, read: Nanometres, known: Nanometres) -> bool {
         self.fluid.compare(read, known)
     }

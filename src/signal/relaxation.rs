@@ -17,16 +17,18 @@
 //!
 //! `F = phi A P + (1 - phi) g * F_e` with `A = F_e / P_e`.
 //!
-//! A wall that is touched again before it has recovered is still pressed in: the contact begins with no area, at the settled pressure `P_l` where the
-//! force was last 0. There the force `F` is less by `rho (F + 4 A P_0) P_l / P_e`, with the pressure below rest `P_0` of then: the new contact bears at once
-//! what the fluid pulled. The contact grows beyond the old one, and forgets it within seconds. `P_l` is at most `-4 P_0`: a wall that pulls
-//! little has recovered, whatever its series says at another temperature.
+//! A wall that is touched again before it has recovered is still indented. The new contact begins with no area, at the settled
+//! pressure `P_l` where the force was last 0. After that, the force `F` is smaller by `rho (F + 4 A P_0) P_l / P_e`, with `P_0`
+//! the pressure below rest at that time: the new contact carries at once the force with which the fluid pulled. The contact
+//! grows beyond the old one, and the effect decays within seconds. `P_l` is at most `-4 P_0`: a wall that pulls little has
+//! recovered, even if its series, at another temperature, gives more.
 //!
 //! `kappa`, `P_2`, `phi_0`, `P_1` and `rho` belong to the design: its tables' generator fits them to a press of the solid in time.
 //!
 //! A plate cannot pull: there is no force below zero.
 //!
-//! All states are integers, those of the memory of 64 bits. A change of pressure, of at most 2^57, is divided among the terms, and no term grows beyond it.
+//! All states are integers; those of the memory have 64 bits. A change of pressure is at most 2^57. It is divided among the
+//! terms, so no term exceeds it.
 
 use crate::signal::design::Design;
 use crate::signal::report::Contact;
@@ -34,33 +36,34 @@ use crate::status::Warnings;
 use model_tables::material::series::{Factor, SeriesStep, WallSeries};
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-/// Pressures are counted in `1 / 2^32` pascal here: the term of 10 000 s still moves by less than 0.01 Pa at 1 kHz.
+/// Fraction bits of a pressure here: its unit is `1 / 2^32` pascal. In one step of 1 kHz, the term of 10 000 s moves by less than 0.01 Pa.
 pub const FRACTION_BITS: u32 = 32;
-/// Largest pressure, pascals either way: of the states' word a five-hundredth, as weights divide by up to eight and terms may add.
+/// Largest pressure, pascals either way: one five-hundredth of the range of a state. The weights divide by up to eight, and the terms may add up.
 const LARGEST: i64 = 1 << 22;
 const LARGEST_STATE: i64 = LARGEST << FRACTION_BITS;
-/// Part of the tables' range, `1 / 2^8`, below which the area counts as constant.
+/// The area counts as constant below `1 / 2^8` of the tables' range.
 const AREA_SHIFT: u32 = 8;
-/// Bits of forces below a micronewton, and of the place between two counts.
+/// Fraction bits of forces in micronewtons, and of the position between two counts.
 const FORCE_BITS: u32 = 16;
-/// One as a share.
+/// The value 1 as a share.
 pub const WHOLE: u32 = 1 << 16;
-/// The force that is less on a wall touched again begins at `2^PULL_SHIFT` times what the fluid pulled before.
+/// The loss of force on a wall that is touched again starts at `2^PULL_SHIFT` times the pull of the fluid before.
 const PULL_SHIFT: u32 = 2;
-/// Reading from the pressure of a relaxing wall.
+/// A reading from the pressure of a relaxing wall.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct RelaxedReading {
     /// The settled wall's pressure rise at the same indentation, rounded down.
     pub elastic: PressureRise,
-    /// Its force.
+    /// Force of the settled wall.
     pub settled: Micronewtons,
-    /// The wall's memory of a deeper press lowers the pressure by more than a quiet window leaves open: it says nothing of the zero.
+    /// Whether the wall's memory of a deeper press lowers the pressure by more than the margin of a quiet window. If so, the
+    /// pressure is no evidence for the zero.
     pub lowered: bool,
-    /// Force, and indentation, which is an upper bound while recovering.
+    /// Force and indentation. While the wall recovers, the indentation is an upper bound.
     pub contact: Contact,
 }
 
-/// A wall's memory, from untouched rest on.
+/// A wall's memory since untouched rest.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Relaxing<const TERMS: usize> {
     /// `P_e`, and that of the step before.
@@ -70,21 +73,21 @@ pub struct Relaxing<const TERMS: usize> {
     weighted: i64,
     /// `q_i`.
     held: [i64; TERMS],
-    /// `F_e`, and to it what `q_i` is to `P_e`.
+    /// `F_e`; `forces` holds its terms, as `held` holds those of `P_e`.
     settled: i64,
     forces: [i64; TERMS],
-    /// The largest force, forgotten with the slowest term.
+    /// The largest force. It decays with the slowest term.
     peak_force: i64,
-    /// `P_l`, which a new contact forgets, counts.
+    /// `P_l`, counts. It decays during a new contact.
     left: i32,
-    /// `2^PULL_SHIFT A P` there.
+    /// `2^PULL_SHIFT A P` at `P_l`.
     pull: i64,
 }
 
-/// What the tables have at an elastic pressure, between two counts.
+/// Table values at an elastic pressure, interpolated between two counts.
 struct Lookup {
     elastic: PressureRise,
-    /// With [`FORCE_BITS`].
+    /// In micronewtons with [`FORCE_BITS`] fraction bits.
     force: i64,
     indentation: i32,
     saturated: bool,
@@ -95,7 +98,7 @@ impl Lookup {
     fn at(design: &impl Design, elastic: i64) -> Self {
         let below_count = FRACTION_BITS - design.parameters().pressure_fraction_bits;
         let part = (elastic >> (below_count - FORCE_BITS)) & i64::from(WHOLE - 1);
-        // The states' words have room for five hundred times a largest pressure of 2^22 Pa, which has 38 bits here.
+        // A state can hold five hundred times the largest pressure of 2^22 Pa. In counts, that pressure has 38 bits.
         let counts = (elastic >> below_count).clamp(i64::from(-i32::MAX), i64::from(i32::MAX - 1)) as i32;
         let [below, above] = [counts, counts + 1].map(|count| design.lookup(PressureRise(count)));
         // Outputs are below 2^31.
@@ -111,7 +114,7 @@ impl Lookup {
 }
 
 impl<const TERMS: usize> Relaxing<TERMS> {
-    /// At untouched rest for ever.
+    /// A wall that has always been at untouched rest.
     pub const NEW: Self = Self {
         elastic: 0,
         before: 0,
@@ -124,7 +127,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         pull: 0,
     };
 
-    /// It has been at a pressure for ever.
+    /// Sets the state of a wall that has always been at this pressure.
     pub fn settle(&mut self, design: &impl Design, wall: &WallSeries, rise: PressureRise) {
         *self = Self::NEW;
         self.elastic = pressure(design, rise);
@@ -133,7 +136,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         self.settled = Lookup::at(design, self.elastic).force;
     }
 
-    /// Goes on by a step of time to a pressure rise.
+    /// Advances by one time step to a pressure rise.
     pub fn step(&mut self, design: &impl Design, wall: &WallSeries, rise: PressureRise) -> RelaxedReading {
         let step = &wall.step;
         let parameters = design.parameters();
@@ -192,24 +195,24 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         }
     }
 
-    /// `g * F_e` where the settled force becomes another one. A force has 44 bits, and 60 stiffened.
+    /// `g * F_e` after the settled force changed to `settled`. A force has 44 bits, and a stiffened force 60.
     fn convolved(&mut self, step: &SeriesStep, settled: i64) -> i64 {
         let change = settled - core::mem::replace(&mut self.settled, settled);
         let left = step.decay(&mut self.forces);
         let stress = step.stiffened(change);
         step.take(&mut self.forces, stress);
-        // The terms took all but the settled wall's share.
+        // The terms took everything except the share of the settled wall.
         settled + left + stress - change
     }
 
-    /// The largest force so far, forgotten with the slowest term.
+    /// The largest force so far. It decays with the slowest term.
     pub fn peak_force(&self) -> Micronewtons {
         Micronewtons((self.peak_force >> FORCE_BITS) as i32)
     }
 
-    /// The zero moved, and with it every pressure: by so many counts.
+    /// The zero moved: adds `by` counts to every pressure.
     pub fn shift(&mut self, design: &impl Design, wall: &WallSeries, by: PressureRise) {
-        // The terms keep what they hold: `v` moves by as much as `P / w`, and the next step's `P_e` with it.
+        // The terms keep their values. `v` moves as much as `P / w`, and so does `P_e` in the next step.
         let by = Weight::at(design, wall, self.elastic).over(pressure(design, by));
         self.weighted = (self.weighted + by).clamp(-8 * LARGEST_STATE, 8 * LARGEST_STATE);
     }
@@ -217,9 +220,9 @@ impl<const TERMS: usize> Relaxing<TERMS> {
 
 /// The weight at an elastic pressure.
 struct Weight {
-    /// `1 / w`: from 1 to below 8, in `1 / 2^16`.
+    /// `1 / w`, from 1 to below 8, in units of `1 / 2^16`.
     inverse: u32,
-    /// The slope of `v` over `P_e`, likewise.
+    /// The slope of `v` over `P_e`, in the same unit.
     slope: u32,
 }
 
@@ -238,7 +241,7 @@ impl Weight {
         }
     }
 
-    /// A pressure over the weight.
+    /// A pressure divided by the weight.
     #[inline(never)]
     fn over(&self, pressure: i64) -> i64 {
         // A mantissa of 31 bits at most; a pressure is below 2^56.
@@ -249,13 +252,13 @@ impl Weight {
         scaled(eighth, pressure << 4)
     }
 
-    /// What a change of `P_e` is less than one of `v`, over the latter.
+    /// Share by which a change of `P_e` is smaller than the change of `v`.
     fn flatter(&self) -> Factor {
         share(part((self.slope - WHOLE) as i32, self.slope as i32))
     }
 }
 
-/// `A P` with the area `A = F_e / P_e`, with [`FORCE_BITS`].
+/// `A P` with the area `A = F_e / P_e`, in micronewtons with [`FORCE_BITS`] fraction bits.
 fn by_area(design: &impl Design, elastic: i64, at: &Lookup, rise: PressureRise) -> i64 {
     let parameters = design.parameters();
     let below_count = FRACTION_BITS - parameters.pressure_fraction_bits;
@@ -266,10 +269,10 @@ fn by_area(design: &impl Design, elastic: i64, at: &Lookup, rise: PressureRise) 
     } else {
         Lookup::at(design, place).force
     };
-    // `force / place` to 2^-15 of itself: 32 bits over 16, each shifted to the top of its word.
+    // `force / place` to 2^-15 of itself: 32 bits divided by 16 bits, both shifted left as far as possible.
     let (force, place) = (force.max(1) as u64, place.max(1) as u64);
     let (up, down) = (force.leading_zeros(), place.leading_zeros());
-    // Its highest bit is set, which the compiler does not see: without a way to panic the image is smaller.
+    // The divisor is never 0, because its highest bit is set. The compiler cannot see this; `max(1)` removes the panic and makes the image smaller.
     let ratio = ((force << up) >> 32) as u32 / (((place << down) >> 48) as u32).max(1);
     // 16 or 17 bits. From a pressure with 32 bits below a pascal to a force with 16 below a micronewton: an area is below 32 768 mm2.
     let area = Factor {
@@ -279,25 +282,25 @@ fn by_area(design: &impl Design, elastic: i64, at: &Lookup, rise: PressureRise) 
     scaled(area, pressure(design, rise))
 }
 
-/// A product once in the image: terms have their own.
+/// Not inlined, so that the image has this product once. The terms have their own.
 #[inline(never)]
 fn scaled(factor: Factor, x: i64) -> i64 {
     factor.of(x)
 }
 
-/// A part of a whole, as a share: at least nothing and at most all of it.
+/// A part of a whole as a share, limited to 0 and [`WHOLE`].
 #[inline(never)]
 pub fn part(of: i32, whole: i32) -> u32 {
     let (of, whole) = (of.max(0) as u32, whole.max(1) as u32);
     if of >= whole {
         return WHOLE;
     }
-    // As many of 16 bits as the word has room for come before the division.
+    // Shifts the dividend left by up to 16 bits, as far as its word has room. The divisor takes the rest of the shift.
     let up = whole.leading_zeros().min(16);
     ((of << up) / (whole >> (16 - up)).max(1)).min(WHOLE)
 }
 
-/// A share as a factor; one is the largest there is.
+/// A share as a factor. A share of 1 is the largest factor.
 fn share(share: u32) -> Factor {
     Factor {
         mantissa: (share << 15).saturating_mul(2),
@@ -305,7 +308,7 @@ fn share(share: u32) -> Factor {
     }
 }
 
-/// A pressure as the wall's memory counts it.
+/// A pressure in the unit of the wall's memory.
 fn pressure(design: &impl Design, rise: PressureRise) -> i64 {
     let below_count = FRACTION_BITS - design.parameters().pressure_fraction_bits;
     (i64::from(rise.0) << below_count).clamp(-LARGEST_STATE, LARGEST_STATE)

@@ -72,7 +72,7 @@ pub struct Feedback {
 pub struct FeedbackForce {
     /// The force on the wearer's skin, >= 0; a lower bound where the reading is saturated.
     pub force: Micronewtons,
-    /// Its one standard deviation, > 0: that of the pressure. What the model leaves out is not in it.
+    /// Its one standard deviation, > 0. It includes the uncertainty of the pressure, but not the error of the model.
     pub sigma: Micronewtons,
 }
 
@@ -83,7 +83,7 @@ impl Feedback {
         force: None,
     };
 
-    /// The force of a design's actuator; nothing where there is no room for it.
+    /// The force of a design's actuator; [`Feedback::NONE`] in an image without storage for it.
     #[cfg_attr(not(feedback), expect(unused_variables, reason = "there is no room for it"))]
     pub const fn of(force: FeedbackForce) -> Self {
         Self {
@@ -92,7 +92,7 @@ impl Feedback {
         }
     }
 
-    /// The force; `None` of a design without an actuator.
+    /// The force; `None` for a design without an actuator.
     pub const fn force(self) -> Option<FeedbackForce> {
         #[cfg(feedback)]
         {
@@ -105,8 +105,8 @@ impl Feedback {
     }
 }
 
-/// One standard deviation of each value, >= 0, and above 0 for force and indentation; the end of the word also stands for
-/// more.
+/// One standard deviation of each value, >= 0, and above 0 for force and indentation. The largest value of the word means this
+/// value or more.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Sigma {
     /// Of the pressure rise.

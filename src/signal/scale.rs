@@ -5,8 +5,8 @@ use crate::units::{Millipascals, Pressure, saturate};
 /// From millipascals to counts without a division: `counts = (gain * millipascals + half) / 2^shift`.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Scale {
-    /// `2^(k + shift) / 1000` to the nearest, 30 bits and the sign: its rounding moves no result by more than
-    /// 2^-30 of itself.
+    /// `2^(k + shift) / 1000`, rounded to nearest: 30 bits and the sign. The rounding changes a result by at most 2^-30 of
+    /// itself.
     gain: i32,
     /// 23 to 39 for `k` of 16 to 0.
     shift: u32,
@@ -26,7 +26,7 @@ impl Scale {
         }
     }
 
-    /// The nearest count, held at the ends of the word.
+    /// The nearest count. It saturates at the ends of the word.
     #[inline]
     pub const fn pressure(self, millipascals: Millipascals) -> Pressure {
         // Below 2^30 * 2^31 = 2^61.

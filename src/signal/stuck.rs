@@ -5,22 +5,22 @@
 use crate::status::Fault;
 use crate::units::Microseconds;
 
-/// Unchanged for this long it is stuck, microseconds: 35 samples of the slowest part. With noise of two counts, which
-/// every 24-bit part exceeds, a word is the one before by chance once in seven times, and 35 times in a row less than
+/// A word that is unchanged for this long is stuck, microseconds: 35 samples of the slowest part. Every 24-bit part has noise
+/// of more than two counts. With two counts, a word repeats by chance once in seven samples, and 35 times in a row less than
 /// once in 10^24.
 pub const LIMIT: u64 = 500_000;
 
-/// Remembers the last word and since when it stands.
+/// Holds the last word and the time of its first sample.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct StuckDetector {
     last: Option<(u32, Microseconds)>,
 }
 
 impl StuckDetector {
-    /// Has seen nothing yet.
+    /// A detector without any sample yet.
     pub const NEW: Self = Self { last: None };
 
-    /// Looks at the word of a sample; `None` for a transducer without one.
+    /// Checks the word of a sample. `word` is `None` for a transducer that has none.
     ///
     /// # Errors
     /// [`Fault::Stuck`] from [`LIMIT`] after the word last changed until it changes again.

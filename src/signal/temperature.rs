@@ -1,28 +1,28 @@
 //! Temperature of the transducer -> offset of the zero, for a transducer that measures its temperature.
 //!
 //! The coefficient comes from the calibration record, where two saved zeros at different temperatures give it. In contact the
-//! correction is held, so that only pressure changes the force. The error of this is part of the 1-sigma, and is reported if it is
-//! as large as a touch.
+//! correction is held, so that only pressure changes the force. The error of the held correction is part of the 1-sigma, and is
+//! reported if it is as large as a touch.
 
 use crate::status::Touch;
 use crate::units::{Centidegrees, Millipascals, saturate};
 
-/// Largest coefficient that is believed, millipascals a kelvin: 0.1 % of 100 kPa.
+/// Largest coefficient that is accepted, millipascals a kelvin: 0.1 % of 100 kPa.
 pub const LARGEST_COEFFICIENT: i32 = 100_000;
 
-/// Largest coefficient that two zeros give, millionths of the transducer's range a kelvin: the offset of an NXP MPX5100 may move by
-/// 2.5 % of it over 85 K. The weather of a day in a blocked vent is more.
+/// Largest coefficient from two zeros, millionths of the transducer's range a kelvin. The offset of an NXP MPX5100 may move by
+/// 2.5 % of its range over 85 K. A day's weather in a blocked vent gives a larger value.
 const LARGEST_SHARE: i64 = 300;
 
-/// Two saved zeros give a coefficient from this difference of temperature on, hundredths of a kelvin.
+/// Smallest temperature difference at which two saved zeros give a coefficient, hundredths of a kelvin.
 const APART: i32 = 500;
 
 /// The compensation.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Temperature {
-    /// `2^-16` counts for a hundredth of a kelvin.
+    /// In `2^-16` counts for a hundredth of a kelvin.
     coefficient: i64,
-    /// Where there is no correction: the temperature of the stored zero.
+    /// Temperature at which the correction is 0: that of the stored zero.
     reference: Option<Centidegrees>,
     correction: i32,
     missed: i32,
@@ -59,7 +59,7 @@ impl Temperature {
         self.missed
     }
 
-    /// One temperature later.
+    /// Takes the next temperature.
     #[inline]
     pub fn step(&mut self, temperature: Option<Centidegrees>, touch: Touch) {
         let (Some(temperature), Some(reference)) = (temperature, self.reference) else {
@@ -77,8 +77,8 @@ impl Temperature {
     }
 }
 
-/// The coefficient that two zeros at two temperatures give, millipascals a kelvin; nothing when they are too close, or it is more
-/// than temperature alone gives a transducer of this range in pascals.
+/// The coefficient from two zeros at two temperatures, millipascals a kelvin. `None` if the temperatures are too close, or if
+/// the coefficient is larger than temperature alone can cause in a transducer of this range in pascals.
 pub fn coefficient(
     [before, after]: [Millipascals; 2],
     [then, now]: [Centidegrees; 2],

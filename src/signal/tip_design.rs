@@ -13,13 +13,13 @@ use model_tables::table::known::{KnownContact, ReadPair};
 use model_tables::table::law::Touched;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-/// A loaded design, or else the one that is folded into the image.
+/// A loaded design, or the design compiled into the image.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant)] // one for a board, made once
 pub enum TipDesign<'a, I> {
-    /// The image's own.
+    /// The design of the image.
     Image(I),
-    /// That of a block in the flash.
+    /// The design of a block in the flash.
     Loaded(LoadedDesign<'a>),
 }
 

@@ -6,19 +6,19 @@ use crate::units::Pressure;
 use model_tables::constants::DesignConstants;
 use model_tables::units::PressureRise;
 
-/// A touch begins above this rise, in noise floors of the transducer: a filtered report gets there by noise alone less
-/// than once in 10^15.
+/// A touch begins above this rise, in noise floors of the transducer. Noise alone lifts fewer than one filtered report in 10^15
+/// above it.
 const TOUCH_FLOORS: i64 = 6;
 
-/// And ends below this one.
+/// A touch ends below this rise, in noise floors of the transducer.
 const RELEASE_FLOORS: i64 = 3;
 
 /// Thresholds at which a touch begins and ends, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Thresholds {
-    /// Above: touched.
+    /// Above this rise the fingertip is touched.
     pub touch: PressureRise,
-    /// Below: no longer.
+    /// Below this rise the touch has ended.
     pub release: PressureRise,
 }
 
@@ -33,7 +33,7 @@ impl Thresholds {
     }
 }
 
-/// Remembers on which side of the thresholds it was last.
+/// Holds the touch state between the two thresholds.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct TouchDetector {
     thresholds: Thresholds,
@@ -41,7 +41,7 @@ pub struct TouchDetector {
 }
 
 impl TouchDetector {
-    /// Nothing has touched yet.
+    /// A detector in the untouched state.
     pub const fn new(thresholds: Thresholds) -> Self {
         Self {
             thresholds,
@@ -64,8 +64,8 @@ impl TouchDetector {
         }
     }
 
-    /// The zero moved, or a still stretch lay below the upper threshold, where a press may have left it: what was known of
-    /// the side is void.
+    /// Forgets the touch. Called if the zero moved, or if a quiet window lay below the upper threshold, where a release may
+    /// have ended.
     pub fn forget(&mut self) {
         self.touched = false;
     }

@@ -18,7 +18,7 @@ impl Uncertainty {
         Self::averaging(constants, fraction_bits, averaged(&constants.transducer.kind))
     }
 
-    /// For a design whose reading is made of so many samples, as [`averaged`] counts them.
+    /// For a design whose reading averages `averaged` samples, counted as in [`averaged`].
     pub const fn averaging(constants: &DesignConstants, fraction_bits: u32, averaged: u32) -> Self {
         let transducer = &constants.transducer;
         let averaged = averaged as i64;
@@ -30,12 +30,12 @@ impl Uncertainty {
         }
     }
 
-    /// Of a reading over a zero that is known exactly, counts.
+    /// The uncertainty of a reading over an exactly known zero, counts.
     pub const fn noise(&self) -> i32 {
         self.noise
     }
 
-    /// Of a rise over a zero that lies anywhere within its bound, with what temperature may have added: counts >= 0.
+    /// The uncertainty of a rise, counts >= 0. The zero lies anywhere within `bound`; `temperature` is the possible error by temperature.
     #[inline]
     pub fn rise(&self, bound: i32, temperature: i32) -> PressureRise {
         // 1 / sqrt 3 = 577 / 1000 = 591 / 1024.
@@ -48,14 +48,14 @@ impl Uncertainty {
     }
 }
 
-/// Samples of a transducer that a reading is made of, in what averaging them gains: the noise's variance falls by so much.
+/// Effective number of samples that a reading averages: the factor by which averaging reduces the variance of the noise.
 pub const fn averaged(kind: &TransducerKind) -> u32 {
     match kind {
         TransducerKind::Ratiometric {
             supply_measured: false,
             ..
         } => BLOCK_LENGTH as u32,
-        // Half the codes, and as much noise again from the supply's half.
+        // Half of the codes measure the pressure. The other half measures the supply and adds as much noise again.
         TransducerKind::Ratiometric {
             supply_measured: true,
             ..
@@ -64,7 +64,7 @@ pub const fn averaged(kind: &TransducerKind) -> u32 {
     }
 }
 
-/// `sqrt(a^2 + b^2)` to 3 %, for `a, b >= 0`: the larger one, or 7/8 of it and half the other.
+/// `sqrt(a^2 + b^2)` to 3 %, for `a, b >= 0`: the larger one, or 7/8 of it plus half of the other, whichever is larger.
 #[inline]
 pub(super) fn hypotenuse(a: i32, b: i32) -> i32 {
     let (small, large) = if a < b { (a, b) } else { (b, a) };

@@ -19,11 +19,12 @@ use crate::units::Microseconds;
 use model_tables::material::series::WallSeries;
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-/// What two states differ by, over the 1-sigma, where they count as one: as a divisor.
+/// The two states count as equal if their difference is below the 1-sigma divided by this.
 const TOGETHER: i32 = 4;
 
-/// What the wall's temperature moves the elastic pressure by once the pressure has fallen below it, over their difference and the design's gain, in
-/// 1/65536: three sixteenths, the median of releases of dome A of 9 x 7 x 1 mm over two minutes.
+/// Effect of the wall's temperature on the elastic pressure after a release, when the pressure is below the elastic pressure.
+/// As a share of their difference and of the design's gain, in 1/65536. Three sixteenths is the median of releases of dome A of
+/// 9 x 7 x 1 mm over two minutes.
 const RELEASED: u32 = 3 << 12;
 
 /// A wall without a memory.
@@ -52,14 +53,14 @@ impl Wall for Elastic {
     fn lose_track(&mut self) {}
 }
 
-/// The memory of a wall that relaxes in up to so many terms.
+/// The memory of a wall whose relaxation series has up to `TERMS` terms.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Memory<const TERMS: usize> {
     wall: Relaxing<TERMS>,
-    /// The other end of the bracket, while that is open.
+    /// The second state of the bracket, used while `open`.
     settled: Relaxing<TERMS>,
     open: bool,
-    /// Whether nothing is missing since the last reading, and where that was.
+    /// Whether the pressure is known without a gap since the last reading, and the time and rise of that reading.
     tracked: bool,
     time: Microseconds,
     rise: PressureRise,
@@ -133,7 +134,7 @@ impl<const TERMS: usize> Wall for Memory<TERMS> {
 }
 
 impl<const TERMS: usize> Memory<TERMS> {
-    /// How many reports after the last one this one is; one where that is not known, and then the bracket opens.
+    /// Number of report periods since the last reading. If that is unknown, it is one, and the bracket opens.
     fn steps(&mut self, design: &impl Design, series: &WallSeries, to: &Rise) -> i32 {
         let parameters = design.parameters();
         let passed = to.time.0.saturating_sub(self.time.0);
@@ -142,7 +143,7 @@ impl<const TERMS: usize> Memory<TERMS> {
             // At most 20.
             return ((passed as u32 + parameters.period / 2) / parameters.period).max(1) as i32;
         }
-        // At rest there is nothing to be settled or not.
+        // At rest both states are the same.
         self.open = to.rise.0.saturating_abs() > parameters.thresholds.release.0;
         if self.open {
             self.settled.settle(design, series, to.rise);
@@ -151,11 +152,11 @@ impl<const TERMS: usize> Memory<TERMS> {
     }
 }
 
-/// The middle of two values of which one is known to this 1-sigma.
+/// The middle of two values, with its 1-sigma.
 struct Middle {
     value: i32,
     sigma: i32,
-    /// Half of what they are apart is more than the 1-sigma, or counts beside it.
+    /// `doubtful`: half of their difference exceeds the 1-sigma. `open`: it is large enough to count beside the 1-sigma.
     doubtful: bool,
     open: bool,
 }
@@ -171,8 +172,8 @@ fn middle(one: i32, other: i32, sigma: i32) -> Middle {
     }
 }
 
-/// What the rise leaves open through the tables at the elastic pressure, what the wall's temperature does, and what a wall that recovers may
-/// still bear.
+/// The 1-sigma from three sources: the rise, through the tables at the elastic pressure; the wall's temperature; and the force
+/// that a recovering wall may still carry.
 fn sigma_of<const TERMS: usize>(
     design: &impl Design,
     series: &WallSeries,
@@ -187,7 +188,7 @@ fn sigma_of<const TERMS: usize>(
     let mut sigma = through_tables(design, at.elastic, &settled, rise.sigma);
     let moved = by_temperature(series, rise.rise.0, at.elastic.0);
     let warmer = through_tables(design, at.elastic, &settled, PressureRise(moved));
-    // The pressure is measured: the force moves as the area does, which is the settled force over the elastic pressure.
+    // The pressure is measured, so the force changes in proportion to the contact area, which is the settled force divided by the elastic pressure.
     let force = part(warmer.force.0, at.settled.0);
     let elastic = part(moved, at.elastic.0);
     let area = part(force.abs_diff(elastic) as i32, (WHOLE + elastic) as i32);
@@ -207,7 +208,7 @@ fn sigma_of<const TERMS: usize>(
     sigma
 }
 
-/// What the wall's unknown temperature moves an elastic pressure by, counts >= 0, below their difference.
+/// Effect of the wall's unknown temperature on the elastic pressure, counts >= 0, less than the difference of rise and elastic pressure.
 fn by_temperature(series: &WallSeries, rise: i32, elastic: i32) -> i32 {
     let share = if rise > elastic {
         part(elastic, rise)

@@ -37,7 +37,7 @@ use model_tables::constants::Quantity;
 /// A zero.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Zero {
-    /// The pressure that reads as no rise.
+    /// The pressure that is reported as a rise of 0.
     pub pressure: Pressure,
     /// Its largest error, counts, >= 0.
     pub bound: i32,
@@ -48,9 +48,9 @@ pub struct Zero {
 /// Source of the zero at start-up.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum StartUp {
-    /// Measured, if the limits let it.
+    /// Measured, if the limits allow it.
     Measured,
-    /// The reference, if there is one.
+    /// The stored reference, if there is one.
     Stored,
     /// The zero from before the reset.
     Kept(Zero),

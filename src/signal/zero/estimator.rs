@@ -25,7 +25,7 @@ pub const WINDOW: u64 = window::LENGTH;
 pub struct Estimator {
     limits: Limits,
     interval: Interval,
-    /// Whether there is a zero to read from.
+    /// Whether there is a zero.
     zeroed: bool,
     window: Window,
     /// When the last window ended, or the zero was taken.
@@ -36,14 +36,14 @@ pub struct Estimator {
     moved: bool,
     /// How far the pressure swings to either side, faster than any press: counts, >= 0.
     swing: i32,
-    /// Of interval and swing, as of the last part of a window.
+    /// Bound from interval and swing, updated at the last part of a window.
     bound: i32,
     above: i32,
     warnings: Warnings,
 }
 
 impl Estimator {
-    /// A zero that has seen nothing yet.
+    /// An estimator without any pressure yet.
     pub fn new(limits: Limits, start_up: StartUp) -> Self {
         let (reference, highest) = (limits.expected[0], limits.expected[1].0);
         let measured = start_up == StartUp::Measured;
@@ -81,7 +81,7 @@ impl Estimator {
         estimator
     }
 
-    /// The zero that is read from, if there is one yet.
+    /// The zero in use; `None` before the first one.
     pub const fn zero(&self) -> Option<Zero> {
         if !self.zeroed {
             return None;
@@ -93,13 +93,14 @@ impl Estimator {
         })
     }
 
-    /// How far the true zero may be from it, counts, >= 0.
+    /// Largest distance of the true zero from the zero in use, counts, >= 0.
     #[inline]
     pub const fn bound(&self) -> i32 {
         self.bound
     }
 
-    /// How far the true zero may lie above it beyond the level of a quiet window, counts, >= 0: so much of a rise is no touch.
+    /// Largest distance of the true zero above the zero in use, beyond the margin of a quiet window, counts, >= 0. This part of
+    /// a rise is no evidence of a touch.
     #[inline]
     pub const fn above(&self) -> i32 {
         self.above
@@ -111,18 +112,18 @@ impl Estimator {
         self.interval.verified && self.bound <= self.limits.bound
     }
 
-    /// The zero to be stored, if there is one: an ok one, or one that a command took and whoever saves it vouches for.
+    /// The zero to be stored: an ok zero, or a commanded zero, which the user confirms by saving it. `None` if there is neither.
     pub fn to_store(&self) -> Option<Zero> {
         let vouched = !self.interval.verified && self.replaced.is_some();
         self.zero().filter(|_| self.is_ok() || vouched)
     }
 
-    /// The lowest zero to be expected.
+    /// The lowest expected zero.
     pub const fn lowest(&self) -> Pressure {
         self.limits.expected[0]
     }
 
-    /// A new reference: the zero was stored, which vouches for it, or what was stored is void.
+    /// Takes a new reference. Either the zero was stored, which confirms it, or the stored zero is void.
     pub fn refer_to(&mut self, limits: Limits) {
         self.limits = limits;
         if limits.stored && !self.interval.verified {
@@ -131,7 +132,7 @@ impl Estimator {
         }
     }
 
-    /// One pressure later. The level of a quiet window, if one ended.
+    /// Takes the next pressure. Returns the level of a quiet window if one ended.
     #[inline]
     pub fn step(&mut self, time: Microseconds, pressure: Pressure) -> Option<Pressure> {
         let part = self.window.add(time, pressure);
@@ -141,7 +142,7 @@ impl Estimator {
         None
     }
 
-    /// The rise of a pressure over the zero, held at the ends of the word, and what qualifies it.
+    /// The rise of a pressure over the zero, saturated at the ends of the word, and its warnings.
     ///
     /// # Errors
     /// [`Fault::Zeroing`] until there is a zero.
@@ -154,16 +155,16 @@ impl Estimator {
         Ok((PressureRise(rise), self.warnings))
     }
 
-    /// This pressure says nothing of the zero: the window is no evidence.
+    /// This pressure is no evidence for the zero: the present window is discarded.
     #[inline]
     pub fn disregard(&mut self) {
         self.window.disturb();
     }
 
-    /// A gap in the samples: a window has no gaps. Patience runs on.
+    /// A gap in the samples: starts a new window. [`PATIENCE`] keeps running.
     pub fn interrupt(&mut self, time: Microseconds) {
         self.window = Window::EMPTY;
-        // Where no window ever ends the zero drifts all the same.
+        // The zero drifts even if no window ever ends.
         if self.zeroed {
             self.age(time);
             self.judge_bound();
@@ -176,7 +177,7 @@ impl Estimator {
         }
     }
 
-    /// The host asserts that the fingertip is unloaded: takes a new zero if the limits let it. The answer comes through
+    /// The host asserts that the fingertip is unloaded: takes a new zero if the limits allow it. The answer comes through
     /// [`Estimator::take_answer`] within [`PATIENCE`] of the next sample.
     ///
     /// # Errors
@@ -188,7 +189,7 @@ impl Estimator {
         self.window = Window::EMPTY;
         self.measuring = Some(Measuring {
             commanded: true,
-            // What swings now says nothing of the zero under it.
+            // The present swing has no influence on whether the zero is ok.
             over_ok: self.zeroed && self.interval.is_ok(&self.limits),
             overdue: self.measuring.is_some(),
             ..Measuring::NEW
@@ -196,13 +197,13 @@ impl Estimator {
         Ok(())
     }
 
-    /// Whether a zero is being measured, which ends within [`PATIENCE`].
+    /// Whether a measurement of a zero is under way that ends within [`PATIENCE`].
     fn is_busy(&self) -> bool {
         self.measuring
             .is_some_and(|measuring| measuring.commanded || !measuring.overdue)
     }
 
-    /// Takes back the last commanded zero, with all the drift since.
+    /// Restores the zero before the last commanded one, and adds the drift since then.
     ///
     /// # Errors
     /// [`TareRefusal::NothingToUndo`], [`TareRefusal::Busy`].
@@ -219,7 +220,7 @@ impl Estimator {
         Ok(())
     }
 
-    /// What moved the zero in a way that is not taken back stays in its bound: counts, >= 0.
+    /// Adds a lasting movement of the zero to its bound, counts, >= 0. An undo does not remove it.
     pub fn widen(&mut self, by: i32) {
         self.interval.widen(by);
         if let Some(replaced) = &mut self.replaced {
@@ -228,7 +229,7 @@ impl Estimator {
         self.judge_bound();
     }
 
-    /// The air moved by so many counts, somebody says who measures it, and the zero with it.
+    /// The host reports that the air pressure changed by `by` counts. The zero moves with it.
     pub fn shift(&mut self, by: i32) {
         self.window.shift(by);
         self.interval.shift(by);
@@ -244,7 +245,7 @@ impl Estimator {
         core::mem::take(&mut self.moved)
     }
 
-    /// What came of the last command, once.
+    /// The outcome of the last command, returned once. `None` before it is known and after it was taken.
     pub fn take_answer(&mut self) -> Option<Result<(), TareRefusal>> {
         self.answer.take()
     }
@@ -282,8 +283,8 @@ impl Estimator {
         quiet.map(|seen| seen.level)
     }
 
-    /// Drift since the last time that this was asked, microseconds ago.
-    // Once in an image: inlined, it takes 100 bytes more.
+    /// Adds the drift since the last call. Returns the time since then, microseconds.
+    // Not inlined: inlining adds 100 bytes to the image.
     #[inline(never)]
     fn age(&mut self, time: Microseconds) -> u64 {
         let looked = self.looked.replace(time).unwrap_or(time);
@@ -362,8 +363,8 @@ impl Estimator {
         self.judge_bound();
     }
 
-    /// What swings less than noise may is none. Of a hum a part may miss a fifth of the range. It is forgotten
-    /// slowly, by half in 0.7 s, as a press on top of it hides it for some parts.
+    /// A swing that noise can explain counts as 0. A part of a window may miss a fifth of the range of a hum. The swing decays
+    /// slowly, by half in 0.7 s, because a press can hide a hum for some parts.
     fn swing(&mut self, width: i32) {
         let swing = if width > self.limits.swing {
             (width >> 3).saturating_mul(5)

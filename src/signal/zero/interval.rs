@@ -4,31 +4,31 @@ use crate::signal::zero::Zero;
 use crate::signal::zero::limits::{self, Limits};
 use crate::units::{Pressure, saturate};
 
-/// Fraction bits of levels: below 2^47, so that no sum of a few leaves its word.
+/// Fraction bits of levels. A level is below 2^47, so a sum of a few levels cannot overflow.
 const FRACTION: u32 = 16;
 
-/// Longest time that counts at once for rates of seconds, and for drift (38 h), microseconds: no product leaves its word.
+/// Longest time that counts in one step, microseconds: for rates of seconds, and for drift (38 h). With these limits no product overflows.
 const LONGEST: u64 = 1 << 28;
 const LONGEST_DRIFT: u64 = 1 << 37;
 
-/// Levels are counts with [`FRACTION`] more bits.
+/// Bounds of the true zero. Levels are counts with [`FRACTION`] fraction bits.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(super) struct Interval {
-    /// What reads as no rise.
+    /// The level that is reported as a rise of 0.
     value: i64,
-    /// The true zero is not below: the word of a host that the fingertip is unloaded, and drift since.
+    /// Lower bound of the true zero: from the host's assertion that the fingertip was unloaded, and drift since then.
     low: i64,
-    /// Nor above: the lowest quiet level since then, and drift since.
+    /// Upper bound of the true zero: the lowest quiet level since then, and drift since.
     high: i64,
-    /// Where someone last saw it untouched.
+    /// The zero when someone last asserted that the fingertip was untouched.
     witnessed: i64,
     /// The last quiet level that did not look like a touch: it may be the zero.
     looked: i64,
-    /// How far below the witnessed zero a quiet level lay that drift does not explain: there the word is void.
+    /// Largest distance of a quiet level below the witnessed zero that drift does not explain. Such a level contradicts the assertion.
     fallen: i64,
-    /// How far the zero of an absolute part may move before the next window ends: a lift goes on as it did.
+    /// Possible movement of the zero of an absolute part before the next window ends, if a lift continues at its present speed.
     moving: i64,
-    /// Someone saw it untouched.
+    /// Whether someone asserted that the fingertip was untouched.
     pub(super) verified: bool,
 }
 
@@ -45,14 +45,14 @@ const fn counts_above(level: i64) -> i32 {
     counts(level + (1 << FRACTION) - 1)
 }
 
-/// At a rate for some time, rounded up.
+/// Distance at a rate during a time, rounded up.
 const fn travelled(rate: i64, passed: u64, longest: u64) -> i64 {
     let passed = if passed < longest { passed } else { longest };
     ((rate * passed as i64) >> (limits::FRACTION - FRACTION)) + 1
 }
 
 impl Interval {
-    /// A zero of this value; nobody saw it.
+    /// A zero of this value that nobody verified.
     pub(super) const fn unverified(value: Pressure, high: i32, limits: &Limits) -> Self {
         let value = level(value.0);
         Self {
@@ -82,14 +82,14 @@ impl Interval {
         }
     }
 
-    /// What reads as no rise.
+    /// The level that is reported as a rise of 0.
     #[inline]
     pub(super) const fn value(&self) -> Pressure {
         Pressure(counts(self.value))
     }
 
-    /// How far the true zero may be from the value, and how far it may have moved since someone saw it: counts, >= 0.
-    // Once in an image: inlined where it is asked for, each time a window ends, it takes 100 bytes more.
+    /// Largest distance of the true zero from the value, and largest movement since it was witnessed, whichever is larger: counts, >= 0.
+    // Not inlined: inlining at each call adds 100 bytes to the image.
     #[inline(never)]
     pub(super) fn bound(&self, limits: &Limits) -> i32 {
         let up = self.high - self.value;
@@ -100,24 +100,24 @@ impl Interval {
         counts_above(still + self.moving)
     }
 
-    /// Whether somebody saw it, and it is near enough.
+    /// Whether the zero is verified and its bound is within the limit.
     pub(super) fn is_ok(&self, limits: &Limits) -> bool {
         self.verified && self.bound(limits) <= limits.bound
     }
 
-    /// How far the true zero may be above the value, beyond the level of a quiet window: counts, >= 0.
+    /// Largest distance of the true zero above the value, beyond the margin of a quiet window: counts, >= 0.
     pub(super) fn above(&self, limits: &Limits) -> i32 {
         let open = self.value + level(limits.margin);
         counts(self.high - open).max(0).saturating_add(limits.wander)
     }
 
-    /// Both ends move apart by so many counts.
+    /// Moves the lower bound down and the upper bound up by `by` counts.
     pub(super) fn widen(&mut self, by: i32) {
         self.low -= level(by);
         self.high += level(by);
     }
 
-    /// All of it moves by so many counts: somebody else saw the air do so.
+    /// Moves all levels by `by` counts: the host measured this change of the air pressure.
     pub(super) fn shift(&mut self, by: i32) {
         for moved in [
             &mut self.value,
@@ -130,14 +130,14 @@ impl Interval {
         }
     }
 
-    /// Time passes: what is not seen drifts.
+    /// Adds the drift of the time passed to both bounds.
     pub(super) fn drift(&mut self, limits: &Limits, passed: u64) {
         let drift = travelled(limits.drift, passed, LONGEST_DRIFT);
         self.low -= drift;
         self.high += drift;
     }
 
-    /// A quiet window at this pressure, so long after the one before.
+    /// Takes a quiet window at this pressure, `passed` microseconds after the one before.
     pub(super) fn look(&mut self, limits: &Limits, pressure: Pressure, passed: u64) {
         let (seen, margin, touch) = (level(pressure.0), level(limits.margin), level(limits.bound));
         let over = seen - self.high;
@@ -149,28 +149,28 @@ impl Interval {
             return;
         }
         if limits.absolute {
-            // From the middle of the last window to the end of the next one it is one and a half of them.
+            // From the middle of the last window to the end of the next one is one and a half window lengths.
             let moved = (seen - self.looked).abs();
             self.moving = moved + moved / 2;
         }
         self.looked = seen;
-        // Nothing presses with less than nothing: the true zero is not higher than what is seen. But the air may rise.
+        // A press never lowers the pressure, so the true zero is not above the measured level. But the air pressure may rise.
         let air = travelled(limits.air, passed, LONGEST);
         let evident = seen + margin;
         self.high = evident.min(self.high + air);
         let follows = travelled(limits.follows, passed, LONGEST);
         let rise = seen - self.value;
-        // Not `clamp`, which panics where its limits are the wrong way round.
+        // `clamp` would panic if its lower limit were above its upper limit.
         let followed = self.value + rise.max(-follows).min(follows);
         self.value = followed.min(evident);
         if !limits.absolute {
-            // A wall that creeps back lies below its rest for a while: neither goes there.
+            // A wall that creeps back is below its rest for a while. Neither the upper bound nor the value follows it there.
             self.high = self.high.max(self.low + margin);
             self.value = self.value.max(self.low);
-            // Nor without bound where a slow press looks like drift.
+            // A slow press looks like drift, so the value follows it only up to the touch limit.
             self.value = self.value.min(self.witnessed + touch);
         }
-        // Nor so far up that the drift that may be in it is too much, as long as there is a value for which it is not.
+        // The value also stays so low that its distance from the lower bound is within the limit, as long as such a value exists.
         let apart = self.high - self.low;
         if apart <= 2 * touch {
             let highest = self.low + touch - margin;
@@ -178,8 +178,8 @@ impl Interval {
         }
     }
 
-    /// The zero that this level makes when the host asserts that the fingertip is unloaded. What lies over all that is known stays in the
-    /// bound.
+    /// The zero from this level when the host asserts that the fingertip is unloaded. The part of the level above the known
+    /// upper bound stays in the bound.
     pub(super) fn taken(&self, limits: &Limits, pressure: Pressure) -> Self {
         let (seen, margin) = (level(pressure.0), level(limits.margin));
         let known = seen.min(self.high - margin);
@@ -197,7 +197,7 @@ impl Interval {
         taken
     }
 
-    /// Someone vouches for the value.
+    /// The user confirmed the value.
     pub(super) fn vouched(&self, limits: &Limits) -> Self {
         let seen = self.value();
         Self {
@@ -207,7 +207,8 @@ impl Interval {
         .taken(limits, seen)
     }
 
-    /// This zero with what happened since `then`, when another took its place: so long ago. `now` is that other one.
+    /// This zero, updated after another zero was in use. `then` is the other zero when it was taken, `passed` microseconds ago;
+    /// `now` is the other zero at present.
     pub(super) fn since(&self, limits: &Limits, then: &Self, now: &Self, passed: u64) -> Self {
         let followed = now.value - then.value;
         let mut aged = Self {

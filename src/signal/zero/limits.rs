@@ -7,37 +7,37 @@ use model_tables::constants::{
     AIR, AirReference, DesignConstants, Quantity, Transducer, TransducerKind, UNSEEN_KELVINS,
 };
 
-/// How far a zero at start-up may lie from the design's rest pressure, ten-thousandths of the transducer's range: what the
-/// offset of a compensated gauge bridge wanders between one day and another.
+/// Largest distance of a zero at start-up from the design's rest pressure, ten-thousandths of the transducer's range. It is the
+/// day-to-day change of the offset of a compensated gauge bridge.
 pub(crate) const NEAR_PERMYRIAD: i64 = 25;
 
-/// How far any zero may lie from where it is expected, thousandths of the transducer's range: the offset that NXP allows
-/// an MPX5100 (2.5 % of full scale, 0 to 85 degC).
+/// Largest distance of any zero from its expected value, thousandths of the transducer's range: the offset that NXP allows an
+/// MPX5100 (2.5 % of full scale, 0 to 85 degC).
 const FAR_PERMILLE: i64 = 25;
 
-/// How far apart the lowest and the highest sample of a window may lie, in noise floors. White noise of that size spreads
-/// over 5.6 of them in 256 draws, over more than 9 once in 10^16 windows.
+/// Largest difference between the lowest and the highest sample of a quiet window, in noise floors. White noise of one noise
+/// floor spreads over 5.6 of them in 256 draws, over more than 9 once in 10^16 windows.
 const QUIET_FLOORS: i64 = 10;
 
-/// How much wider than half a noise floor a swing is, in standard deviations of a reading: white noise spreads over that in a part of
-/// four samples once in 200 times, over the same levels in three of them once in a day. What is left unseen is three of them to
-/// either side, which a reading's own 1-sigma allows for.
+/// A swing is wider than half a noise floor by this, in standard deviations of a reading. White noise spreads over this width
+/// in one part of four samples in 200, and over the same levels in three successive parts once a day. A smaller swing stays
+/// undetected: three standard deviations to either side, which the 1-sigma of a reading allows for.
 const SWING_DEVIATIONS: i32 = 6;
 
-/// What is left of a gauge bridge's drift after compensation, at a steady temperature, millipascals an hour.
+/// Remaining drift of a compensated gauge bridge at a steady temperature, millipascals an hour.
 pub const GAUGE_DRIFT: i64 = 2_000;
 
-/// The weather, in the zero of an absolute transducer: 1 hPa an hour as a front passes.
+/// Drift of the zero of an absolute transducer by weather, millipascals an hour: 1 hPa an hour as a front passes.
 pub const ABSOLUTE_DRIFT: i64 = 100_000;
 
 /// The fastest change of the air around an absolute transducer, millipascals a second: a lift at 5 m/s, 12 Pa a metre.
 const AIR_RATE: i64 = 60_000;
 
-/// How fast the value follows the untouched pressure up, millipascals a second. Ten times slower than the lightest press
-/// that is felt at once; what it takes away is in the bound.
+/// Rate at which the value follows the untouched pressure up, millipascals a second. It is ten times slower than the lightest
+/// press that is detected at once. The movement is included in the bound.
 const GAUGE_FOLLOWS: i64 = 500;
 
-/// The same of an absolute transducer: 8 m of stairs in 25 s.
+/// The same for an absolute transducer: 8 m of stairs in 25 s.
 const ABSOLUTE_FOLLOWS: i64 = 4_000;
 
 /// Fraction bits of rates.
@@ -46,10 +46,10 @@ pub(crate) const FRACTION: u32 = 32;
 /// The limits of a zero, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Limits {
-    /// The lowest and the highest zero to be expected. Of a gauge transducer they are one, the reference: stored, or the
-    /// design's rest pressure; of an absolute one the rest pressure in the thinnest and in the densest air.
+    /// The lowest and the highest expected zero. For a gauge transducer both are the reference: the stored zero, or the
+    /// design's rest pressure. For an absolute transducer they are the rest pressures in the thinnest and in the densest air.
     pub expected: [Pressure; 2],
-    /// Whether the reference was stored by someone who saw the fingertip untouched.
+    /// Whether the reference is a stored zero, measured on the untouched fingertip.
     pub stored: bool,
     /// Largest distance of an unverified zero from the design's rest pressure, >= 0.
     pub near: i32,
@@ -57,21 +57,21 @@ pub struct Limits {
     pub far: i32,
     /// Largest range of a quiet window, >= 0.
     pub quiet: i32,
-    /// What noise may have in common from one part of a window to the next two, >= 0.
+    /// Largest common range of three successive parts of a window that noise explains, >= 0.
     pub swing: i32,
     /// Error of a zero from a quiet window: half a noise floor, and `wander`.
     pub margin: i32,
     /// Movement of the zero back and forth without a press: the fluid's weight, hysteresis, creep, and temperature if the part does
     /// not measure it; >= 0.
     pub wander: i32,
-    /// The largest bound of a zero whose readings are ok, and the rise from which on a quiet window is a touch: what the design
-    /// states, or six noise floors.
+    /// The largest bound of a zero whose readings are ok. A quiet window above this rise is a touch. The design states it;
+    /// otherwise it is six noise floors.
     pub bound: i32,
-    /// The air is in the pressure.
+    /// Whether the transducer is absolute, so that its pressure includes the air pressure.
     pub absolute: bool,
-    /// Unseen drift, `2^-32` counts a microsecond; the weather is in it where nobody measures the air.
+    /// Largest unobserved drift, `2^-32` counts a microsecond. It includes the weather if the air pressure is not measured.
     pub drift: i64,
-    /// The fastest rise of an untouched zero that is no surprise, in the same unit; 0 for a gauge transducer.
+    /// The fastest expected rise of an untouched zero, in the same unit; 0 for a gauge transducer.
     pub air: i64,
     /// Largest rate at which the value follows, in the same unit.
     pub follows: i64,
@@ -96,7 +96,7 @@ impl Limits {
             absolute && !matches!(zero.air, AirReference::Host),
         );
         let drift = match (stated, unmeasured) {
-            // The weather, beside which the part's own drift is small.
+            // The drift of the part itself is small compared with the weather.
             (0, true) => ABSOLUTE_DRIFT,
             (0, false) => GAUGE_DRIFT,
             (_, true) => stated + ABSOLUTE_DRIFT,
@@ -131,7 +131,7 @@ impl Limits {
         }
     }
 
-    /// The same with a stored zero for the reference. Of an absolute transducer it is of the air of that day, and none.
+    /// The same with a stored zero as the reference. An absolute transducer ignores it, because it depends on the air pressure of that day.
     #[must_use]
     pub const fn with_stored(mut self, zero: Pressure) -> Self {
         if !self.absolute {
@@ -141,19 +141,19 @@ impl Limits {
         self
     }
 
-    /// How far any zero may lie from the middle of its bounds, counts.
+    /// Largest distance of any zero from the middle of the expected range, counts.
     pub const fn reach(&self) -> i32 {
         let [lowest, highest] = self.expected;
         self.far.saturating_add(highest.0.saturating_sub(lowest.0) / 2)
     }
 
-    /// Whether a zero is one that can be.
+    /// Whether a zero is possible.
     pub(super) const fn allows(&self, zero: Pressure) -> bool {
         let [lowest, highest] = self.expected;
         zero.0 >= lowest.0.saturating_sub(self.far) && zero.0 <= highest.0.saturating_add(self.far)
     }
 
-    /// The highest zero that is believed at a start without asking: within the bound of a stored one, near the design's.
+    /// The highest zero that is accepted at a start without a command: within the bound of a stored zero, or near the design's rest pressure.
     pub(super) const fn highest_at_start(&self) -> i32 {
         let over = if self.stored {
             self.bound - self.margin
@@ -164,8 +164,8 @@ impl Limits {
     }
 }
 
-/// What moves a zero back and forth while nothing presses, millipascals: below 2^31 for all that a design can state. The air that a
-/// host measures is right to half a noise floor.
+/// Movement of a zero back and forth without a press, millipascals. It is below 2^31 for every possible design. The air
+/// pressure from a host is accurate to half a noise floor.
 const fn wander(constants: &DesignConstants) -> i64 {
     let zero = &constants.zero;
     let kelvins = if tells_temperature(&constants.transducer) {
@@ -184,22 +184,22 @@ const fn wander(constants: &DesignConstants) -> i64 {
         + air
 }
 
-/// Whether samples of a part come with its temperature: of all on a bus.
+/// Whether samples of a part include its temperature. All parts on a bus do.
 const fn tells_temperature(transducer: &Transducer) -> bool {
     !matches!(transducer.kind, TransducerKind::Ratiometric { .. })
 }
 
-/// How fast what is measured around a fingertip moves its zero; 0 where the design does not ask for it.
+/// Rates at which the measured surroundings move the zero; 0 if the design does not use them.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Rates {
-    /// Of a part that tells its temperature, `2^-16` counts for a hundredth of a kelvin.
+    /// For a part that measures its temperature, in `2^-16` counts for a hundredth of a kelvin.
     pub per_centikelvin: i64,
-    /// The weather since a host told the air, `2^-32` counts a microsecond.
+    /// Weather since the last air pressure from the host, `2^-32` counts a microsecond.
     pub weather: i64,
 }
 
 impl Rates {
-    /// How many [`Surroundings`](crate::signal::zero::surroundings::Surroundings) they need: none, or one.
+    /// Number of [`Surroundings`](crate::signal::zero::surroundings::Surroundings) that these rates need: 0 or 1.
     pub const fn places(&self) -> usize {
         (self.per_centikelvin != 0 || self.weather != 0) as usize
     }
@@ -225,8 +225,8 @@ impl Rates {
     }
 }
 
-/// Millipascals in `microseconds` to `2^-32` counts in one, rounded up. At most 10^5 * 2^16 * 2^32 on the way: 128 bits, by the
-/// compiler or once at the start.
+/// Converts millipascals in `microseconds` to `2^-32` counts a microsecond, rounded up. Intermediate values reach 10^5 * 2^16 *
+/// 2^32 and need 128 bits. The compiler computes it, or the board once at the start.
 const fn per_microsecond(millipascals: i64, fraction_bits: u32, microseconds: i128) -> i64 {
     let divisor = 1000 * microseconds;
     ((((millipascals as i128) << (fraction_bits + FRACTION)) + divisor - 1) / divisor) as i64

@@ -6,40 +6,40 @@
 use crate::signal::zero::limits::{FRACTION, Rates};
 use crate::units::{Centidegrees, Microseconds, Pressure, saturate};
 
-/// Longest time without the air that counts, microseconds: 38 h.
+/// Longest time without an air pressure that counts, microseconds: 38 h.
 const LONGEST: u64 = 1 << 37;
 
-/// The surroundings since the zero was seen.
+/// The surroundings since the zero was measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Surroundings {
-    /// Coldest and warmest.
+    /// Lowest and highest temperature; `None` before the first one.
     span: Option<[Centidegrees; 2]>,
-    /// The last air told, counts, and when.
+    /// The last air pressure from the host, counts, and its time; `None` before the first one.
     told: Option<(Pressure, Microseconds)>,
-    /// When the zero was seen.
+    /// Time when the zero was measured.
     seen: Microseconds,
 }
 
 /// Effects of a new air pressure from the host, counts.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct AirMoved {
-    /// The zero is so much higher.
+    /// Change of the zero.
     pub shift: i32,
-    /// And off by so much more, >= 0.
+    /// Increase of the zero's bound, >= 0.
     pub widen: i32,
 }
 
 /// Reasons for refusing an air pressure.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum AirRefusal {
-    /// The design has nobody tell it.
+    /// The design does not take the air pressure from a host.
     NotInDesign,
     /// It is outside [`AIR`](model_tables::constants::AIR).
     OutOfBounds,
 }
 
 impl Surroundings {
-    /// Nothing is known of them.
+    /// Unknown surroundings.
     pub const NEW: Self = Self {
         span: None,
         told: None,
@@ -53,7 +53,7 @@ impl Surroundings {
         self.span = Some([coldest.min(now), warmest.max(now)]);
     }
 
-    /// How far the zero may have moved since it was seen: counts, >= 0.
+    /// Largest movement of the zero since it was measured: counts, >= 0.
     pub fn moved(&self, rates: &Rates, now: Microseconds) -> i32 {
         let warmed = self.span.map_or(0, |[coldest, warmest]| {
             // 2^17 * 2^42.
@@ -64,7 +64,7 @@ impl Surroundings {
         saturate(warmed.saturating_add(weather(rates, since, now)))
     }
 
-    /// The zero was seen, or what it may have moved by is in its bound.
+    /// The zero was measured, or its possible movement so far was added to its bound.
     pub fn begin(&mut self, now: Microseconds) {
         self.span = None;
         self.seen = now;
@@ -86,16 +86,16 @@ impl Surroundings {
     }
 }
 
-/// What the weather may do from one time to another, counts, rounded up; 0 backwards.
+/// Largest change by weather from one time to another, counts, rounded up; 0 if `to` is before `from`.
 fn weather(rates: &Rates, from: Microseconds, to: Microseconds) -> i64 {
     // 100 Pa/h are below 2^23, for 2^37 us.
     let passed = to.0.saturating_sub(from.0).min(LONGEST) as i64;
     (rates.weather * passed + (1 << FRACTION) - 1) >> FRACTION
 }
 
-/// Room for the surroundings: one place, or none in an image whose design asks for nothing of them.
+/// Storage for the surroundings: one place, or none in an image whose design does not use them.
 pub trait Around: AsRef<[Surroundings]> + AsMut<[Surroundings]> + Clone + core::fmt::Debug {
-    /// Nothing is known of them.
+    /// Unknown surroundings.
     const NEW: Self;
 }
 

@@ -28,17 +28,17 @@ pub enum TareRefusal {
 pub(super) struct Measuring {
     /// The host asserts that the fingertip is unloaded, and waits for an answer.
     pub(super) commanded: bool,
-    /// Over a zero that was ok then: it is not given up for one that is not.
+    /// Whether the zero was ok at the start of the measurement. An ok zero is not replaced by one that is not ok.
     pub(super) over_ok: bool,
-    /// A start whose [`PATIENCE`] ended without a zero: it goes on for want of one, gives way to a command and resumes
-    /// where that fails.
+    /// Whether the [`PATIENCE`] of a start ended without a zero. The measurement then continues, gives way to a command, and
+    /// resumes if the command fails.
     pub(super) overdue: bool,
     pub(super) since: Option<Microseconds>,
-    /// Why the last window was no good.
+    /// Why the last window gave no zero.
     pub(super) objection: TareRefusal,
 }
 
-/// What a command replaced, and with what.
+/// The zero that a command replaced, and the new one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Replaced {
     pub(super) before: Interval,

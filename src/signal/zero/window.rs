@@ -5,33 +5,33 @@
 
 use crate::units::{Microseconds, Pressure, saturate};
 
-/// How long a window is, microseconds: many periods of any hum, shorter than patience.
+/// Length of a window, microseconds: many periods of any hum, and shorter than `PATIENCE`.
 pub(super) const LENGTH: u64 = 256_000;
 
-/// How long a part of it is, microseconds, or as long as two samples take: at 50 Hz it holds nine tenths of the range, at 60 Hz
-/// nearly all. Three of them are shorter than two turns of the fastest tremor of a hand, 12 Hz.
+/// Length of a part of a window, microseconds; at least two samples. It contains nine tenths of the range of a 50 Hz hum, and
+/// nearly all at 60 Hz. Three parts are shorter than two periods of the fastest tremor of a hand, 12 Hz.
 pub(super) const PART: u64 = 16_000;
 
-/// Samples so far: at most 2^32 of at most 2^31.
+/// The samples so far: at most 2^32 samples of at most 2^31 counts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
-    /// When the part under way began.
+    /// Start of the present part.
     since: Option<Microseconds>,
     samples: u32,
     sum: i64,
-    /// Of the part under way.
+    /// Lowest and highest sample of the present part.
     lowest: Pressure,
     highest: Pressure,
-    /// When the window began.
+    /// Start of the window.
     begun: Microseconds,
-    /// The range of its parts that ended.
+    /// The range over all its completed parts.
     range: Range,
-    /// The ranges of the two parts before, across windows: what both have in common, and the last one.
+    /// Of the last two completed parts, across windows: `common` is their common range, `last` the range of the last one.
     common: Range,
     last: Range,
 }
 
-/// From the lowest to the highest of some samples, counts; of none the other way round.
+/// From the lowest to the highest of some samples, counts. Without samples, `low` is above `high`.
 #[derive(Clone, Copy, Debug)]
 struct Range {
     low: i32,
@@ -61,21 +61,21 @@ impl Range {
     }
 }
 
-/// What a full window saw.
+/// Result of a complete window.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(super) struct Seen {
     /// The mean of its samples.
     pub level: Pressure,
-    /// From the lowest to the highest of them, counts.
+    /// Difference between the highest and the lowest sample, counts.
     pub spread: i32,
 }
 
-/// What a part saw, and the window if it ended with it.
+/// Result of a part, and of the window if it ended with the part.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(super) struct Part {
-    /// What its range has in common with those of the two before it, counts: from one side to the other; 0 or less for nothing.
+    /// Width of the common range of this part and the two before it, counts; 0 or less if there is none.
     pub swing: i32,
-    /// The window; `None` until it is long enough.
+    /// The result of the window; `None` until the window is long enough.
     pub window: Option<Seen>,
 }
 
@@ -92,7 +92,7 @@ impl Window {
         last: Range::EMPTY,
     };
 
-    /// Takes a sample; a part that ends with it says what it saw.
+    /// Takes a sample. Returns the result of a part that ends with it.
     #[inline]
     pub(super) fn add(&mut self, time: Microseconds, pressure: Pressure) -> Option<Part> {
         let since = *self.since.get_or_insert(time);
@@ -106,7 +106,7 @@ impl Window {
         None
     }
 
-    /// The air, which is in all of its samples, moved by so many counts.
+    /// The air pressure changed: adds `by` counts to all samples so far.
     pub(super) fn shift(&mut self, by: i32) {
         self.sum = self.sum.saturating_add(i64::from(by) * i64::from(self.samples));
         self.lowest = Pressure(self.lowest.0.saturating_add(by));
@@ -116,7 +116,7 @@ impl Window {
         }
     }
 
-    /// What it sees is no level of the zero: it will not have been quiet.
+    /// Marks the window as not quiet, because its pressure is no evidence for the zero.
     #[inline]
     pub(super) fn disturb(&mut self) {
         self.lowest = Pressure(i32::MIN);
@@ -130,7 +130,7 @@ impl Window {
             high: self.highest.0,
         };
         (self.lowest, self.highest) = (Self::EMPTY.lowest, Self::EMPTY.highest);
-        // What a disturbed part saw is no swing either.
+        // A disturbed part has no swing either.
         let told = if part.low == i32::MIN { Range::EMPTY } else { part };
         let three = told.common(self.common);
         self.common = told.common(self.last);
