@@ -1,20 +1,20 @@
-//! The frame of the band: how far the truth may lie from the readings of a board that is not told what it touches.
+//! The frame of the band: how far the true values may be from the readings of a board to which the touched object is unknown.
 
 use crate::link::wire::{DecodeError, Encoded, Reader};
 use crate::units::Microseconds;
 use model_tables::table::band::{ChipBand, ChipBandRow, MAX_BAND_ROWS};
 use model_tables::units::PressureRise;
 
-/// The kind of its frame.
+/// Kind code of the frame.
 pub(super) const BAND: u8 = 8;
-/// Bytes before the rows, and of a row.
+/// Bytes before the rows, and bytes of a row.
 const BEFORE: usize = 6;
 const ROW: usize = 12;
 
-/// The band of the hello before it.
+/// The band that belongs to the hello before it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct BandMessage {
-    /// When it was sent.
+    /// Time when it was sent.
     pub time: Microseconds,
     /// `k`: a count of its pressure rises is `1 / 2^k` pascal, 0 to 31.
     pub pressure_fraction_bits: u8,
@@ -22,7 +22,7 @@ pub struct BandMessage {
     pub band: ChipBand,
 }
 
-/// Puts what follows the header, and in a hand the tip.
+/// Writes the fields after the header; in a hand, after the tip.
 pub(super) fn write(body: &mut Encoded, message: &BandMessage) {
     let band = &message.band;
     body.put([message.pressure_fraction_bits, band.count]);
@@ -35,7 +35,7 @@ pub(super) fn write(body: &mut Encoded, message: &BandMessage) {
     }
 }
 
-/// The same from the rest of a body, whose first byte has the offset `at`.
+/// Reads the fields from the rest of a body. `at` is the offset of the first byte.
 pub(super) fn read(mut fields: Reader<'_>, time: Microseconds, at: u8) -> Result<BandMessage, DecodeError> {
     let [pressure_fraction_bits, count] = fields.take()?;
     if pressure_fraction_bits > 31 {

@@ -13,40 +13,40 @@ use model_tables::table::law::Touched;
 
 const HEADER: usize = 4;
 
-/// What is asked for.
+/// A command from the host.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Command {
-    /// Nothing presses: take a new zero.
+    /// Take a new zero. The host asserts that the fingertip is unloaded.
     Tare,
     /// Take back the last commanded zero.
     Undo,
     /// Store zero and gain for the next start.
     Save {
-        /// A new gain trim, parts in a million added to the pressure rise; nothing keeps the one there is.
+        /// A new gain trim, parts in a million added to the pressure rise. `None` keeps the current trim.
         gain: Option<i32>,
     },
-    /// Say hello.
+    /// Send a hello.
     Info,
-    /// Look for what is wrong.
+    /// Run the self-test.
     SelfTest {
-        /// How deep the fingertip is pressed now, nanometres; 0: it is not known.
+        /// Present indentation of the fingertip, nanometres. 0 means unknown.
         indentation: i32,
     },
-    /// Put only every so many-th report on the wire.
+    /// Send only one report out of `every`.
     Rate {
         /// 1 to 1000.
         every: u16,
     },
-    /// Store that nothing is stored: the next zero is a first one.
+    /// Clear the stored calibration. The next zero is a first zero.
     Forget,
-    /// The air around an absolute transducer, as the host measures it.
+    /// The air pressure around an absolute transducer, measured by the host.
     Air {
         /// Pascals absolute.
         pascals: i32,
     },
-    /// Something else is touched from now on.
+    /// Select the object that is touched from now on.
     Object(Touched),
-    /// The hand knows how deep the fingertip is pressed.
+    /// The hand gives a known indentation of the fingertip.
     Indentation {
         /// Nanometres, above 0.
         known: i32,
@@ -93,19 +93,19 @@ impl CommandKind {
         (Self::Air, 0x8A),
     ];
 
-    /// Its code.
+    /// Code of the kind on the wire.
     pub fn code(self) -> u8 {
         code_of(&Self::CODES, self)
     }
 
-    /// The kind that has a code.
+    /// The kind with this code. `None` for an unknown code.
     pub fn from_code(code: u8) -> Option<Self> {
         named_by(&Self::CODES, code)
     }
 }
 
 impl Command {
-    /// Which it is.
+    /// Kind of the command.
     pub const fn kind(self) -> CommandKind {
         match self {
             Self::Tare => CommandKind::Tare,
@@ -131,23 +131,23 @@ pub enum Outcome {
     Touched,
     /// The fingertip did not keep still.
     Restless,
-    /// The zero is further off than any transducer drifts.
+    /// The zero is further from its expected value than any transducer drifts.
     OutOfBounds,
     /// There are no readings.
     NoReading,
-    /// The same, or something like it, is under way.
+    /// The same or a similar action is under way.
     Busy,
     /// There is nothing to undo.
     NothingToUndo,
     /// There is no verified zero to be stored: tare first.
     ZeroUnverified,
-    /// The memory did not take it; the one in use before stays in use.
+    /// The memory write failed. The previous calibration stays in use.
     MemoryFailed,
-    /// The design in the image has no use for it.
+    /// The design in the image does not use this command.
     NotInImage,
-    /// There are no tables of such an object.
+    /// There are no tables for this object.
     NoSuchObject,
-    /// More saves than the memory lasts ten years with: one is possible again after 6.5 minutes, or what PROTOCOL.md states.
+    /// More saves than the memory endures for ten years. The next save is possible after 6.5 minutes, or the time that PROTOCOL.md states.
     SavedTooOften,
 }
 
@@ -200,9 +200,9 @@ impl From<TareRefusal> for Outcome {
 /// A command with the number its sender gave it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Request {
-    /// Comes back in the answer.
+    /// Sequence number; the answer repeats it.
     pub sequence: u16,
-    /// What is asked for.
+    /// The command.
     pub command: Command,
 }
 
@@ -232,7 +232,7 @@ pub fn encode(request: &Request) -> Encoded {
 /// The request in the bytes between two zeros (the zeros themselves left out).
 ///
 /// # Errors
-/// [`DecodeError`] for anything that [`encode`] would not have written for a request that can be.
+/// [`DecodeError`] for any bytes that [`encode`] does not write for a valid request.
 pub fn decode(stuffed: &[u8]) -> Result<Request, DecodeError> {
     read_body(&unstuff(stuffed)?)
 }
@@ -245,8 +245,8 @@ pub fn read_body(body: &[u8]) -> Result<Request, DecodeError> {
     read_known_body::<true>(body)
 }
 
-/// The same for a board with `[object]` in its design, or without: there [`Command::Object`] and [`Command::Indentation`] are no
-/// commands.
+/// The same for a board with `[object]` in its design, or without: without `[object]`, [`Command::Object`] and
+/// [`Command::Indentation`] are unknown commands.
 ///
 /// # Errors
 /// As [`decode`].

@@ -5,16 +5,16 @@ use crate::link::wire::{DecodeError, Encoded, PROTOCOL_VERSION, Reader, unstuff}
 use crate::status::{code_of, named_by};
 use crate::units::Microseconds;
 
-/// Bytes of a chunk: each begins at a multiple of it, and only the last of a block may be shorter.
+/// Bytes of a chunk: each chunk begins at a multiple of this length. Only the last chunk of a block may be shorter.
 pub const CHUNK: usize = 64;
 
-/// Most bytes that are read back at a time.
+/// Largest number of bytes in one read-back.
 pub const READ_BACK: usize = 56;
 
-/// The argument of the command `arm`; no other command has it.
+/// The argument of the command `arm`. No other command uses it.
 pub const ARM_WORD: [u8; 4] = *b"LOAD";
 
-/// Bytes before what goes with a command: version, kind, sequence number.
+/// Bytes before the arguments of a command: version, kind, sequence number.
 const HEADER: usize = 4;
 
 /// Between 1 and `N` bytes.
@@ -25,7 +25,7 @@ pub struct Piece<const N: usize> {
 }
 
 impl<const N: usize> Piece<N> {
-    /// A piece of these; nothing for none, and for more than `N`.
+    /// A piece with these bytes. `None` for no bytes, and for more than `N`.
     pub fn of(from: &[u8]) -> Option<Self> {
         let mut bytes = [0; N];
         bytes.get_mut(..from.len())?.copy_from_slice(from);
@@ -41,39 +41,39 @@ impl<const N: usize> Piece<N> {
     }
 }
 
-/// What is asked for.
+/// A command from the host.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum LoadCommand {
-    /// Allow loading for a while.
+    /// Allow loading for a limited time.
     Arm,
     /// Erase the free slot for a block.
     Begin {
-        /// Which tip of the board, from 0.
+        /// Number of the tip on the board, from 0.
         tip: u8,
         /// Bytes of the whole block.
         length: u32,
-        /// The CRC-32 in its head.
+        /// The CRC-32 in the head of the block.
         check: u32,
     },
-    /// Write a part of it.
+    /// Write a part of the block.
     Chunk {
-        /// Where it begins, a multiple of [`CHUNK`].
+        /// Offset of the part in the block, bytes: a multiple of [`CHUNK`].
         offset: u32,
         /// The bytes.
         bytes: Piece<CHUNK>,
     },
-    /// Read the whole block and judge it.
+    /// Read the whole block and check it.
     Verify,
-    /// Use it from a restart on.
+    /// Use the block from the next restart on.
     Activate {
-        /// The design's, as a check.
+        /// Hash of the design, as a check.
         hash: u64,
     },
-    /// Use what was used before.
+    /// Return to the block used before.
     RollBack,
     /// Send a part of the block in use.
     ReadBack {
-        /// Where it begins.
+        /// Offset in the block, bytes.
         offset: u32,
         /// Bytes, 1 to [`READ_BACK`].
         length: u8,
@@ -126,7 +126,7 @@ impl LoadKind {
 }
 
 impl LoadCommand {
-    /// Which it is.
+    /// Kind of the command.
     pub const fn kind(self) -> LoadKind {
         match self {
             Self::Arm => LoadKind::Arm,
@@ -145,23 +145,23 @@ impl LoadCommand {
 pub enum LoadOutcome {
     /// It is done.
     Done,
-    /// The block, or the part asked for, is outside of the memory's or the block's length.
+    /// The block is longer than the memory, or the requested part is outside the block.
     OutOfBounds,
     /// The board is about to restart.
     Busy,
     /// There is nothing to roll back.
     NothingToRollBack,
-    /// The memory did not take it; what is in use still is.
+    /// The memory write failed. The block in use stays in use.
     MemoryFailed,
     /// The board has no such tip.
     WrongTip,
-    /// Another command has to come before.
+    /// Another command must come first.
     OutOfOrder,
-    /// The block is none that this image uses: the findings say why.
+    /// This image cannot use the block. The findings give the reason.
     BlockRefused,
-    /// The block is of another design than the one named.
+    /// The block belongs to another design than the command names.
     OtherHash,
-    /// Loading is not allowed: `arm` first.
+    /// Loading is not allowed. Send `arm` first.
     NotArmed,
 }
 
@@ -183,13 +183,13 @@ impl LoadOutcome {
 
 /// Reasons for refusing a block, one bit each.
 pub mod refused {
-    /// It is shorter or longer than `load begin` announced, or no block.
+    /// It is shorter or longer than `load begin` announced, or is not a block.
     pub const LENGTH: u16 = 1;
     /// Its CRC-32 differs.
     pub const CHECK: u16 = 2;
-    /// Its layout is another one.
+    /// It has another layout.
     pub const LAYOUT: u16 = 4;
-    /// Its tables may answer wrongly.
+    /// Its tables may give wrong values.
     pub const TABLES: u16 = 8;
     /// A value is out of its range.
     pub const VALUE: u16 = 16;
@@ -200,9 +200,9 @@ pub mod refused {
 /// A command with the number its sender gave it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct LoadRequest {
-    /// Comes back in the answer.
+    /// Sequence number; the answer repeats it.
     pub sequence: u16,
-    /// What is asked for.
+    /// The command.
     pub command: LoadCommand,
 }
 
@@ -211,24 +211,24 @@ pub struct LoadRequest {
 pub enum LoadReply {
     /// Answer to a command.
     Answer {
-        /// When.
+        /// Time of the reply.
         time: Microseconds,
-        /// Which command.
+        /// Kind of the command.
         kind: LoadKind,
-        /// Its sequence number, as it came.
+        /// Sequence number of the command.
         sequence: u16,
-        /// What came of it.
+        /// Outcome of the command.
         outcome: LoadOutcome,
-        /// Of a refused block: why, as in [`refused`].
+        /// Reasons for refusing a block, bits of [`refused`]; 0 otherwise.
         findings: u16,
     },
     /// A part of the block in use.
     Data {
-        /// When.
+        /// Time of the reply.
         time: Microseconds,
-        /// The sequence number of the command that asked for it.
+        /// Sequence number of the command that requested it.
         sequence: u16,
-        /// Where it begins.
+        /// Offset in the block, bytes.
         offset: u32,
         /// The bytes.
         bytes: Piece<READ_BACK>,
@@ -269,12 +269,12 @@ pub fn encode(request: &LoadRequest) -> Encoded {
 /// The request in the bytes between two zeros (the zeros themselves left out).
 ///
 /// # Errors
-/// [`DecodeError`] for anything that [`encode`] would not have written for a request that can be.
+/// [`DecodeError`] for any bytes that [`encode`] does not write for a valid request.
 pub fn decode(stuffed: &[u8]) -> Result<LoadRequest, DecodeError> {
     read_body(&unstuff(stuffed)?)
 }
 
-/// Whether a body asks for one of these commands: the others are [`command`](super::command)'s.
+/// Whether a body is one of these commands. All other commands are in [`command`](super::command).
 pub fn is_load(body: &[u8]) -> bool {
     body.get(1)
         .is_some_and(|&code| named_by(&LoadKind::CODES, code).is_some())
@@ -342,7 +342,7 @@ pub fn read_body(body: &[u8]) -> Result<LoadRequest, DecodeError> {
 /// The kind of a frame with data read back.
 pub(crate) const DATA: u8 = 7;
 
-/// Adds what follows the header of a reply.
+/// Writes the fields after the header of a reply.
 pub(crate) fn write_reply(body: &mut Encoded, reply: &LoadReply) {
     match reply {
         LoadReply::Answer {
@@ -370,7 +370,7 @@ pub(crate) fn write_reply(body: &mut Encoded, reply: &LoadReply) {
     }
 }
 
-/// The reply in what follows the header of an answer; nothing for an answer to another command.
+/// Reads the reply from the fields after the header of an answer. `None` for an answer to another command.
 pub(crate) fn read_answer(
     mut fields: Reader<'_>,
     time: Microseconds,
@@ -391,7 +391,7 @@ pub(crate) fn read_answer(
     Some(read())
 }
 
-/// The reply in what follows the header of data read back.
+/// Reads the reply from the fields after the header of data read back.
 pub(crate) fn read_data(mut fields: Reader<'_>, time: Microseconds) -> Result<LoadReply, DecodeError> {
     Ok(LoadReply::Data {
         time,

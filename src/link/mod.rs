@@ -1,5 +1,5 @@
-//! The serial line, both ways: frames on the [`wire`], what the board sends ([`telemetry`], from an [`outbox`]) and what the
-//! host may ask ([`command`]). `PROTOCOL.md` beside this file is the page to write a client from.
+//! The serial line, both ways: frames on the [`wire`], frames from the board ([`telemetry`], queued in an [`outbox`]) and
+//! commands from the host ([`command`]). To write a client, use `PROTOCOL.md` beside this file.
 
 #[cfg(band)]
 pub mod band;

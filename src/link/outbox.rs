@@ -4,11 +4,11 @@
 use crate::link::telemetry::{self, Message};
 use crate::link::wire::Encoded;
 
-/// Room for `FRAMES` waiting frames, at least one, of a board with `[object]` in its design or without.
+/// A queue of `FRAMES` waiting frames, at least one. `OBJECT`: the design of the board has `[object]`.
 #[derive(Debug)]
 pub struct Outbox<'a, const FRAMES: usize, const OBJECT: bool = true> {
     frames: [&'a mut Encoded; FRAMES],
-    /// Place of the oldest one waiting.
+    /// Index of the oldest waiting frame.
     oldest: usize,
     waiting: usize,
     sequence: u16,
@@ -16,7 +16,7 @@ pub struct Outbox<'a, const FRAMES: usize, const OBJECT: bool = true> {
 }
 
 impl<'a, const FRAMES: usize, const OBJECT: bool> Outbox<'a, FRAMES, OBJECT> {
-    /// Nothing waits.
+    /// An empty queue.
     pub const fn new(frames: [&'a mut Encoded; FRAMES]) -> Self {
         Self {
             frames,
@@ -27,13 +27,13 @@ impl<'a, const FRAMES: usize, const OBJECT: bool> Outbox<'a, FRAMES, OBJECT> {
         }
     }
 
-    /// Puts a message behind the others.
+    /// Appends a message to the queue.
     #[inline(never)] // several places speak; one copy of the encoder is enough
     pub fn put(&mut self, message: &Message) {
         self.put_by(|frame, sequence, dropped| telemetry::write::<OBJECT>(frame, sequence, dropped, message));
     }
 
-    /// Puts a frame behind the others that `write` writes, with its number and how many were dropped before it.
+    /// Appends a frame that `write` writes. `write` takes the frame, its number, and the number of frames dropped before it.
     #[inline]
     pub fn put_by(&mut self, write: impl FnOnce(&mut Encoded, u16, u16)) {
         if self.waiting == FRAMES {
@@ -49,7 +49,7 @@ impl<'a, const FRAMES: usize, const OBJECT: bool> Outbox<'a, FRAMES, OBJECT> {
         }
     }
 
-    /// Exchanges `frame`, which was sent, for the oldest one; whether there was any.
+    /// Exchanges `frame`, which was sent, for the oldest waiting frame. Returns whether a frame was waiting.
     #[allow(clippy::mut_mut)] // frames change hands, not their bytes
     pub fn take(&mut self, frame: &mut &'a mut Encoded) -> bool {
         if self.waiting == 0 {
@@ -63,7 +63,7 @@ impl<'a, const FRAMES: usize, const OBJECT: bool> Outbox<'a, FRAMES, OBJECT> {
         true
     }
 
-    /// Whether nothing waits.
+    /// Whether no frame waits.
     pub const fn is_empty(&self) -> bool {
         self.waiting == 0
     }

@@ -1,5 +1,5 @@
-//! The way out for frames. A line of its own may be used at any time; on a shared line of one pair (RS-485, half duplex) the board
-//! is silent until the host gives it the turn.
+//! The way out for frames. A dedicated line may be used at any time; on a shared line of one pair (RS-485, half duplex) the
+//! board is silent until the host gives it the turn.
 //!
 //! The rule of the shared line:
 //!
@@ -11,9 +11,9 @@
 
 use crate::units::Microseconds;
 
-/// A line that frames go out on.
+/// A line that sends frames.
 pub trait FrameSink {
-    /// What the driver says of a frame.
+    /// Result that the driver returns for a frame.
     type Outcome;
 
     /// Whether the next one may be sent.
@@ -22,36 +22,36 @@ pub trait FrameSink {
     }
 
     /// Sends one. A failure shows as a gap in the sequence: the line has no receiver that could refuse.
-    // Its future and no `async fn`, so that an implementation returns the driver's own: a state machine around it takes 200 bytes of flash.
+    // Not an `async fn`, so that an implementation can return the driver's own future. Another state machine around it takes 200 bytes of flash.
     fn send(&mut self, frame: &[u8]) -> impl Future<Output = Self::Outcome>;
 
-    /// Nothing more is sent in this turn.
+    /// Ends the turn: nothing more is sent in it.
     fn end_turn(&mut self) {}
 }
 
-/// Whose turn it is on a shared line, at the board's end.
+/// Keeps track of the turn on a shared line, in the board.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Turn {
-    /// The last byte heard.
+    /// The last received byte.
     last: u8,
-    /// The board's turn ends then, microseconds; 0: it is the host's.
+    /// Time when the board's turn ends, microseconds. 0 means that it is the host's turn.
     ends: u64,
-    /// Frames that it may still send.
+    /// Number of frames that the board may still send in this turn.
     left: u8,
 }
 
 impl Turn {
-    /// Most frames in one turn of the board: all that can wait.
+    /// Largest number of frames in one turn of the board: all that can wait in the queue.
     pub const FRAMES: u8 = 16;
 
-    /// The board begins, and goes on after a frame, within this time, microseconds.
+    /// The board starts its turn, and continues after a frame, within this time, microseconds.
     pub const LAPSE: u64 = 500;
 
-    /// The host's turn begins when it has heard nothing for this long, microseconds: the lapse, a byte of 10 us, and time for the
-    /// drivers to change direction.
+    /// The host's turn begins when it has received nothing for this time, microseconds: the lapse, a byte of 10 us, and time
+    /// for the drivers to change direction.
     pub const QUIET: u64 = 1_000;
 
-    /// Before anything was heard it is the host's turn.
+    /// The state before the first byte: it is the host's turn.
     pub const HOSTS: Self = Self {
         last: 0,
         ends: 0,
@@ -80,7 +80,7 @@ impl Turn {
         }
     }
 
-    /// The board has sent all that it will.
+    /// The board has sent its last frame of the turn.
     pub fn end(&mut self) {
         self.ends = 0;
     }

@@ -17,18 +17,18 @@ use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
 pub(super) const HEADER: usize = 14;
 const READING: usize = HEADER + 28;
-/// Of a design with a feedback actuator.
+/// Length for a design with a feedback actuator.
 const FEEDBACK: usize = READING + 8;
 const FAULT: usize = HEADER + 1;
 const HELLO: usize = HEADER + 47;
 const ANSWER: usize = HEADER + 6;
-/// Of an indentation that tells something.
+/// Length of an answer with the contact from a known indentation.
 const KNOWN: usize = ANSWER + 16;
 
 /// Identity and state of the board, once a second and on request.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Hello {
-    /// When.
+    /// Time when it was made.
     pub time: Microseconds,
     /// Version of the firmware: major, minor, patch.
     pub firmware: [u8; 3],
@@ -36,9 +36,9 @@ pub struct Hello {
     pub reset_cause: ResetCause,
     /// Hash of the design whose tables are in the image.
     pub design_hash: u64,
-    /// Version of those tables' layout.
+    /// Version of the layout of these tables.
     pub table_version: u32,
-    /// From one report on the wire to the next, microseconds.
+    /// Time from one sent report to the next, microseconds.
     pub report_period: u32,
     /// State of the stored calibration.
     pub stored: Stored,
@@ -46,7 +46,7 @@ pub struct Hello {
     pub last_fault: LastFault,
     /// Unrequested resets in a row.
     pub resets_in_a_row: u8,
-    /// Which task, line or address, as `last_fault` says.
+    /// Task, line or address of the fault; `last_fault` determines which.
     pub last_fault_detail: u32,
     /// Number of the stored calibration.
     pub stored_sequence: u32,
@@ -63,11 +63,11 @@ pub struct Hello {
 /// Answer to a command.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Answer {
-    /// When.
+    /// Time when it was made.
     pub time: Microseconds,
-    /// Which command.
+    /// Kind of the command.
     pub command: CommandKind,
-    /// Its sequence number, as it came.
+    /// Sequence number of the command.
     pub command_sequence: u16,
     /// Its outcome.
     pub outcome: Outcome,
@@ -88,11 +88,11 @@ pub enum Message {
         /// `k`: a count of its pressure rise is `1 / 2^k` pascal. 0 to 31; a fault carries none and reads 0.
         pressure_fraction_bits: u8,
     },
-    /// Who is speaking.
+    /// Identity and state of the board.
     Hello(Hello),
     /// Answer to a command.
     Answer(Answer),
-    /// The band of the hello before it.
+    /// The band that belongs to the hello before it.
     #[cfg(band)]
     Band(BandMessage),
     /// Answer of the loader of a tip's data.
@@ -101,7 +101,7 @@ pub enum Message {
 }
 
 impl Message {
-    /// The board's time: of a report the middle of its samples, of the others when they were made.
+    /// The board's time. For a report it is the middle of its samples, for other messages the time when they were made.
     pub const fn time(&self) -> Microseconds {
         match self {
             Self::Report { report, .. } => report.time,
@@ -118,11 +118,11 @@ impl Message {
 /// A message and its place in the stream.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Frame {
-    /// Counts frames, wraps.
+    /// Number of the frame; wraps.
     pub sequence: u16,
     /// Frames dropped since reset, wraps.
     pub dropped: u16,
-    /// What it says.
+    /// Content of the frame.
     pub message: Message,
 }
 
@@ -133,8 +133,8 @@ pub fn encode(frame: &Frame) -> Encoded {
     encoded
 }
 
-/// The same, where the bytes are to be sent from; by a board with `[object]` in its design, or without: there no indentation tells
-/// anything.
+/// Writes a frame into the buffer from which it is sent. `OBJECT`: the design of the board has `[object]`; without it, no
+/// answer contains a known contact.
 pub fn write<const OBJECT: bool>(body: &mut Encoded, sequence: u16, dropped: u16, message: &Message) {
     body.begin();
     let mut header = |kind: u8, time: Microseconds| {
@@ -199,7 +199,7 @@ pub fn write<const OBJECT: bool>(body: &mut Encoded, sequence: u16, dropped: u16
     body.finish();
 }
 
-/// What a known indentation told.
+/// Writes the contact from a known indentation.
 #[inline]
 pub(super) fn write_known(body: &mut Encoded, known: &KnownContact) {
     for number in [
@@ -212,7 +212,7 @@ pub(super) fn write_known(body: &mut Encoded, known: &KnownContact) {
     }
 }
 
-/// What a known indentation told, which qualifies it in `doubts`.
+/// Reads the contact from a known indentation. `doubts` are its warnings.
 pub(super) fn read_known(fields: &mut Reader<'_>, doubts: u16) -> Result<KnownContact, DecodeError> {
     let mut number = || fields.take().map(i32::from_le_bytes);
     Ok(KnownContact {
@@ -250,7 +250,7 @@ pub(super) fn write_hello(body: &mut Encoded, hello: &Hello) {
 /// The frame in the bytes between two zeros (the zeros themselves left out).
 ///
 /// # Errors
-/// [`DecodeError`] for anything that [`encode`] would not have written.
+/// [`DecodeError`] for any bytes that [`encode`] does not write.
 pub fn decode(stuffed: &[u8]) -> Result<Frame, DecodeError> {
     read_body(&unstuff(stuffed)?)
 }
@@ -424,7 +424,7 @@ pub(super) fn read_hello(fields: &mut Reader<'_>, time: Microseconds) -> Result<
     })
 }
 
-/// Frames out of a stream of bytes that come one at a time.
+/// Decodes frames from a stream, one byte at a time.
 #[derive(Clone, Debug, Default)]
 pub struct Decoder(Deframer);
 

@@ -22,11 +22,11 @@ use heapless::{String, Vec};
 pub use read::read_load;
 pub use read::{read_body, read_request};
 
-/// Most tips of a board.
+/// Largest number of tips of a board.
 pub const MAX_TIPS: usize = 12;
-/// Bytes of a tip's name, at most.
+/// Largest length of a tip's name, bytes.
 pub const NAME: usize = 32;
-/// The tip of a command that all tips are to take.
+/// Tip number of a command to all tips.
 pub const ALL_TIPS: u8 = 255;
 
 const BOARD: u8 = 3;
@@ -34,38 +34,38 @@ const ANSWER: u8 = 4;
 const READINGS: u8 = 5;
 const TIP: u8 = 6;
 
-/// Whether the command `object` and what a known indentation tells are there: in an image where a design of a tip has an `[object]`, or may
-/// be loaded with one.
+/// Whether the image has the command `object` and the contact from a known indentation. It has both if the design of a tip has
+/// `[object]`, or if such a design may be loaded.
 const OBJECT: bool = cfg!(any(object, not(hand), feature = "load-tip"));
 
 /// Bytes of a tip in a frame of readings.
 const READING_BYTES: usize = 18;
 const FAULTY: u8 = 1 << 7;
 
-/// What a frame of version 3 tells.
+/// Content of a frame of version 3.
 #[allow(
     clippy::large_enum_variant,
     reason = "there is no allocator to box a variant with"
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum TipsMessage {
-    /// The reports of all tips, in their order, of one instant.
+    /// The reports of all tips at one instant, in the order of the tips.
     Readings {
-        /// That instant.
+        /// Time of the reports.
         time: Microseconds,
         /// `k`: a count of their pressure rises is `1 / 2^k` pascal.
         pressure_fraction_bits: u8,
         /// One for each tip.
         reports: Vec<Report, MAX_TIPS>,
     },
-    /// The board: what a hello of version 2 has, its hash that of the hand, its stored calibration that of tip 0.
+    /// The board: the fields of a hello of version 2. The hash is that of the hand, and the stored calibration is that of tip 0.
     Board {
-        /// The greeting.
+        /// The hello.
         hello: Hello,
-        /// How many tips it has.
+        /// Number of tips of the board.
         tips: u8,
     },
-    /// A tip, once a second and when asked.
+    /// The hello of a tip, once a second and on request.
     Tip(TipHello),
     /// Answer to a command to a tip.
     Answer {
@@ -74,7 +74,7 @@ pub enum TipsMessage {
         /// The answer.
         answer: Answer,
     },
-    /// The band of a tip, of its greeting before it.
+    /// The band of a tip. It belongs to the hello before it.
     #[cfg(band)]
     Band {
         /// The tip.
@@ -82,7 +82,7 @@ pub enum TipsMessage {
         /// The band.
         band: BandMessage,
     },
-    /// What came of a command that loads a tip, or data of the tip in use.
+    /// Answer to a command that loads a tip, or data of the tip in use.
     #[cfg(feature = "load-tip")]
     Load {
         /// The tip.
@@ -92,10 +92,10 @@ pub enum TipsMessage {
     },
 }
 
-/// A tip's greeting.
+/// The hello of a tip.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct TipHello {
-    /// When.
+    /// Time when it was made.
     pub time: Microseconds,
     /// Its number, from 0.
     pub tip: u8,
@@ -103,7 +103,7 @@ pub struct TipHello {
     pub design_hash: u64,
     /// Version of its tables' layout.
     pub table_version: u32,
-    /// From one of its reports on the wire to the next, microseconds.
+    /// Time from one sent report of the tip to the next, microseconds.
     pub report_period: u32,
     /// State of its stored calibration.
     pub stored: Stored,
@@ -137,7 +137,7 @@ impl TipsMessage {
 /// A message of version 3 and its place in the stream.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TipsFrame {
-    /// Counts frames, wraps.
+    /// Number of the frame; wraps.
     pub sequence: u16,
     /// Frames dropped since reset, wraps.
     pub dropped: u16,
@@ -145,7 +145,7 @@ pub struct TipsFrame {
     pub message: TipsMessage,
 }
 
-/// Where a frame is written, with its number and how many were dropped before it.
+/// Buffer for a frame, with its number and the number of frames dropped before it.
 #[derive(Debug)]
 pub struct FrameStart<'a> {
     /// The frame.
@@ -166,7 +166,8 @@ impl<'a> FrameStart<'a> {
         self.body
     }
 
-    /// A frame of readings: of each tip its report, and how many fraction bits its own pressures have beyond those of the frame.
+    /// Writes a frame of readings. `reports` has, for each tip, its report and the number of fraction bits that its pressures
+    /// have in addition to those of the frame.
     pub fn readings<'r>(
         self,
         time: Microseconds,
@@ -181,7 +182,7 @@ impl<'a> FrameStart<'a> {
         body.finish();
     }
 
-    /// The board's greeting.
+    /// Writes the hello of the board.
     pub fn board(self, hello: &Hello, tips: u8) {
         let body = self.header(BOARD, hello.time);
         telemetry::write_hello(body, hello);
@@ -189,7 +190,7 @@ impl<'a> FrameStart<'a> {
         body.finish();
     }
 
-    /// A tip's greeting, from what the hello of version 2 has of it. Of a longer name the first [`NAME`] bytes are sent.
+    /// Writes the hello of a tip, from the fields of a hello of version 2. A longer name is cut to its first [`NAME`] bytes.
     pub fn tip(self, tip: u8, name: &str, hello: &Hello) {
         let body = self.header(TIP, hello.time);
         body.put([tip]);
@@ -232,7 +233,7 @@ impl<'a> FrameStart<'a> {
         body.finish();
     }
 
-    /// What came of a command that loads a tip, or data of the tip in use.
+    /// Writes the answer to a command that loads a tip, or data of the tip in use.
     #[cfg(feature = "load-tip")]
     pub fn load(self, tip: u8, reply: &LoadReply) {
         let (kind, time) = match reply {
@@ -274,7 +275,7 @@ pub fn encode_request(tip: u8, request: &Request) -> Encoded {
     with_tip(tip, &command::encode(request))
 }
 
-/// The bytes of a command that loads a tip. `load begin` has its tip where the others have it: once.
+/// The bytes of a command that loads a tip. `load begin` already contains its tip in the same place, so the tip is not added again.
 #[cfg(feature = "load-tip")]
 pub fn encode_load(tip: u8, request: &LoadRequest) -> Encoded {
     let inner = load::encode(request);
@@ -289,11 +290,11 @@ fn with_tip(tip: u8, inner: &Encoded) -> Encoded {
     of_version_3(inner, &[tip])
 }
 
-/// A command of version 2 with these bytes before what goes with it.
+/// A command of version 2 with these bytes before its arguments.
 fn of_version_3(inner: &Encoded, tip: &[u8]) -> Encoded {
     let mut body = Encoded::NOTHING;
     body.begin();
-    // What was just encoded is a frame.
+    // `inner` was just encoded, so it is a valid frame.
     let plain = inner
         .as_slice()
         .split_last()
@@ -315,13 +316,13 @@ fn of_version_3(inner: &Encoded, tip: &[u8]) -> Encoded {
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum AnyFrame {
-    /// Of a board of one fingertip.
+    /// From a board with one fingertip.
     One(Frame),
-    /// Of a board of several.
+    /// From a board with several fingertips.
     Tips(TipsFrame),
 }
 
-/// Frames of either version out of a stream of bytes that come one at a time.
+/// Decodes frames of either version from a stream, one byte at a time.
 #[derive(Clone, Debug, Default)]
 pub struct AnyDecoder(Deframer);
 

@@ -1,8 +1,8 @@
 //! Bytes on the line, in both directions: a body and its CRC, encoded with COBS so that none of their bytes is zero, and one zero
 //! byte at the end. A reader that starts in the middle, or receives noise, is synchronised again after the next zero.
 //!
-//! [`telemetry`](super::telemetry) and [`command`](super::command) define the bodies; `PROTOCOL.md` beside this file is the page to
-//! write a client from.
+//! [`telemetry`](super::telemetry) and [`command`](super::command) define the bodies; `PROTOCOL.md` beside this file describes
+//! all that a client needs.
 
 use core::fmt;
 use core::ops::Deref;
@@ -12,11 +12,11 @@ use heapless::Vec;
 /// Version of the layout of all bodies.
 pub const PROTOCOL_VERSION: u8 = 2;
 
-/// The same of a board of several tips.
+/// The same for a board with several tips.
 #[cfg(tips)]
 pub const HAND_VERSION: u8 = 3;
 
-/// Longest body there is, in either direction.
+/// Length of the longest body in either direction, bytes.
 pub const MAXIMUM_BODY: usize = if cfg!(tips) { 240 } else { 80 };
 
 const CRC_BYTES: usize = 2;
@@ -39,11 +39,11 @@ pub enum DecodeError {
     Crc,
     /// Another version of the layout.
     Version(u8),
-    /// No such kind.
+    /// Unknown kind.
     Kind(u8),
-    /// The bytes are not as many as the kind has.
+    /// The kind has another number of bytes.
     Length,
-    /// A field holds what the layout does not allow; its offset.
+    /// A field has a value that the layout does not allow. The number is the offset of the field.
     Field(u8),
 }
 
@@ -70,8 +70,8 @@ impl core::error::Error for DecodeError {}
 
 /// Bytes of one frame, the closing zero included.
 ///
-/// Built where it is sent from: copying a frame costs more than checking it. While it is built, fields are put one after
-/// the other, behind the first code byte of COBS, which is not known yet.
+/// It is built in the buffer from which it is sent, because copying a frame costs more than checking it. Fields are appended
+/// one after the other, after the first code byte of COBS, which is not known yet.
 #[derive(Clone, Debug)]
 pub struct Encoded {
     bytes: [u8; MAXIMUM_FRAME],
@@ -98,7 +98,7 @@ impl Encoded {
         length: 0,
     };
 
-    /// A new frame in place of what is there.
+    /// Starts a new frame and discards the previous one.
     #[inline]
     pub(crate) fn begin(&mut self) {
         self.length = 1;
@@ -106,7 +106,7 @@ impl Encoded {
 
     #[inline]
     pub(crate) fn put<const N: usize>(&mut self, field: [u8; N]) {
-        // MAXIMUM_BODY holds the longest body: nothing is ever left out. A field of known length is a store or two.
+        // The longest body fits in MAXIMUM_BODY, so no field is ever dropped. A field of fixed length takes one or two store instructions.
         if let Some(place) = self
             .bytes
             .get_mut(self.length..)
@@ -117,7 +117,7 @@ impl Encoded {
         }
     }
 
-    /// A field of no fixed length.
+    /// Appends a field of variable length.
     #[cfg(feature = "load-tip")]
     pub(crate) fn put_all(&mut self, field: &[u8]) {
         for &byte in field {
@@ -127,8 +127,8 @@ impl Encoded {
 
     /// Makes the body a frame.
     ///
-    /// Below 254 bytes COBS is a chain through the zeros, each replaced by the distance to the next: done in place and in
-    /// one pass with the check, in a quarter of the instructions of the general encoder, against which it is tested.
+    /// Below 254 bytes COBS is a chain through the zeros, each replaced by the distance to the next: This is done in place, in
+    /// one pass with the CRC. It takes a quarter of the instructions of the general encoder, against which it is tested.
     pub(crate) fn finish(&mut self) {
         let Some((frame, [low, high, end, ..])) = self.bytes.split_at_mut_checked(self.length) else {
             return;
@@ -154,7 +154,7 @@ impl Encoded {
     }
 }
 
-/// The chain of COBS so far: the code byte that waits for its distance, and what that is by now.
+/// The chain of COBS so far: the open code byte, and the distance counted so far for it.
 struct Chain<'a> {
     open: &'a mut u8,
     distance: u8,
@@ -172,7 +172,7 @@ impl<'a> Chain<'a> {
     }
 }
 
-/// Fields taken one after the other.
+/// Takes fields one after the other.
 pub(crate) struct Reader<'a>(pub(crate) &'a [u8]);
 
 impl Reader<'_> {
@@ -203,16 +203,16 @@ pub fn unstuff(stuffed: &[u8]) -> Result<Vec<u8, MAXIMUM_BODY>, DecodeError> {
     Vec::from_slice(body).map_err(|_| DecodeError::Stuffing)
 }
 
-/// Frames out of a stream of bytes that come one at a time. Work is bounded for every byte; memory is one frame.
+/// Extracts frames from a stream, one byte at a time. The work for each byte is bounded. The memory is one frame.
 #[derive(Clone, Debug, Default)]
 pub struct Deframer {
     bytes: Vec<u8, MAXIMUM_FRAME>,
-    /// More bytes came without a zero than any frame has.
+    /// Whether more bytes came without a zero than the longest frame has.
     overflowed: bool,
 }
 
 impl Deframer {
-    /// Takes the next byte; at the zero that closes a frame, its body. Zeros alone say nothing.
+    /// Takes the next byte. At the zero that closes a frame, returns its body. Zeros alone give nothing.
     pub fn push(&mut self, byte: u8) -> Option<Result<Vec<u8, MAXIMUM_BODY>, DecodeError>> {
         if byte != 0 {
             self.overflowed |= self.bytes.push(byte).is_err();

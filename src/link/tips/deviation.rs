@@ -1,9 +1,9 @@
-//! Standard deviations as a byte each.
+//! Standard deviations, encoded as one byte each.
 
-/// `2^((2 j + 1) / 16)` in 16 fraction bits: above the `j`-th, the eighth of an octave after it is nearer.
+/// `2^((2 j + 1) / 16)` with 16 fraction bits. Above the `j`-th value, the next eighth of an octave is nearer.
 const NEARER: [u32; 8] = [68_438, 74_632, 81_386, 88_752, 96_785, 105_545, 115_098, 125_515];
 
-/// Of each thirty-second of an octave how many of those lie below its begin.
+/// For each thirty-second of an octave: the number of these values below its start.
 const BELOW: [u8; 32] = {
     let mut below = [0; 32];
     let mut part = 0;
@@ -18,7 +18,7 @@ const BELOW: [u8; 32] = {
     below
 };
 
-/// `2^(j / 8)` in 30 fraction bits.
+/// `2^(j / 8)` with 30 fraction bits.
 const EIGHTHS: [u32; 8] = [
     1_073_741_824,
     1_170_923_762,
@@ -30,8 +30,8 @@ const EIGHTHS: [u32; 8] = [
     1_969_251_188,
 ];
 
-/// A standard deviation as its binary logarithm in eighths: `2^(c / 8)`, as a whole number, is within 4.5 % and half a unit of it.
-/// The end of the word: 255, that or more; 0 and 1: 0.
+/// A standard deviation as its binary logarithm in eighths: `2^(c / 8)`, as a whole number, is within 4.5 % and half a unit of
+/// it. 255 means the largest value of the word, or more. 0 and 1 give 0.
 pub(super) fn eighths(deviation: i32) -> u8 {
     if deviation == i32::MAX {
         return 255;
@@ -40,14 +40,14 @@ pub(super) fn eighths(deviation: i32) -> u8 {
     let octave = value.ilog2();
     // 2^16 to 2^17.
     let mantissa = (value << (31 - octave)) >> 15;
-    // How many it is above: those below its thirty-second of an octave, which has one more at most.
+    // Number of values below the mantissa: those below the start of its thirty-second of an octave, and at most one within it.
     let mut above = usize::from(BELOW[(mantissa >> 11) as usize % 32]);
     above += usize::from(above < 8 && mantissa > NEARER[above % 8]);
     // At most 8 * 30 + 8.
     (octave * 8) as u8 + above as u8
 }
 
-/// The deviation that a byte stands for.
+/// The deviation that a byte encodes.
 pub(super) fn of_eighths(eighths: u8) -> i32 {
     if eighths == 255 {
         return i32::MAX;

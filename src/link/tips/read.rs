@@ -1,4 +1,4 @@
-//! Bodies of version 3 to messages and requests.
+//! Decodes bodies of version 3 into messages and requests.
 
 use super::deviation::of_eighths;
 use super::{
@@ -17,7 +17,7 @@ use crate::units::Microseconds;
 use heapless::{String, Vec};
 use model_tables::units::{Micronewtons, Nanometres, PressureRise};
 
-/// Bytes of an answer to a command that loads a tip, behind the tip.
+/// Bytes of an answer to a command that loads a tip, after the tip.
 #[cfg(feature = "load-tip")]
 const LOAD_ANSWER: usize = 6;
 
@@ -29,7 +29,7 @@ pub fn read_request(body: &[u8]) -> Result<(u8, Request), DecodeError> {
     let [HAND_VERSION, kind, low, high, tip, payload @ ..] = body else {
         return Err(no_command(body));
     };
-    // As in version 2, where the tip is left out.
+    // Version 2 has the same layout without the tip.
     let mut plain: Vec<u8, 16> = Vec::new();
     let head = [PROTOCOL_VERSION, *kind, *low, *high];
     if plain.extend_from_slice(&head).is_err() || plain.extend_from_slice(payload).is_err() {
@@ -39,7 +39,7 @@ pub fn read_request(body: &[u8]) -> Result<(u8, Request), DecodeError> {
     Ok((*tip, request))
 }
 
-/// What is wrong with a body that is too short for a command, or of another version.
+/// The error for a body that is too short for a command, or that has another version.
 fn no_command(body: &[u8]) -> DecodeError {
     match body {
         [HAND_VERSION, ..] | [] => DecodeError::Short,
@@ -50,13 +50,13 @@ fn no_command(body: &[u8]) -> DecodeError {
 /// The tip and the request of a body that loads a tip.
 ///
 /// # Errors
-/// [`DecodeError`] for what is no such command of version 3.
+/// [`DecodeError`] if the body is not such a command of version 3.
 #[cfg(feature = "load-tip")]
 pub fn read_load(body: &[u8]) -> Result<(u8, LoadRequest), DecodeError> {
     let [HAND_VERSION, kind, low, high, tip, payload @ ..] = body else {
         return Err(no_command(body));
     };
-    // As in version 2, where `load begin` alone has a tip.
+    // Version 2 has the same layout, but only `load begin` has a tip.
     let mut plain: Vec<u8, { 8 + load::CHUNK }> = Vec::new();
     let begins = named_by(&LoadKind::CODES, *kind) == Some(LoadKind::Begin);
     let own: &[u8] = if begins { core::slice::from_ref(tip) } else { &[] };
@@ -137,7 +137,7 @@ fn read_answer(fields: &mut Reader<'_>, time: Microseconds) -> Result<TipsMessag
     let [outcome] = fields.take()?;
     let findings = u16::from_le_bytes(fields.take()?);
     let command = CommandKind::from_code(command).ok_or(DecodeError::Field(15))?;
-    // What a known indentation told, where it told something.
+    // The contact from a known indentation, if the answer has one.
     let known = match fields.0 {
         [] => None,
         _ if command == CommandKind::Indentation => Some(telemetry::read_known(fields, findings)?),
@@ -176,7 +176,7 @@ fn read_readings(fields: &mut Reader<'_>, time: Microseconds) -> Result<TipsMess
     let mut reports = Vec::new();
     for tip in 0..tips {
         let outcome = read_reading(fields, tip)?;
-        // As many as are counted above.
+        // Cannot fail: the number of tips was checked above.
         let _ = reports.push(Report { time, outcome });
     }
     Ok(TipsMessage::Readings {
