@@ -17,7 +17,7 @@ use crate::storage::log::StoreError;
 use crate::transducer::driver::Sample;
 use crate::units::Microseconds;
 
-/// A tip, whatever its design.
+/// A tip of any design.
 pub trait HandTip {
     /// [`Device::step`].
     fn step(
@@ -47,10 +47,10 @@ pub trait HandTip {
     /// [`Device::zero`].
     fn zero(&self) -> Option<Zero>;
 
-    /// What others count.
+    /// Counters that other parts of the firmware update.
     fn counters(&mut self) -> &mut Counters;
 
-    /// `k`: its pressures are counted in `1 / 2^k` pascal.
+    /// `k`: the unit of its pressures is `1 / 2^k` pascal.
     fn pressure_fraction_bits(&self) -> u32;
 }
 
@@ -101,34 +101,35 @@ impl<D: Design> HandTip for Device<D> {
 pub enum HandFrame<'a> {
     /// The reports of all tips.
     Readings {
-        /// In the order of the tips.
+        /// The reports, in the order of the tips.
         reports: &'a [Report],
-        /// Fraction bits of the frame, and of each tip beyond those.
+        /// Fraction bits of the frame, and the additional fraction bits of each tip.
         fraction_bits: (u8, &'a [u32]),
     },
-    /// The board's greeting.
+    /// The hello of the board, and its number of tips.
     Board(Hello, u8),
-    /// A tip's greeting, with its number and name.
+    /// The hello of a tip, with its number and name.
     Tip(u8, &'static str, Hello),
     /// A tip's answer, with its number.
     Answer(u8, Answer),
     /// The band of a tip, with its number.
     #[cfg(band)]
     Band(u8, BandMessage),
-    /// What came of a command that loads a tip, with its number.
+    /// Answer to a command that loads a tip, with its number.
     #[cfg(feature = "load-tip")]
     Load(u8, LoadReply),
 }
 
 impl HandFrame<'_> {
-    /// Its bytes.
+    /// Writes the bytes of the frame.
     pub fn write(&self, start: FrameStart<'_>) {
         match *self {
             Self::Readings {
                 reports,
                 fraction_bits: (bits, shifts),
             } => {
-                // All are of one instant; a tip that has no reading does not know when its filter's was.
+                // All reports belong to one instant. A tip without a reading does not know the delay of its filter, so a tip
+                // with a reading gives the time.
                 let read = reports.iter().find(|report| report.outcome.is_ok());
                 let time = read
                     .or(reports.first())
@@ -146,7 +147,7 @@ impl HandFrame<'_> {
     }
 }
 
-/// Before the first one.
+/// The report before the first sample.
 const NO_REPORT: Report = Report {
     time: Microseconds(0),
     outcome: Err(Fault::Zeroing),
@@ -174,7 +175,7 @@ pub struct Hand<const TIPS: usize> {
 }
 
 impl<const TIPS: usize> Hand<TIPS> {
-    /// A hand of tips that have seen nothing yet; one of `every` reports goes on the line until a command wants it otherwise.
+    /// A hand whose tips have no sample yet. One of `every` reports is sent, until a command changes this.
     pub fn new(names: HandNames<TIPS>, tips: &mut [&mut dyn HandTip; TIPS], every: u16) -> Self {
         let bits = tips.each_ref().map(|tip| tip.pressure_fraction_bits());
         let least = bits.iter().copied().min().unwrap_or(0);
@@ -191,7 +192,7 @@ impl<const TIPS: usize> Hand<TIPS> {
         hand
     }
 
-    /// One of so many reports goes on the line; each tip tells so in its greeting.
+    /// Sends one of `every` reports from now on. The hello of each tip states this rate.
     fn slow_down(&mut self, tips: &mut [&mut dyn HandTip; TIPS], every: u16) {
         self.every = every;
         let request = Request {
@@ -199,7 +200,7 @@ impl<const TIPS: usize> Hand<TIPS> {
             command: Command::Rate { every },
         };
         for tip in tips {
-            // It stores nothing.
+            // The command `rate` stores nothing.
             let _ = tip.request(Microseconds(0), request, &mut |_| {});
         }
     }
@@ -225,7 +226,7 @@ impl<const TIPS: usize> Hand<TIPS> {
             self.reports[number] = report;
         }
         self.passed = self.passed.saturating_add(1);
-        // A change is never held back, at whatever rate.
+        // A change of status is sent at once, at any rate.
         if self.passed >= self.every || changed {
             self.passed = 0;
             put(&HandFrame::Readings {
@@ -292,7 +293,7 @@ impl<const TIPS: usize> Hand<TIPS> {
     }
 }
 
-/// What a tip gives beside its reports.
+/// Passes on the messages of a tip other than reports.
 fn tell<const TIPS: usize>(
     names: &HandNames<TIPS>,
     number: usize,
@@ -318,9 +319,9 @@ fn tell<const TIPS: usize>(
         Message::Answer(answer) => put(&HandFrame::Answer(tip, *answer)),
         #[cfg(band)]
         Message::Band(band) => put(&HandFrame::Band(tip, *band)),
-        // Those of all tips are in a frame.
+        // The reports of all tips share a frame.
         Message::Report { .. } => {}
-        // A loader makes them, and no tip.
+        // Only the loader makes these messages.
         #[cfg(feature = "load-tip")]
         Message::Load(_) => {}
     }

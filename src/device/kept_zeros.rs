@@ -1,5 +1,5 @@
 //! The zeros of a hand's tips, in memory that survives a reset, beside the
-//! [`CrashRecord`](crate::device::task_monitor::CrashRecord), which has room for one.
+//! [`CrashRecord`](crate::device::task_monitor::CrashRecord), which holds one zero only.
 
 use crate::signal::zero::Zero;
 use crate::units::Pressure;
@@ -9,16 +9,16 @@ const MAGIC: u32 = 0x465A_4831;
 
 const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// The words in memory: of each tip its zero, its bound, and 0 no zero, 1 one that was not verified, 3 a verified one.
+/// The words in memory. For each tip: the zero, its bound, and a state. State 0 means no zero, 1 an unverified zero, 3 a verified zero.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct ZeroWords<const TIPS: usize> {
-    /// What marks it, the hand's hash in two words, and the CRC-32/ISO-HDLC of all other words.
+    /// Magic number, the hand's hash in two words, and the CRC-32/ISO-HDLC of all other words.
     head: [u32; 4],
     tips: [[u32; 3]; TIPS],
 }
 
 impl<const TIPS: usize> ZeroWords<TIPS> {
-    /// The zeros in use of the hand of this hash.
+    /// The words for the zeros in use of the hand with this hash.
     pub fn of(hand: u64, zeros: [Option<Zero>; TIPS]) -> Self {
         let tips = zeros.map(|zero| {
             zero.map_or([0; 3], |zero| {
@@ -37,8 +37,8 @@ impl<const TIPS: usize> ZeroWords<TIPS> {
         words
     }
 
-    /// The zeros that were kept of this hand; none of each tip where the words are none that [`ZeroWords::of`] gives, or another
-    /// hand's.
+    /// The kept zeros of this hand. Every tip has `None` if [`ZeroWords::of`] did not write the words, or if they belong to
+    /// another hand.
     pub fn zeros(&self, hand: u64) -> [Option<Zero>; TIPS] {
         let [magic, low, high, check] = self.head;
         let whole = magic == MAGIC && check == self.check();

@@ -18,10 +18,10 @@ use crate::units::Microseconds;
 use model_tables::constants::DesignConstants;
 use model_tables::units::Nanometres;
 
-/// From one hello to the next, microseconds.
+/// Time from one hello to the next, microseconds.
 const HELLO_PERIOD: u64 = 1_000_000;
 
-/// Findings of a self-test, one bit each; no bit: nothing found.
+/// Findings of a self-test, one bit each. No bit is set if the test found nothing.
 pub mod findings {
     /// There are no readings.
     pub const NO_READING: u16 = 1;
@@ -31,7 +31,7 @@ pub mod findings {
     pub const NOT_STORED: u16 = 4;
     /// A leak or a bubble is suspected.
     pub const FLUID: u16 = 8;
-    /// At the indentation given the fingertip is softer than its model.
+    /// At the given indentation, the fingertip is softer than its model.
     pub const SOFT: u16 = 16;
     /// The run before this one ended in a fault.
     pub const LAST_FAULT: u16 = 32;
@@ -41,14 +41,14 @@ pub mod findings {
     pub const CLOCK: u16 = 128;
 }
 
-/// What others count.
+/// Counters that other parts of the firmware update.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Counters {
     /// Samples lost.
     pub samples_lost: u32,
     /// Frames dropped.
     pub frames_dropped: u32,
-    /// Frames and stretches of bytes that were no command.
+    /// Received frames and stretches of bytes that were not a command.
     pub commands_refused: u32,
 }
 
@@ -61,17 +61,17 @@ pub struct Beginning {
     pub start: Start,
     /// State of the stored calibration.
     pub stored: Stored,
-    /// Its number.
+    /// Number of the stored calibration.
     pub stored_sequence: u32,
-    /// The calibration in use; `None`: the design's own values are.
+    /// The calibration in use. `None` if the design's own values are in use.
     pub calibration: Option<Calibration>,
-    /// The crystal does not run.
+    /// Whether the crystal has failed.
     pub clock_failed: bool,
     /// The firmware: major, minor, patch.
     pub firmware: [u8; 3],
 }
 
-/// To be stored in the flash; the caller reports the outcome to [`Device::stored`].
+/// A calibration to be stored in the flash; `None` clears the stored one. The caller reports the outcome to [`Device::stored`].
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct ToStore(pub Option<Calibration>);
 
@@ -85,25 +85,25 @@ struct Pending {
 /// One fingertip and its line.
 #[derive(Clone, Debug)]
 pub struct Device<D: Design> {
-    /// What others count.
+    /// Counters that other parts of the firmware update.
     pub counters: Counters,
     pipeline: Pipeline<D>,
     hello: Hello,
-    /// Reset after reset: nothing is measured.
+    /// Whether the board stopped measuring after too many resets in a row.
     gave_up: bool,
     next_hello: u64,
-    /// One report in so many goes on the line.
+    /// One report out of this many is sent.
     every: u16,
     passed: u16,
     status: Option<Status>,
-    /// The last reading: what a self-test judges.
+    /// The last reading, for a self-test.
     last: Option<(Nanometres, Warnings)>,
     tare: Option<Pending>,
     save: Option<(Pending, ToStore)>,
 }
 
 impl<D: Design> Device<D> {
-    /// A device of a design that has seen nothing yet.
+    /// A device of a design, without any sample yet.
     pub fn new(design: D, beginning: &Beginning) -> Self {
         let &Parameters {
             constants:
@@ -189,7 +189,7 @@ impl<D: Design> Device<D> {
         }
         self.passed = self.passed.saturating_add(1);
         let status = Some(report.status());
-        // A change is never held back, at whatever rate.
+        // A change of status is sent at once, at any rate.
         if self.passed >= self.every || status != self.status {
             self.passed = 0;
             self.status = status;
@@ -215,7 +215,7 @@ impl<D: Design> Device<D> {
         };
         let (mut found, mut told) = (0, None);
         let outcome = match request.command {
-            // No sample reaches the signal path: it would never finish a tare, and nobody sees whether its zero holds.
+            // No sample reaches the signal path. It could not finish a tare, and nothing would show whether its zero is still valid.
             Command::Tare | Command::Save { .. } if self.gave_up => Outcome::NoReading,
             Command::Tare => match self.pipeline.tare() {
                 Ok(()) => {
@@ -338,7 +338,7 @@ impl<D: Design> Device<D> {
         found
     }
 
-    /// A hello, and the band of what is not known.
+    /// Sends a hello, and the band of an unknown object.
     #[inline]
     fn greet(&self, now: Microseconds, mut say: impl FnMut(&Message)) {
         say(&Message::Hello(self.hello(now)));

@@ -11,7 +11,7 @@ use crate::status::{LastFault, ResetCause, code_of, named_by};
 use crate::units::{Microseconds, Pressure};
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
-/// A run that lasted this long was a good one, microseconds: later resets are counted from 1.
+/// A run of at least this length is a good run, microseconds. After it, resets are counted from 1 again.
 pub const GOOD_RUN: u64 = 10_000_000;
 
 /// Resets in a row, each before [`GOOD_RUN`] was over, after which the board no longer measures. It uses neither the store nor the
@@ -27,7 +27,7 @@ pub struct TaskMonitor<const TASKS: usize> {
 }
 
 impl<const TASKS: usize> TaskMonitor<TASKS> {
-    /// All tasks report at `now`.
+    /// A monitor in which all tasks have reported at `now`.
     pub const fn new(allowed: [u64; TASKS], now: Microseconds) -> Self {
         Self {
             allowed,
@@ -35,7 +35,7 @@ impl<const TASKS: usize> TaskMonitor<TASKS> {
         }
     }
 
-    /// A task is alive. A number that no task has is ignored.
+    /// Takes the report of a task. An unknown task number is ignored.
     #[inline]
     pub fn report(&mut self, task: usize, now: Microseconds) {
         if let Some(last) = self.last.get_mut(task) {
@@ -43,7 +43,7 @@ impl<const TASKS: usize> TaskMonitor<TASKS> {
         }
     }
 
-    /// The first task that is late; the watchdog is fed only if there is none.
+    /// The first task that is late. `None` if no task is late; only then the watchdog is fed.
     #[inline]
     pub fn late(&self, now: Microseconds) -> Option<usize> {
         (0..TASKS).find(|&task| now.0.saturating_sub(self.last[task].0) > self.allowed[task])
@@ -53,7 +53,7 @@ impl<const TASKS: usize> TaskMonitor<TASKS> {
 /// Progress of a start; it shows where a hang without another trace occurred.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Stage {
-    /// It is over: samples come.
+    /// The start is complete: samples arrive.
     Running = 0,
     /// Clocks and peripherals are set up.
     Board = 1,
@@ -66,15 +66,15 @@ pub enum Stage {
 /// Record of a run for the next one. It is in memory that start-up does not clear, so it may have any bits at first.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct CrashRecord {
-    /// The fault, and its place.
+    /// The fault that ended the run.
     pub fault: LastFault,
-    /// Which task, line or address; the [`Stage`] as long as nothing went wrong.
+    /// Task, line or address of the fault. Without a fault, the [`Stage`] of the start.
     pub detail: u32,
     /// Unrequested resets in a row.
     pub resets: u8,
     /// Whether this run has lasted for [`GOOD_RUN`].
     pub good: bool,
-    /// The design the zero is of: its hash.
+    /// Hash of the design to which the zero belongs.
     pub design_hash: u64,
     /// The zero in use; `None` before one was found.
     pub zero: Option<Zero>,
@@ -145,8 +145,8 @@ impl CrashRecord {
 
     /// The record of the previous run, and the start of this run. `found` is the record in the memory.
     pub fn start(found: Option<Self>, cause: ResetCause, design_hash: u64) -> Start {
-        // Memory that fits its check was never without power: what looks like a power-on was a supply that sagged, and
-        // a board that sags again and again is one that resets again and again.
+        // A record with a valid check was never without power. A power-on with such a record was a sag of the supply. It
+        // therefore counts as an unrequested reset.
         let asked = cause == ResetCause::Pin || cause == ResetCause::PowerOn && found.is_none();
         let before = found.unwrap_or_default();
         let (fault, detail) = match (before.fault, cause) {
@@ -181,13 +181,13 @@ impl CrashRecord {
 pub struct Start {
     /// Cause of the end of the previous run.
     pub fault: LastFault,
-    /// Which task, line, address or stage.
+    /// Task, line, address or stage of the fault.
     pub detail: u32,
-    /// The zero in use then; `None` if there was none, or it is of another design.
+    /// The zero in use at that time. `None` if there was none, or if it belongs to another design.
     pub kept: Option<Zero>,
-    /// Reset after reset: measure nothing, say so.
+    /// Whether there were too many resets in a row. The board then measures nothing and reports this.
     pub give_up: bool,
-    /// To be kept from now on.
+    /// The record to be kept from now on.
     pub crash_record: CrashRecord,
 }
 

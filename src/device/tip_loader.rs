@@ -2,8 +2,8 @@
 //! or a line.
 //!
 //! The steps are arm, begin, chunks, verify and activate. Each step is refused if the previous one is missing. An activated or
-//! rolled back tip is in use after a restart, because a signal path has one design for its whole life. The caller restarts once the
-//! answer is on the line. One tip is loaded at a time: a begin for another one ends the load before it.
+//! rolled back tip is in use after a restart, because a signal path has one design for its whole life. The caller restarts once
+//! the answer is on the line. Only one tip is loaded at a time. A begin for another tip ends the previous load.
 
 use crate::link::load::{CHUNK, LoadCommand, LoadOutcome, LoadReply, LoadRequest, Piece, READ_BACK, refused};
 use crate::signal::calibration::Calibration;
@@ -17,29 +17,29 @@ use model_tables::block::BlockError;
 use model_tables::block::read::stated;
 use model_tables::constants::Transducer;
 
-/// Most bytes of a block: the shipped designs take a few hundred.
+/// Largest length of a block, bytes. The shipped designs need a few hundred.
 pub const LARGEST_BLOCK: usize = 4096;
 
-/// How long loading is allowed after `arm` and after each command that does something, microseconds.
+/// Loading is allowed for this time after `arm`, and after each command that changes something, microseconds.
 const ARMED: u64 = 60_000_000;
 
 /// What a start found in the slots.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant)] // made once, and there is no heap
 pub enum FoundTip<'a> {
-    /// Nothing is loaded, or it was rolled back: the image's own tables are in use.
+    /// No tip is loaded, or it was rolled back. The image's own tables are in use.
     Image,
-    /// A loaded tip, with what it holds of the one fingertip.
+    /// A loaded tip, with the calibration of the fingertip if the block has one.
     Loaded(LoadedDesign<'a>, Option<Calibration>),
-    /// A loaded tip that cannot be used: the image's own tables are in use, and say so.
+    /// A loaded tip that cannot be used. The image's own tables are in use, and the board reports this.
     Refused,
 }
 
-/// How far a load has come.
+/// Progress of a load.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 enum Progress {
     Nothing,
-    /// The slot was erased for this.
+    /// The slot was erased for this block.
     Begun {
         length: u32,
         check: u32,
@@ -49,26 +49,26 @@ enum Progress {
     Verified(SlotBlock),
 }
 
-/// The commands' state.
+/// State of the load commands.
 #[derive(Clone, Debug)]
 pub struct TipLoader<const TIPS: usize> {
     slots: [TipSlots; TIPS],
     transducers: [Transducer; TIPS],
-    /// The tip that a command is for.
+    /// Tip of the present command.
     tip: usize,
-    /// The one that is loaded.
+    /// Tip of the present load.
     loading: usize,
     progress: Progress,
-    /// When loading is no longer allowed.
+    /// Time when the permission to load ends, microseconds.
     armed_until: u64,
     restarting: bool,
 }
 
 impl<const TIPS: usize> TipLoader<TIPS> {
-    /// For a board whose image drives these transducers, those of its tips.
+    /// A loader for a board whose tips have these transducers.
     ///
     /// # Panics
-    /// At compile time, for no tip.
+    /// At compile time, if there is no tip.
     pub const fn new(slots: [TipSlots; TIPS], transducers: [Transducer; TIPS]) -> Self {
         const { assert!(TIPS > 0) };
         Self {
@@ -82,7 +82,7 @@ impl<const TIPS: usize> TipLoader<TIPS> {
         }
     }
 
-    /// Reads the slots of a tip at a start, and its block in use into `buffer`. A tip that is not there has the image's own tables.
+    /// Reads the slots of a tip at a start, and its block in use into `buffer`. A tip number that does not exist gives [`FoundTip::Image`].
     pub async fn start<'a>(
         &mut self,
         tip: usize,
@@ -108,17 +108,17 @@ impl<const TIPS: usize> TipLoader<TIPS> {
         self.restarting
     }
 
-    /// The tip whose design is another one after that restart.
+    /// The tip whose design changes at that restart.
     pub const fn changed(&self) -> usize {
         self.loading
     }
 
     fn slots(&mut self) -> &mut TipSlots {
-        // There is a tip, and its number is one of theirs.
+        // The number was checked against the number of tips.
         &mut self.slots[self.tip]
     }
 
-    /// Does what is asked for of a tip; `buffer` is for a block that is judged.
+    /// Executes a command for a tip. `buffer` is used to check a block.
     pub async fn request(
         &mut self,
         now: Microseconds,
@@ -201,7 +201,7 @@ impl<const TIPS: usize> TipLoader<TIPS> {
             check,
             blank: true,
         };
-        // The answer was lost: once is enough for the memory.
+        // The command was repeated because its answer was lost. The slot is already erased, so it is not erased again.
         if self.progress() == begun {
             return Ok(());
         }
@@ -273,7 +273,7 @@ impl<const TIPS: usize> TipLoader<TIPS> {
             return Err(LoadOutcome::OtherHash);
         }
         let activated = self.slots().activate(flash, block).await;
-        // After a failure the slot may hold half an activation: only a new load makes sure.
+        // After a failure the slot may hold part of an activation. Only a new load gives a known state.
         self.progress = Progress::Nothing;
         activated.map_err(failed)?;
         self.restarting = true;
@@ -302,7 +302,7 @@ impl<const TIPS: usize> TipLoader<TIPS> {
         Ok(())
     }
 
-    /// How far the load of the tip has come that a command is for.
+    /// Progress of the load of the present command's tip.
     fn progress(&self) -> Progress {
         if self.tip == self.loading {
             self.progress
@@ -331,7 +331,7 @@ impl<const TIPS: usize> TipLoader<TIPS> {
         Piece::of(part).ok_or(LoadOutcome::OutOfBounds)
     }
 
-    /// Reads a block whole, and the design in it, if this image uses it.
+    /// Reads and checks a whole block, and returns its design if this image can use it.
     async fn judge<'a>(
         &mut self,
         flash: &mut impl NorFlash,
@@ -380,7 +380,7 @@ fn hash(design: &LoadedDesign<'_>) -> u64 {
     design.parameters().constants.hash
 }
 
-/// The bit that says why.
+/// The finding bit of an error.
 const fn finding(error: BlockError) -> u16 {
     match error {
         BlockError::NoBlock | BlockError::Short { .. } => refused::LENGTH,
