@@ -1,4 +1,4 @@
-//! The calibrations of a hand's tips as they lie in the flash, all in one record: fixed size, versioned, checked.
+//! Layout in flash of the calibrations of a hand's tips. All are in one record of fixed size, with a version and a check.
 //!
 //! | offset | bytes | field |
 //! |---|---|---|
@@ -9,22 +9,22 @@
 //! | 12 | 12 | 0 |
 //! | 24 | 32 a tip | the tips, below |
 //! | length - 8 | 2 | erasures so far, of both slots together |
-//! | length - 6 | 2 | what the [budget](crate::storage::save_budget) of saves was owed then, in units of 2^21 us; 0 before version 0.1.0 knew it |
+//! | length - 6 | 2 | debt of the [save budget](crate::storage::save_budget) at that time, in units of 2^21 us; 0 from versions before 0.1.0 |
 //! | length - 4 | 4 | CRC-32/ISO-HDLC of the bytes before |
 //!
 //! | offset in a tip | bytes | field |
 //! |---|---|---|
 //! | 0 | 8 | hash of the tip: its name, its place on the board and its design |
 //! | 8 | 4 | version of that design's tables |
-//! | 12 | 4 | sequence number of the record that changed it last; 0: none did |
+//! | 12 | 4 | sequence number of the last record that changed this tip; 0: none |
 //! | 16 | 4 | zero, millipascals; the lowest number: none |
 //! | 20 | 2 | temperature of that zero, hundredths of a degree Celsius; the lowest number: none |
 //! | 22 | 1 | 1: a calibration; 0: nothing is stored |
-//! | 23 | 1 | 1: a later one than this may have been lost; 0: this is the last |
-//! | 24 | 4 | what temperature adds to the zero, millipascals a kelvin |
+//! | 23 | 1 | 1: a later calibration may have been lost; 0: this is the last one |
+//! | 24 | 4 | temperature coefficient of the zero, millipascals a kelvin |
 //! | 28 | 4 | gain trim, parts in a million |
 //!
-//! Numbers are little-endian. One record holds every tip, so that a save of one tip is as atomic as that of a board of one.
+//! Numbers are little-endian. One record holds every tip, so that a save of one tip is as atomic as on a board with one fingertip.
 
 use crate::link::wire::Reader;
 use crate::signal::calibration::Calibration;
@@ -36,7 +36,7 @@ const TIP: usize = 32;
 
 const MAGIC: [u8; 4] = *b"FTH\x01";
 
-/// Bytes of the record of so many tips: a multiple of every write unit there is (1 to 16 bytes).
+/// Bytes of the record for `tips` tips: a multiple of every write unit (1 to 16 bytes).
 pub const fn length(tips: usize) -> usize {
     HEAD + TIP * tips + END
 }
@@ -44,15 +44,15 @@ pub const fn length(tips: usize) -> usize {
 /// The stored data of one tip.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct TipEntry {
-    /// The tip it is for: its name, its place and its design.
+    /// Hash of the tip: its name, its place and its design.
     pub hash: u64,
     /// The version of that design's tables.
     pub table_version: u32,
-    /// The record that changed it last; 0: none did.
+    /// Sequence number of the last record that changed this tip; 0: none.
     pub number: u32,
-    /// The calibration; `None`: nothing is stored.
+    /// The calibration; `None` if nothing is stored.
     pub calibration: Option<Calibration>,
-    /// A later one may have been lost in a place that could not be read.
+    /// Whether a later calibration may have been lost in an unreadable place.
     pub doubtful: bool,
 }
 
@@ -115,7 +115,7 @@ impl TipEntry {
 /// The stored data of all tips.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct HandRecord<const TIPS: usize> {
-    /// The highest is in use.
+    /// Sequence number. The record with the highest number is in use.
     pub sequence: u32,
     /// The firmware that wrote it: major, minor, patch.
     pub firmware: [u8; 3],

@@ -2,7 +2,7 @@
 //! tip and keeps the stored data of the others, even if they belong to a previous tip. Data that are already stored are not written
 //! again.
 //!
-//! If a later record may have been lost, every tip reports it ([`Stored::Unreadable`]). A save of a tip ends this for that tip
+//! If a later record may have been lost, every tip reports [`Stored::Unreadable`]. A save of a tip clears this for that tip
 //! only.
 
 use crate::signal::calibration::Calibration;
@@ -17,11 +17,11 @@ use model_tables::constants::DesignConstants;
 /// Identity of the tip of an entry.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct TipIdentity {
-    /// The tip: its name, its place on the board and its design.
+    /// Hash of the tip: its name, its place on the board and its design.
     pub hash: u64,
     /// Version of its tables.
     pub table_version: u32,
-    /// Its transducer's range, pascals: bounds what can be a zero.
+    /// Its transducer's range, pascals: limits the possible zeros.
     pub range: [i32; 2],
 }
 
@@ -44,20 +44,20 @@ impl TipIdentity {
 pub struct StoredTip {
     /// State of the stored calibration.
     pub state: Stored,
-    /// The record that changed it last; 0: none did.
+    /// Sequence number of the last record that changed this tip; 0: none.
     pub number: u32,
-    /// The calibration in use; `None`: the design's own values are.
+    /// The calibration in use. `None` if the design's own values are in use.
     pub calibration: Option<Calibration>,
 }
 
-/// The two slots, with records of `LENGTH` bytes: [`length`](crate::storage::hand_record::length) of `TIPS`.
+/// The two slots, with records of `LENGTH` bytes, which is [`length`](crate::storage::hand_record::length) of `TIPS`.
 #[derive(Clone, Debug)]
 pub struct HandStore<F, const TIPS: usize, const LENGTH: usize> {
     log: RecordLog<F, HandRecord<TIPS>, LENGTH>,
     identities: [TipIdentity; TIPS],
     /// Major, minor, patch.
     firmware: [u8; 3],
-    /// Of the log.
+    /// State of the log.
     state: Stored,
 }
 
@@ -65,7 +65,7 @@ impl<F: NorFlash, const TIPS: usize, const LENGTH: usize> HandStore<F, TIPS, LEN
     /// The first two slots of `slot` bytes in `flash`, to be read by [`HandStore::load`].
     ///
     /// # Panics
-    /// At compile time, for a memory whose write unit a record is not a multiple of.
+    /// At compile time, if the length of a record is not a multiple of the memory's write unit.
     pub const fn new(flash: F, slot: u32, identities: [TipIdentity; TIPS], firmware: [u8; 3]) -> Self {
         Self {
             log: RecordLog::new(flash, slot),
@@ -80,7 +80,7 @@ impl<F: NorFlash, const TIPS: usize, const LENGTH: usize> HandStore<F, TIPS, LEN
         self.state = self.log.load().await;
     }
 
-    /// The stored data of a tip; nothing for a tip that does not exist.
+    /// The stored data of a tip. A tip that does not exist has none.
     pub fn stored(&self, tip: usize) -> StoredTip {
         let entry = self.entry(tip);
         let own = self
@@ -109,16 +109,16 @@ impl<F: NorFlash, const TIPS: usize, const LENGTH: usize> HandStore<F, TIPS, LEN
         self.log.into_flash()
     }
 
-    /// The memory, for what lies outside of the two slots.
+    /// The memory, for access outside the two slots.
     #[cfg(feature = "load-tip")]
     pub fn flash_mut(&mut self) -> &mut F {
         self.log.flash_mut()
     }
 
-    /// Stores a tip's calibration, or that there is none, at `now` since the start.
+    /// Stores a tip's calibration, or clears it with `None`. `now` is the time since the start.
     ///
     /// # Errors
-    /// [`StoreError`]; what was stored before stays in use.
+    /// [`StoreError`]; the previous calibration stays in use.
     pub async fn save(
         &mut self,
         now: Microseconds,
@@ -161,7 +161,7 @@ impl<F: NorFlash, const TIPS: usize, const LENGTH: usize> HandStore<F, TIPS, LEN
     }
 }
 
-/// What an entry is to the tip that is there.
+/// State of an entry for the present tip.
 fn state_of(identity: &TipIdentity, entry: &TipEntry) -> Stored {
     match entry.calibration {
         None => Stored::None,

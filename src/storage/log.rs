@@ -1,17 +1,17 @@
 //! Records in flash: two slots of erasable memory, each a log of records; the highest sequence number is in use.
 //!
-//! A new record goes behind the last one in its slot. When that is full the *other* slot is erased and written, never the one that
-//! holds the record in use: power may fail at any write or erasure, and what is read afterwards is the old record or the new one.
-//! Every record is read back before it counts. One erasure makes room for a slot full of saves. The
+//! A new record is written after the last one in its slot. If that slot is full, the *other* slot is erased and written. The
+//! slot with the record in use is never erased. Power may therefore fail at any write or erasure, and the next start reads the
+//! old record or the new one. Every record is read back before it counts. One erasure makes room for a slot full of saves. The
 //! [budget](crate::storage::save_budget) limits saves in time, and its [`ENDURANCE`] stops them before the memory wears out.
 //!
-//! Memory with error correction refuses to read a unit whose programming or erasure was interrupted. A place with such a unit has
-//! no record and is skipped. Saves continue behind it, and the next erasure of its slot makes it usable again. A place that may
-//! have held a whole record, newer than the one in use, makes the state [`Stored::Unreadable`] until the next save. A record is
-//! written in order, so a place that ends blank never held one.
+//! Memory with error correction refuses to read a unit whose programming or erasure was interrupted. A place with such a unit
+//! has no record and is skipped. Saves continue after it, and the next erasure of its slot makes it usable again. A place that
+//! may have held a whole record, newer than the one in use, makes the state [`Stored::Unreadable`] until the next save. A
+//! record is written in order, so a place that ends blank never held one.
 //!
-//! This is own code and no key-value crate, because there is one value and no key, so nothing to collect. All of it is tested with
-//! a power cut at every step (`host-tests/tests/calibration_store.rs`, `hand_store.rs`).
+//! A key-value crate is not used, because there is one value without a key, and no garbage to collect. The log is tested with a
+//! power cut at every step (`host-tests/tests/calibration_store.rs`, `hand_store.rs`).
 
 use crate::status::Stored;
 use crate::storage::save_budget::{AT_ONCE, ENDURANCE, SaveBudget};
@@ -19,13 +19,13 @@ use crate::units::Microseconds;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use embedded_storage_async::nor_flash::NorFlash;
 
-/// Places tried in one slot before it is given up for the other.
+/// Number of places tried in one slot before the other slot is used.
 const TRIES: u32 = 3;
 
-/// Bytes at the end of a record, erasures and check, that are never all blank: no memory stands so many erasures.
+/// Bytes at the end of a record, with erasures and check. They are never all blank, because no memory endures that many erasures.
 pub const END: usize = 8;
 
-/// Records are few: no table for speed.
+/// There are few records, so the CRC needs no table for speed.
 const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// Content of the place of a record.
@@ -41,30 +41,30 @@ pub enum Found<R> {
 
 /// A record of `LENGTH` bytes, a multiple of the memory's write unit. Its last [`END`] bytes are never all blank.
 pub trait LoggedRecord<const LENGTH: usize>: Copy + PartialEq {
-    /// The highest is in use.
+    /// Sequence number. The record with the highest number is in use.
     fn sequence(&self) -> u32;
 
-    /// Lower 16 bits: erasures of both slots together when it was written. Upper 16 bits: what the
-    /// [budget](crate::storage::save_budget) of saves was owed, in units of 2^21 us.
+    /// Lower 16 bits: erasures of both slots together when it was written. Upper 16 bits: debt of the [save
+    /// budget](crate::storage::save_budget) at that time, in units of 2^21 us.
     fn wear(&self) -> u32;
 
-    /// It is written after so much wear.
+    /// Sets the wear at which the record is written.
     fn set_wear(&mut self, wear: u32);
 
-    /// Its bytes.
+    /// Encodes the record.
     fn encode(&self) -> [u8; LENGTH];
 
-    /// What the bytes are.
+    /// Decodes the bytes.
     fn decode(bytes: &[u8; LENGTH]) -> Found<Self>;
 }
 
-/// Ends the bytes of a record with the check of those before it.
+/// Writes the check of the other bytes to the end of a record.
 pub(super) fn seal<const LENGTH: usize>(bytes: &mut [u8; LENGTH]) {
     let check = CHECK.checksum(&bytes[..LENGTH - 4]);
     bytes[LENGTH - 4..].copy_from_slice(&check.to_le_bytes());
 }
 
-/// What sealed bytes that begin with `magic` are; `read` gets all of them but the check.
+/// Decodes sealed bytes that begin with `magic`. `read` gets all bytes except the check.
 pub(super) fn unseal<R, const LENGTH: usize>(
     bytes: &[u8; LENGTH],
     magic: [u8; 4],
@@ -78,16 +78,16 @@ pub(super) fn unseal<R, const LENGTH: usize>(
     if !whole {
         return Found::Torn;
     }
-    // A body that fits its check has all fields.
+    // A body with a valid check has all fields.
     read(body).map_or(Found::Torn, Found::Record)
 }
 
 /// Reasons why a record was not stored. The previous record is still stored.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum StoreError {
-    /// The memory does not take it, or not what was given.
+    /// The write failed, or the memory holds other bytes than were written.
     Failed,
-    /// The memory was erased as often as it stands.
+    /// The memory has reached the number of erasures that it endures.
     WornOut,
     /// More saves than the [budget](crate::storage::save_budget) allows.
     TooSoon,
@@ -100,39 +100,39 @@ pub struct RecordLog<F, R, const LENGTH: usize> {
     /// Bytes of a slot.
     slot: u32,
     latest: Option<R>,
-    /// The slot that holds it.
+    /// The slot of the latest record.
     home: u32,
-    /// The slot that is written to.
+    /// The slot of the next write.
     current: u32,
-    /// The next place in it.
+    /// The next place in that slot.
     next: u32,
     erasures: u32,
-    /// Spoilt places that may have held newer records than the one in use.
+    /// Number of spoilt places that may have held newer records than the one in use.
     hidden: u32,
-    /// The memory refused to read some place.
+    /// Whether the memory refused to read a place.
     refused: bool,
     budget: SaveBudget,
 }
 
-/// What a place holds.
+/// Content of a place.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 enum Place<R> {
     Blank,
     Record(R),
-    /// A record that was never written to its end.
+    /// A record that was not written to its end.
     Cut,
-    /// Perhaps a record once: it cannot be read, or its check does not fit.
+    /// Possibly a former record: it cannot be read, or its check is wrong.
     Spoilt,
 }
 
-/// What one slot holds.
+/// Content of one slot.
 #[derive(Clone, Copy, Debug, Default)]
 struct SlotScan {
-    /// Places up to the last one that is not blank.
+    /// Number of places up to the last one that is not blank.
     used: u32,
-    /// Places up to the last record; 0: there is none.
+    /// Number of places up to the last record; 0 without a record.
     last: u32,
-    /// Spoilt places behind the last one.
+    /// Number of spoilt places after the last record.
     hidden: u32,
     /// The largest count of erasures in a record.
     erasures: u32,
@@ -144,7 +144,7 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
     /// The first two slots of `slot` bytes in `flash`, to be read by [`RecordLog::load`].
     ///
     /// # Panics
-    /// At compile time, for a memory whose write unit a record is not a multiple of.
+    /// At compile time, if the length of a record is not a multiple of the memory's write unit.
     pub const fn new(flash: F, slot: u32) -> Self {
         const { assert!(LENGTH.is_multiple_of(F::WRITE_SIZE)) };
         Self {
@@ -161,8 +161,8 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         }
     }
 
-    /// Reads both slots; whether the latest record is the last one that was written ([`Stored::InUse`]), and else why not.
-    // In place, and the latest record into its own: moved from one future to another they take a `memmove`, 1.6 kB of flash.
+    /// Reads both slots. Returns [`Stored::InUse`] if the latest record is the last one that was written, otherwise the reason why not.
+    // Works in place, and stores the latest record directly in its field. Moving them between futures needs `memmove`, which takes 1.6 kB of flash.
     pub async fn load(&mut self) -> Stored {
         let logs = [self.scan(0).await, self.scan(1).await];
         let [first, second] = &logs;
@@ -171,8 +171,8 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         } else {
             (second, first)
         };
-        // Saves leave a slot when it is full, so behind a slot that is not full there is no newer one; and the records
-        // of a slot are older than the first of the next.
+        // Saves leave a slot only when it is full. If the slot in use is not full, the other slot has no newer record. All
+        // records of a slot are older than the first record of the next.
         let is_full = in_use.used == self.places();
         let turned_over = in_use.last == 0 || is_full;
         self.hidden = in_use.hidden;
@@ -182,7 +182,7 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         self.current = self.home;
         self.next = in_use.used;
         self.erasures = in_use.erasures.max(other.erasures);
-        // Behind a full slot an erasure may have been cut, any number of times.
+        // If the slot is full, an erasure of the other slot may have been interrupted any number of times.
         let cut = if is_full {
             AT_ONCE
         } else {
@@ -199,14 +199,15 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         }
     }
 
-    /// Reads one slot, each place once, and keeps its last record where that is newer than the other slot's. All of it: a place that cannot be read now may read as blank at another start,
-    /// so blanks may lie before a record.
+    /// Reads every place of one slot once, and keeps the last record if it is newer than that of the other slot. It does not
+    /// stop at a blank place: a place that could not be read once may later read as blank, so blank places may precede a
+    /// record.
     async fn scan(&mut self, which: u32) -> SlotScan {
         let mut log = SlotScan::default();
         for place in 0..self.places() {
             match self.read(which, place).await {
                 Place::Blank => continue,
-                // A slot is written from its first place on: the last record is the newest.
+                // A slot is written from its first place on, so the last record is the newest.
                 Place::Record(record) => {
                     log.erasures = log.erasures.max(record.wear() & 0xFFFF);
                     log.last = place + 1;
@@ -244,7 +245,7 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
     /// # Errors
     /// [`StoreError::WornOut`] after the last one.
     pub fn next_sequence(&self) -> Result<u32, StoreError> {
-        // Each spoilt place may hold one.
+        // Each spoilt place may hold a record with a number.
         let passed = self.sequence().checked_add(self.hidden);
         let sequence = passed.and_then(|passed| passed.checked_add(1));
         sequence.ok_or(StoreError::WornOut)
@@ -255,17 +256,17 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         self.flash
     }
 
-    /// The memory, for what lies outside of the two slots.
+    /// The memory, for access outside the two slots.
     #[cfg(feature = "load-tip")]
     pub fn flash_mut(&mut self) -> &mut F {
         &mut self.flash
     }
 
-    /// Stores a record at `now` since the start; its wear is the log's.
+    /// Stores a record. `now` is the time since the start. The log sets the wear of the record.
     ///
     /// # Errors
-    /// [`StoreError`]; the record from before stays in use.
-    // By reference: the futures hold one copy of it.
+    /// [`StoreError`]; the previous record stays in use.
+    // The record is passed by reference, so that the futures hold only one copy.
     pub async fn save(&mut self, now: Microseconds, record: &mut R) -> Result<(), StoreError> {
         if !self.budget.take(now) {
             return Err(StoreError::TooSoon);
@@ -286,17 +287,17 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         self.erasures | self.budget.owed() << 16
     }
 
-    /// Writes into the next places of the current slot; whether one took it.
+    /// Writes into one of the next places of the current slot. Returns whether a write succeeded.
     async fn append(&mut self, record: &R) -> bool {
-        // The first place that is blank after all is the next one still.
+        // The first place that is still blank after the attempts stays the next place.
         let mut blank = None;
         for place in self.next..self.places().min(self.next + TRIES) {
-            // A place that is not blank, or cannot be read, is passed over.
+            // Skips a place that is not blank or cannot be read.
             if self.read(self.current, place).await != Place::Blank {
                 continue;
             }
             let bytes = record.encode();
-            // What is read back is what the next start will read, whatever the memory says of the write.
+            // The result of the write is ignored: only the data read back count, because the next start reads the same.
             let _ = self.flash.write(self.offset(self.current, place), &bytes).await;
             match self.read(self.current, place).await {
                 Place::Record(found) if found == *record => {
@@ -314,14 +315,14 @@ impl<F: NorFlash, R: LoggedRecord<LENGTH>, const LENGTH: usize> RecordLog<F, R, 
         false
     }
 
-    /// Erases the slot that does not hold the record in use, and goes on there.
+    /// Erases the slot that does not hold the record in use, and continues there.
     async fn turn_over(&mut self) -> Result<(), StoreError> {
         if self.erasures >= 2 * ENDURANCE {
             return Err(StoreError::WornOut);
         }
         let other = 1 - self.home;
         let from = other * self.slot;
-        // The slots take turns, so each has half of these.
+        // The slots alternate, so each has half of the erasures.
         self.erasures += 1;
         self.flash
             .erase(from, from + self.slot)

@@ -1,5 +1,5 @@
-//! Data in the flash: the calibration, with its [`record`] and the [`store`] of one fingertip, over a [`log`] in two slots. A hand
-//! has the same for all its tips. With the feature `load-tip` there are two slots of a loaded tip.
+//! Data in the flash: the calibration, with its [`record`] and the [`store`] of one fingertip, over a [`log`] in two slots. A
+//! hand has the same for all its tips. The feature `load-tip` adds two slots for a loaded tip.
 
 #[cfg(tips)]
 pub mod hand_record;

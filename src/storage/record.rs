@@ -1,30 +1,30 @@
-//! One calibration as it lies in the flash: fixed size, versioned, checked.
+//! Layout of one calibration in flash: a record of fixed size, with a version and a check.
 //!
 //! | offset | bytes | field |
 //! |---|---|---|
 //! | 0 | 4 | `FTC` and the version of this layout, 1 |
 //! | 4 | 4 | sequence number, from 1; the highest is the one in use |
-//! | 8 | 8 | hash of the design it is for |
+//! | 8 | 8 | hash of its design |
 //! | 16 | 4 | version of that design's tables |
 //! | 20 | 3 | version of the firmware that wrote it |
 //! | 23 | 1 | 1: a calibration; 0: what was stored before is void |
 //! | 24 | 4 | zero, millipascals; the lowest number: none |
 //! | 28 | 2 | temperature of that zero, hundredths of a degree Celsius; the lowest number: none |
 //! | 30 | 2 | 0 |
-//! | 32 | 4 | what temperature adds to the zero, millipascals a kelvin |
+//! | 32 | 4 | temperature coefficient of the zero, millipascals a kelvin |
 //! | 36 | 4 | gain trim, parts in a million |
 //! | 40 | 2 | erasures so far, of both slots together |
-//! | 42 | 2 | what the [budget](crate::storage::save_budget) of saves was owed then, in units of 2^21 us; 0 before version 0.1.0 knew it |
+//! | 42 | 2 | debt of the [save budget](crate::storage::save_budget) at that time, in units of 2^21 us; 0 from versions before 0.1.0 |
 //! | 44 | 4 | CRC-32/ISO-HDLC of the bytes before |
 //!
-//! Numbers are little-endian. The check comes last: what was cut off while it was written has none.
+//! Numbers are little-endian. The check comes last, so an interrupted write leaves no valid check.
 
 use crate::link::wire::Reader;
 use crate::signal::calibration::Calibration;
 use crate::storage::log::{Found, LoggedRecord, seal, unseal};
 use crate::units::{Centidegrees, Millipascals};
 
-/// Bytes of a record: a multiple of every write unit there is (1 to 16 bytes).
+/// Bytes of a record: a multiple of every write unit (1 to 16 bytes).
 pub const LENGTH: usize = 48;
 
 const MAGIC: [u8; 4] = *b"FTC\x01";
@@ -32,9 +32,9 @@ const MAGIC: [u8; 4] = *b"FTC\x01";
 /// A calibration and the identity of its design.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Record {
-    /// The highest is in use.
+    /// Sequence number. The record with the highest number is in use.
     pub sequence: u32,
-    /// The design it is for.
+    /// Hash of its design.
     pub design_hash: u64,
     /// The version of that design's tables.
     pub table_version: u32,

@@ -1,50 +1,50 @@
-//! A limit on saves: [`AT_ONCE`] at once, then one in [`SLOWEST`], or in a longer time where the memory holds fewer records. The
-//! memory then lasts ten years, whatever a client sends.
+//! Limits the rate of saves: [`AT_ONCE`] saves at once, then one in each [`SLOWEST`]. The time is longer if the memory holds
+//! fewer records. The memory then lasts ten years, whatever a client sends.
 //!
-//! A slot of `n` records stands [`ENDURANCE`] erasures, and there are two: `2 x 10 000 x n` saves. The NUCLEO-L432KC has pages of 2
-//! KB, 42 records each, thus 840 000 saves; ten years at one in 390 s are 809 024. The record of a hand of five tips has 192
-//! bytes, so a page holds 10, and a save of any of its tips is possible once in 26 minutes.
+//! There are two slots. A slot of `n` records endures [`ENDURANCE`] erasures. This gives `2 x 10 000 x n` saves. The
+//! NUCLEO-L432KC has pages of 2 KB with 42 records each, thus 840 000 saves; ten years at one in 390 s are 809 024. The record
+//! of a hand of five tips has 192 bytes, so a page holds 10, and a save of any of its tips is possible once in 26 minutes.
 //!
-//! Each record stores the saves that were owed when it was written. A start continues with that number, after a reset and after a
-//! power cut alike: a board that saves at every start comes to the limit too. Only time that the board runs pays saves back. Of a
-//! run that ends without a save nobody knows how long it was, so it pays nothing back.
+//! Each record stores the debt at the time of its write. A start continues with that debt, after a reset and after a power cut.
+//! A board that saves at every start therefore reaches the limit too. Only running time reduces the debt. The length of a run
+//! that ends without a save is unknown, so such a run does not reduce it.
 
 use crate::units::Microseconds;
 
-/// Erasures of a slot: what flash is specified for at the least (DS9405 table 49: 10 000 cycles).
+/// Erasures that a slot endures: the specified minimum of flash (DS9405 table 49: 10 000 cycles).
 pub const ENDURANCE: u32 = 10_000;
 
-/// Saves that are possible at once.
+/// Number of saves that are possible at once.
 pub const AT_ONCE: u32 = 20;
 
-/// Bits of microseconds in a unit of the budget's time: 2.1 s.
+/// The budget's unit of time is `2^UNIT` microseconds: 2.1 s.
 const UNIT: u32 = 21;
 
-/// From one save to the next after those at once, microseconds, where a slot holds 39 records or more: 390 s.
+/// Time from one save to the next after the saves at once, microseconds, if a slot holds 39 records or more: 390 s.
 pub const SLOWEST: u64 = 390_000_000;
 
 /// Ten years of 365.25 days, in units.
 const TEN_YEARS: u32 = (315_576_000_000_000_u64 >> UNIT) as u32;
 
-/// From one save to the next after those at once, in units, for slots of so many records.
+/// Time from one save to the next after the saves at once, in units, for slots of `places` records.
 const fn pause(places: u32) -> u32 {
     let lasting = TEN_YEARS / (2 * ENDURANCE * places - AT_ONCE) + 1;
     let slowest = (SLOWEST >> UNIT) as u32 + 1;
     if lasting > slowest { lasting } else { slowest }
 }
 
-/// Saves that are still owed.
+/// The debt of saves, as time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SaveBudget {
     pause: u32,
     /// Time until nothing is owed, in units.
     owed: u32,
-    /// When that was, in units.
+    /// Time of the last update of `owed`, in units.
     at: u32,
 }
 
 impl SaveBudget {
-    /// For slots of so many records; nothing is owed.
+    /// A budget for slots of `places` records, without debt.
     pub(super) const fn new(places: u32) -> Self {
         Self {
             pause: pause(places),
@@ -53,12 +53,12 @@ impl SaveBudget {
         }
     }
 
-    /// Starts, at time 0, with what was owed when the last record was written, and saves that were cut after it.
+    /// Starts at time 0 with the debt stored in the last record, and adds `cut` saves that were interrupted after it.
     pub(super) fn start(&mut self, owed: u32, cut: u32) {
         self.owed = (owed + cut * self.pause).min(AT_ONCE * self.pause);
     }
 
-    /// Takes one save, if there is one.
+    /// Takes one save. Returns whether the budget allows it.
     pub(super) fn take(&mut self, now: Microseconds) -> bool {
         let now = (now.0 >> UNIT) as u32;
         self.owed = self.owed.saturating_sub(now.saturating_sub(self.at));
@@ -70,7 +70,7 @@ impl SaveBudget {
         true
     }
 
-    /// What is owed, for a record: at most 65 535.
+    /// The debt in units, to be stored in a record: at most 65 535.
     pub(super) const fn owed(&self) -> u32 {
         self.owed
     }

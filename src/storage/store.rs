@@ -1,5 +1,5 @@
-//! The calibration of one fingertip in flash: a [log](crate::storage::log) of [records](Record), and whether the last of them is
-//! for this design. A calibration that is already stored is not written again.
+//! The calibration of one fingertip in flash: a [log](crate::storage::log) of [records](Record), and a check whether the last
+//! record belongs to this design. A calibration that is already stored is not written again.
 
 use crate::signal::calibration::Calibration;
 use crate::status::Stored;
@@ -13,11 +13,11 @@ use embedded_storage_async::nor_flash::NorFlash;
 pub struct Identity {
     /// The design whose tables are in the image.
     pub design_hash: u64,
-    /// Their version.
+    /// Version of these tables.
     pub table_version: u32,
     /// The firmware: major, minor, patch.
     pub firmware: [u8; 3],
-    /// The transducer's range, pascals: bounds what can be a zero.
+    /// The transducer's range, pascals: limits the possible zeros.
     pub range: [i32; 2],
 }
 
@@ -32,7 +32,7 @@ impl<F: NorFlash> Store<F> {
     /// The first two slots of `slot` bytes in `flash`, to be read by [`Store::load`].
     ///
     /// # Panics
-    /// At compile time, for a memory whose write unit a record is not a multiple of.
+    /// At compile time, if the length of a record is not a multiple of the memory's write unit.
     pub const fn new(flash: F, slot: u32, identity: Identity) -> Self {
         Self {
             log: RecordLog::new(flash, slot),
@@ -70,7 +70,7 @@ impl<F: NorFlash> Store<F> {
         }
     }
 
-    /// The calibration in use, if the record is this design's and its values can be.
+    /// The calibration in use. `None` if the record belongs to another design or has impossible values.
     pub fn calibration(&self) -> Option<Calibration> {
         let record = self
             .log
@@ -89,16 +89,16 @@ impl<F: NorFlash> Store<F> {
         self.log.into_flash()
     }
 
-    /// The memory, for what lies outside of the two slots.
+    /// The memory, for access outside the two slots.
     #[cfg(feature = "load-tip")]
     pub fn flash_mut(&mut self) -> &mut F {
         self.log.flash_mut()
     }
 
-    /// Stores a calibration, or that there is none, at `now` since the start.
+    /// Stores a calibration, or clears it with `None`. `now` is the time since the start.
     ///
     /// # Errors
-    /// [`StoreError`]; the record from before stays in use.
+    /// [`StoreError`]; the previous record stays in use.
     pub async fn save(
         &mut self,
         now: Microseconds,

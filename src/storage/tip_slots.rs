@@ -1,9 +1,9 @@
-//! A tip's data in flash (feature `load-tip`): two slots, each a block from its begin on and a log of activations at its end.
+//! A tip's data in flash (feature `load-tip`): two slots. Each has a block at its start and a log of activations at its end.
 //!
 //! | in a slot | bytes | what |
 //! |---|---|---|
 //! | 0 | up to the log | the block, written in chunks into the slot that is not in use |
-//! | slot - [`LOG`] | [`LOG`] | activations, [`LENGTH`] bytes each, one behind the other |
+//! | slot - [`LOG`] | [`LOG`] | activations, [`LENGTH`] bytes each, one after the other |
 //!
 //! | in an activation | bytes | field |
 //! |---|---|---|
@@ -24,10 +24,10 @@ use crate::storage::log::StoreError;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use embedded_storage_async::nor_flash::NorFlash;
 
-/// Bytes of an activation: a multiple of every write unit there is.
+/// Bytes of an activation: a multiple of every write unit.
 pub const LENGTH: usize = 32;
 
-/// Bytes of a slot's log: so many activations between two loads into it.
+/// Bytes of a slot's log. It limits the number of activations between two loads into the slot.
 pub const LOG: u32 = 16 * LENGTH as u32;
 
 const PLACES: u32 = LOG / LENGTH as u32;
@@ -37,13 +37,13 @@ const UNIT: usize = 8;
 
 const MAGIC: [u8; 4] = *b"FTA\x01";
 
-/// Activations are few: no table for speed.
+/// There are few activations, so the CRC needs no table for speed.
 const CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// Where a slot lies, both from the start of the memory: whole units of its erasure.
+/// Position of a slot in the memory, in whole erasure units.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Slot {
-    /// Its first byte.
+    /// Offset of its first byte from the start of the memory.
     pub begin: u32,
     /// Bytes.
     pub length: u32,
@@ -62,23 +62,23 @@ pub struct SlotBlock {
     pub hash: u64,
 }
 
-/// An activation as it lies in a log.
+/// An activation in a log.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 struct Activation {
     sequence: u32,
-    /// The slot it lies in.
+    /// The slot of its log.
     home: u32,
-    /// What it puts in use; nothing: the image's own tables.
+    /// The block that it puts in use; `None` for the image's own tables.
     block: Option<SlotBlock>,
 }
 
-/// The two slots, whose memory is given to each call: it holds the calibration too.
+/// The two slots. Each call gets the memory, because the memory also holds the calibration.
 #[derive(Clone, Debug)]
 pub struct TipSlots {
     slots: [Slot; 2],
     /// The activation in force.
     latest: Option<Activation>,
-    /// The last one before it that puts something else in use.
+    /// The last activation before it that puts another block, or the image's tables, in use.
     before: Option<Activation>,
     /// The next place in each log.
     next: [u32; 2],
@@ -87,7 +87,7 @@ pub struct TipSlots {
 }
 
 impl TipSlots {
-    /// Two slots of `slot` bytes from `base` on, to be read by [`TipSlots::scan`].
+    /// Two slots of `slot` bytes each, starting at `base`, to be read by [`TipSlots::scan`].
     pub const fn new(base: u32, slot: u32) -> Self {
         Self::of([
             Slot {
@@ -101,7 +101,7 @@ impl TipSlots {
         ])
     }
 
-    /// These two slots, to be read by [`TipSlots::scan`].
+    /// A pair of given slots, to be read by [`TipSlots::scan`].
     pub const fn of(slots: [Slot; 2]) -> Self {
         Self {
             slots,
@@ -112,7 +112,7 @@ impl TipSlots {
         }
     }
 
-    /// Bytes that a block may have.
+    /// Largest length of a block, bytes.
     pub fn room(&self) -> u32 {
         let [first, second] = self.slots;
         first.length.min(second.length) - LOG
@@ -122,7 +122,7 @@ impl TipSlots {
     pub async fn scan(&mut self, flash: &mut impl NorFlash) {
         *self = Self::of(self.slots);
         let mut unknown = 0;
-        // Twice: what was before is known only with what is in force.
+        // Reads twice: the activation before the last one can be found only when the last one is known.
         for _ in 0..2 {
             unknown = 0;
             for home in 0..2 {
@@ -139,16 +139,16 @@ impl TipSlots {
                 }
             }
         }
-        // A place that cannot be read now may be read at another start: its number is not given again.
+        // A place that cannot be read now may be readable at another start, so its number is not used again.
         self.highest = self.highest.saturating_add(unknown);
     }
 
-    /// The block in use; nothing: the image's own tables are.
+    /// The block in use. `None` if the image's own tables are in use.
     pub fn in_use(&self) -> Option<SlotBlock> {
         self.latest.and_then(|latest| latest.block)
     }
 
-    /// The slot that a block may be written to: never the one with the activation in force.
+    /// The slot that a block may be written to. It is never the slot with the activation in force.
     pub fn free(&self) -> u32 {
         self.latest.map_or(0, |latest| 1 - latest.home)
     }
@@ -203,7 +203,7 @@ impl TipSlots {
         if !known || found.iter().any(|&byte| byte != 0xFF) {
             return Err(StoreError::Failed);
         }
-        // What is read back counts, whatever the memory says of the write.
+        // The result of the write is ignored: only the data read back count.
         let _ = flash.write(at, wanted).await;
         match flash.read(at, found).await {
             Ok(()) if found == wanted => Ok(()),
@@ -233,27 +233,27 @@ impl TipSlots {
     /// Puts the block of the free slot in use, after the whole block was read back.
     ///
     /// # Errors
-    /// [`StoreError`]; what was in use is still.
+    /// [`StoreError`]; the previous block or the image's tables stay in use.
     pub async fn activate(&mut self, flash: &mut impl NorFlash, block: SlotBlock) -> Result<(), StoreError> {
         self.append(flash, block.slot, Some(block)).await
     }
 
-    /// What [`TipSlots::roll_back`] would put in use: what was so before. `None`: there is nothing to take back. The block
-    /// is for the caller to read and judge first.
+    /// What [`TipSlots::roll_back`] would put in use: the previous block, or the image's own tables. `None` if there is nothing
+    /// to roll back. The caller must read and check the block first.
     #[allow(clippy::option_option)] // nothing to take back, or the image's own tables
     pub fn rolls_back_to(&self) -> Option<Option<SlotBlock>> {
         match (self.before, self.latest) {
             (Some(before), _) => Some(before.block),
-            // A load into the other slot took what was before: the image's own tables are always there.
+            // A load into the other slot erased the previous block. The image's own tables are always available.
             (None, Some(latest)) => latest.block.is_some().then_some(None),
             (None, None) => None,
         }
     }
 
-    /// Puts this in use, which [`TipSlots::rolls_back_to`] gave.
+    /// Puts `to` in use, which is the result of [`TipSlots::rolls_back_to`].
     ///
     /// # Errors
-    /// [`StoreError`]; what was in use is still.
+    /// [`StoreError`]; the previous block or the image's tables stay in use.
     pub async fn roll_back(
         &mut self,
         flash: &mut impl NorFlash,
@@ -263,7 +263,7 @@ impl TipSlots {
         self.append(flash, to.map_or(home, |block| block.slot), to).await
     }
 
-    /// Writes an activation into the next place of a log that takes it.
+    /// Writes an activation into the next place of a log at which the write succeeds.
     async fn append(
         &mut self,
         flash: &mut impl NorFlash,
@@ -288,14 +288,14 @@ impl TipSlots {
                     return Ok(());
                 }
                 Place::Blank => {}
-                // It may be read at another start: its number is not given again.
+                // The place may be readable at another start, so its number is not used again.
                 _ => self.highest = self.highest.saturating_add(1),
             }
         }
         Err(StoreError::Failed)
     }
 
-    /// An activation that is there.
+    /// Takes an activation found in a log.
     fn take(&mut self, found: Activation) {
         self.highest = self.highest.max(found.sequence);
         let newer = |than: &Option<Activation>| than.is_none_or(|than| found.sequence > than.sequence);
@@ -340,12 +340,12 @@ impl TipSlots {
     }
 }
 
-/// What lies in the place of an activation.
+/// Content of the place of an activation.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 enum Place {
     Blank,
     Activation(Activation),
-    /// Cut off, or not to be read.
+    /// Interrupted, or unreadable.
     Unknown,
 }
 
