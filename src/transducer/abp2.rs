@@ -11,27 +11,27 @@ use embedded_hal_async::delay::DelayNs;
 use model_tables::constants;
 use model_tables::constants::{TransducerKind, conversion, period};
 
-/// From one sample to the next, microseconds: the part measures about 200 times a second.
+/// Time from one sample to the next, microseconds: the part measures about 200 times a second.
 pub const PERIOD: u32 = period::ABP2;
 
 const MEASURE: [u8; 3] = [0xAA, 0x00, 0x00];
-/// The status byte: powered, not busy, memory sound, arithmetic not at its end.
+/// Bits of the status byte that are checked: powered, busy, memory error, saturated arithmetic.
 const STATUS_MASK: u8 = 0x65;
 const POWERED: u8 = 0x40;
 const BUSY: u8 = 0x20;
 const MEMORY_ERROR: u8 = 0x04;
 const SATURATED: u8 = 0x01;
 
-/// A measurement is waited for this long, microseconds, ...
+/// First wait for a measurement, microseconds.
 const CONVERSION: u32 = conversion::ABP2;
-/// ... and if the part is busy still, this often more ...
+/// Number of further waits while the part is busy.
 const ATTEMPTS: u32 = 4;
-/// ... this long each, microseconds.
+/// Length of each further wait, microseconds.
 const PATIENCE: u32 = 500;
 /// Seven bytes and the address at 400 kHz, microseconds.
 const READ: u32 = 200;
 
-/// Counts of 24 bits; the first and the last are no measurement.
+/// Largest count of 24 bits. The first and the last count are not measurements.
 const FULL_SCALE: u32 = 0x00FF_FFFF;
 
 /// The part.
@@ -65,7 +65,7 @@ impl<B: Bus, D: DelayNs> Abp2<B, D> {
 }
 
 impl<B: Bus, D: DelayNs> Driver for Abp2<B, D> {
-    /// Nothing to set up: a measurement tells whether the part is there and sound.
+    /// The part needs no set-up. A measurement shows whether it is present and works.
     async fn start(&mut self) -> Result<(), Fault> {
         self.sample().await.map(|_| ())
     }
@@ -99,17 +99,17 @@ impl<B: Bus, D: DelayNs> Driver for Abp2<B, D> {
 /// Counts to pressure: a straight line.
 #[derive(Clone, Copy, Debug)]
 struct Line {
-    /// At the ends of the range.
+    /// Counts at the ends of the range.
     counts: [u32; 2],
     /// The range, pascals.
     range: [i32; 2],
 }
 
 impl Line {
-    /// The sample in the seven bytes, its age left out.
+    /// Decodes the sample in the seven bytes, without its age.
     fn sample(&self, [status, p2, p1, p0, t2, t1, t0]: [u8; 7]) -> Result<Sample, Fault> {
         if status & STATUS_MASK != POWERED {
-            // All ones is a line that nobody drives, no zero among them an answer of this part.
+            // 0xFF is a line that nobody drives. This part always gives some zero bits and the powered bit.
             return Err(if status & POWERED == 0 || status == 0xFF {
                 Fault::SensorImplausible
             } else if status & MEMORY_ERROR != 0 {

@@ -1,8 +1,7 @@
 //! Codes of the converter -> the sum of one block of codes, or the reason why the transducer cannot be read.
 //!
-//! The sum is the block's average without a division: later scales are per block. Averaging is what brings
-//! the converter's 12 bits and the transducer's noise down to the resolution wanted, and it has no gain error
-//! and a delay of half a block.
+//! The sum replaces the average, so that no division is needed: later scale factors are per block. Averaging improves the
+//! resolution of the 12-bit converter and reduces the transducer's noise. It has no gain error, and delays by half a block.
 //!
 //! A block is read in place, where the converter's DMA wrote it, two codes a word. A copy would cost more than the sum.
 
@@ -16,14 +15,14 @@ pub const FULL_SCALE: u16 = 4095;
 /// Codes in a block; every board delivers one block a [`PERIOD`].
 pub const BLOCK_LENGTH: usize = 100;
 
-/// From one block to the next, microseconds.
+/// Time from one block to the next, microseconds.
 pub const PERIOD: u32 = period::CONVERTER;
 
-/// A block as DMA writes it: the earlier code of two in the lower half of a word, 12 bits each. Atomic, because the DMA may write
-/// while it is read; then [`Ring::still_holds`] says so.
+/// A block as DMA writes it: the earlier code of two in the lower half of a word, 12 bits each. Atomic, because the DMA may
+/// write a word while it is read. [`Ring::still_holds`] detects this.
 pub type Block = [AtomicU32; BLOCK_LENGTH / 2];
 
-/// Codes of one block added up: 0 to 100 * 4095 = 409 500, which is below 2^19.
+/// Sum of the codes of one block: 0 to 100 * 4095 = 409 500, which is below 2^19.
 #[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
 pub struct CountSum(pub u32);
 
@@ -32,7 +31,7 @@ impl CountSum {
     pub const FULL_SCALE: u32 = FULL_SCALE as u32 * BLOCK_LENGTH as u32;
 }
 
-/// Codes between which a connected transducer stays, the ends excluded.
+/// Range of codes of a connected transducer, the ends excluded.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Window {
     /// At or below: short to ground, or no supply.
@@ -42,7 +41,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// Half way from each end of the transducer's output to its rail.
+    /// The window of a transducer. Each limit is half way between an end of its output and the rail.
     ///
     /// # Panics
     /// At compile time, for a transducer that the converter cannot read.
@@ -60,13 +59,13 @@ impl Window {
     }
 }
 
-/// The code of a share of the reference in `1 / 65536`; at most 65536 * 4095 < 2^28 on the way.
+/// The code of a share of the reference in `1 / 65536`; intermediate values are at most 65536 * 4095 < 2^28.
 const fn code_of(share: u32) -> u16 {
     (share * FULL_SCALE as u32 / 65536) as u16
 }
 
-/// The codes of a supply between half the reference and all of it. With so much supply, the window of the output
-/// still holds: a share of the supply is less of the reference, but by no more than half.
+/// The codes of a supply between half the reference and all of it. The window of the output is still valid at such a supply,
+/// because a share of the supply is at least half of that share of the reference.
 const SUPPLY: Window = Window {
     short: FULL_SCALE / 2,
     open: FULL_SCALE,
@@ -77,15 +76,16 @@ const fn halves_of([low, high]: [u16; 2]) -> u32 {
     (high as u32) << 16 | low as u32
 }
 
-/// Words added up before the halves of their sum are taken apart: 10 * 4095 stays below 2^16.
+/// Number of words that are added before the halves of their sum are separated: 10 * 4095 stays below 2^16.
 const WORDS: usize = 10;
 
 /// Bit 15 of the half-words of the earlier and the later codes.
 pub(super) const EARLIER: u32 = 1 << 15;
 pub(super) const LATER: u32 = 1 << 31;
 
-/// The windows of the earlier and the later codes of a block's words, as a pass over it wants them. Added to a code, each
-/// sets bit 15 exactly from the window's edge on: codes have 12 bits, so no half reaches the next.
+/// The windows of the earlier and the later codes of a block's words, prepared for one pass over the block. Added to a code,
+/// each constant sets bit 15 exactly if the code reaches the window's edge. Codes have 12 bits, so the sum of the lower half
+/// cannot carry into the upper half.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Edges {
     from_open: u32,
@@ -93,19 +93,19 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// All codes are of the output.
+    /// All codes measure the output.
     pub const fn of_output(window: Window) -> Self {
         Self::of([window, window])
     }
 
-    /// Every second code, the later one of two, is of the supply.
+    /// The later one of every two codes measures the supply.
     pub const fn of_output_and_supply(window: Window) -> Self {
         Self::of([window, SUPPLY])
     }
 
     /// The earlier and the later codes have a window each.
     pub(super) const fn of([earlier, later]: [Window; 2]) -> Self {
-        // The edges are held where the addition makes sense.
+        // Limits the edges to values for which the addition is valid.
         const fn open(window: Window) -> u16 {
             let end = FULL_SCALE + 1;
             0x8000 - if window.open < end { window.open } else { end }
@@ -121,13 +121,13 @@ impl Edges {
     }
 }
 
-/// What a pass over a block finds, for the earlier and the later codes of its words apart.
+/// Result of a pass over a block, separately for the earlier and the later codes of its words.
 pub(super) struct Found {
     /// Sums of the codes.
     pub(super) totals: [u32; 2],
-    /// [`EARLIER`], [`LATER`]: some of these codes are at or above their window's end, ...
+    /// [`EARLIER`], [`LATER`]: at least one of these codes is at or above the end of its window.
     pub(super) open: u32,
-    /// ... or at or below its start.
+    /// [`EARLIER`], [`LATER`]: at least one of these codes is at or below the start of its window.
     pub(super) short: u32,
 }
 
@@ -143,7 +143,7 @@ fn add_up(block: &Block, edges: Edges) -> Found {
             open |= codes.wrapping_add(edges.from_open);
             inside &= codes.wrapping_add(edges.above_short);
         };
-        // Written out, as a loop would stay one where the compiler is told to save space.
+        // Written out, because a compiler that optimises for size does not unroll a loop.
         let [a, b, c, d, e, f, g, h, i, j] = words;
         take(a);
         take(b);
@@ -182,7 +182,7 @@ pub(super) fn add_up_column<const ROW: usize>(rows: &[[AtomicU32; ROW]], word: u
             inside &= codes.wrapping_add(edges.above_short);
         };
         let (fives, rest) = rows.as_chunks::<AT_ONCE>();
-        // Written out, as a loop would stay one where the compiler is told to save space.
+        // Written out, because a compiler that optimises for size does not unroll a loop.
         for [a, b, c, d, e] in fives {
             take(a);
             take(b);
@@ -206,9 +206,8 @@ pub(super) fn add_up_column<const ROW: usize>(rows: &[[AtomicU32; ROW]], word: u
 /// The sum of a block.
 ///
 /// # Errors
-/// [`Fault::SensorOpen`] or [`Fault::SensorShort`] when even one code lies outside the window: a wire that
-/// comes and goes within a block would otherwise pull the average without a trace (one code at the rail by
-/// 1/100 of the range).
+/// [`Fault::SensorOpen`] or [`Fault::SensorShort`] if even one code is outside the window. Otherwise a wire with a loose
+/// contact could change the average undetected (one code at the rail changes it by 1/100 of the range).
 #[inline]
 pub fn sum(block: &Block, edges: Edges) -> Result<CountSum, Fault> {
     let Found { totals, open, short } = add_up(block, edges);
@@ -221,12 +220,11 @@ pub fn sum(block: &Block, edges: Edges) -> Result<CountSum, Fault> {
     }
 }
 
-/// The sum of a block whose every second code is of the transducer's supply, as it would be if that were the
-/// converter's reference: so it cancels.
+/// The sum of a block in which every second code measures the transducer's supply. It is scaled as if the supply were the
+/// converter's reference, so that the supply cancels.
 ///
 /// # Errors
-/// As [`sum`]; [`Fault::SensorSupply`] when even one code of the supply is not between half the reference and all of
-/// it.
+/// As [`sum`]; [`Fault::SensorSupply`] if even one code of the supply is not between half the reference and the reference.
 #[inline]
 pub fn sum_of_supply(block: &Block, edges: Edges) -> Result<CountSum, Fault> {
     let Found {
@@ -247,20 +245,20 @@ pub fn sum_of_supply(block: &Block, edges: Edges) -> Result<CountSum, Fault> {
     }
 }
 
-/// Where a converter is in a ring of two blocks that its DMA fills for ever from the front, and which of them can be
-/// read.
+/// Position of a converter in a ring of two blocks that its DMA fills continuously from the front. It determines which block
+/// can be read.
 #[derive(Clone, Debug, Default)]
 pub struct Ring {
-    /// Codes written at the last look, below [`Ring::LENGTH`].
+    /// Number of codes written at the last look, below [`Ring::LENGTH`].
     last: usize,
 }
 
 /// A block that is complete.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Complete {
-    /// Its place in the ring, 0 or 1.
+    /// Index of the block in the ring, 0 or 1.
     pub half: usize,
-    /// Conversions since.
+    /// Number of conversions since it was complete.
     pub since: u32,
 }
 
@@ -268,23 +266,23 @@ impl Ring {
     /// Codes in the ring.
     pub const LENGTH: usize = 2 * BLOCK_LENGTH;
 
-    /// The block that is complete, at a look once a [`PERIOD`]; `position` is how many codes of the ring are written. It must
-    /// be begun to be read before the next one is three quarters written: what remains of a [`PERIOD`] is for the reading.
+    /// The complete block. This is called once each [`PERIOD`]. `position` is the number of codes written in the ring. Reading
+    /// must start before the next block is three quarters written; the rest of the [`PERIOD`] is for the reading.
     ///
     /// # Errors
-    /// [`Fault::ConverterStalled`] when it stands still, [`Fault::SamplesLost`] when the last look was too long ago or
-    /// this one comes too late.
+    /// [`Fault::ConverterStalled`] if the converter has stopped, [`Fault::SamplesLost`] if the last look was too long ago or
+    /// this one is too late.
     pub fn look(&mut self, position: usize) -> Result<Complete, Fault> {
         look(&mut self.last, position, BLOCK_LENGTH)
     }
 
-    /// Whether the block of the last look is not being written again, at a `position` less than a ring later.
+    /// Whether the block of the last look is still intact. `position` is less than one ring after that look.
     pub fn still_holds(&self, position: usize) -> bool {
         self.last / BLOCK_LENGTH == position % Self::LENGTH / BLOCK_LENGTH
     }
 }
 
-/// [`Ring::look`] in a ring of two blocks of a length.
+/// [`Ring::look`] for a ring of two blocks of any length.
 #[inline(always)] // the length is a constant wherever it is called
 #[allow(clippy::inline_always)]
 pub(super) fn look(last: &mut usize, position: usize, block: usize) -> Result<Complete, Fault> {

@@ -1,14 +1,14 @@
-//! Infineon DPS310 on I2C: absolute pressure, 30 to 120 kPa, so a light-touch part: in the densest air its range ends
-//! 12 kPa above it (datasheet V1.2 of 2020-10-15, whose sections are cited).
+//! Infineon DPS310 on I2C: absolute pressure, 30 to 120 kPa. It suits a light touch only: its range ends 12 kPa above the
+//! densest air (datasheet V1.2 of 2020-10-15, whose sections are cited).
 //!
-//! A Goertek SPL06 answers with the same identity and the same coefficients, measures to 110 kPa only, and lacks the register that
-//! says which temperature sensor the coefficients are of: its coefficients would be used with the wrong sensor
-//! (Infineon/DPS310-Pressure-Sensor issue 20, `ArduPilot` pull request 32480). The driver therefore refuses a part that does not
-//! name the sensor on the pressure element. This also refuses a DPS310 that is calibrated for the other sensor, which the datasheet
-//! allows.
+//! A Goertek SPL06 answers with the same identity and the same coefficients, measures to 110 kPa only, and lacks the register
+//! that states the temperature sensor of the coefficients. The driver would use its coefficients with the wrong sensor
+//! (Infineon/DPS310-Pressure-Sensor issue 20, `ArduPilot` pull request 32480). The driver therefore refuses a part that does
+//! not name the sensor on the pressure element. This also refuses a DPS310 that is calibrated for the other sensor, which the
+//! datasheet allows.
 //!
-//! One pressure and one temperature are commanded for each sample, so that the time of each is known, and the settings
-//! are read back with the words: a part that was reset by itself would go on with another scale.
+//! One pressure and one temperature are commanded for each sample, so that the time of each is known, and the settings are read
+//! back with the words. This detects a part that reset itself and continues with another scale.
 
 use crate::status::Fault;
 use crate::transducer::bus::{self, Bus};
@@ -17,7 +17,7 @@ use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
 use model_tables::constants::{conversion, period};
 
-/// From one sample to the next, microseconds.
+/// Time from one sample to the next, microseconds.
 pub const PERIOD: u32 = period::DPS310;
 
 /// Registers (section 7, table 15).
@@ -52,17 +52,16 @@ const PRESSURE_SCALE: i64 = 3_670_016;
 const TEMPERATURE_PRECISION: u8 = 0x00;
 const TEMPERATURE_CONVERSION: u32 = conversion::DPS310[0];
 const TEMPERATURE_SCALE: i64 = 524_288;
-/// Of `COEF_SRCE` and `TMP_CFG`: the temperature sensor on the pressure element, and not the other one (sections 8.4 and
-/// 8.12). Of which the coefficients are, that one has to be read.
+/// Bit of `COEF_SRCE` and `TMP_CFG`: the temperature sensor on the pressure element instead of the other one (sections 8.4 and
+/// 8.12). The sensor to which the coefficients belong must be read.
 const TEMPERATURE_SOURCE: u8 = 0x80;
 const TEMPERATURE_SETTINGS: u8 = TEMPERATURE_SOURCE | TEMPERATURE_PRECISION;
 
-/// From a reset until the coefficients can be read, microseconds, and how long more is waited (section 3.6, table 8:
-/// at most 40 ms).
+/// Time from a reset until the coefficients can be read, microseconds (section 3.6, table 8: at most 40 ms).
 const START_UP: u32 = 40_000;
-/// A flag that is late is looked for this often more, ...
+/// Number of attempts to read a flag that is late.
 const ATTEMPTS: u32 = 8;
-/// ... this long apart, microseconds.
+/// Time between these attempts, microseconds.
 const PATIENCE: u32 = 250;
 /// Reading flags, words and settings at 400 kHz, microseconds.
 const READ: u32 = 400;
@@ -70,7 +69,7 @@ const READ: u32 = 400;
 /// What the part measures, pascals (section 3.2, table 3).
 const LOWEST: i64 = 30_000;
 const HIGHEST: i64 = 120_000;
-/// Further below the range than this, or outside -40 to 85 degC, is no measurement.
+/// A pressure further below the range than this, pascals, or a temperature outside -40 to 85 degC, is not a measurement.
 const MARGIN: i64 = 1_000;
 
 /// The part.
@@ -80,7 +79,7 @@ pub struct Dps310<B, D> {
     delay: D,
     address: u8,
     calibration: Option<Calibration>,
-    /// Since the last start it gave a pressure that this part can give.
+    /// Whether the part has given a plausible pressure since the last start.
     recognised: bool,
 }
 
@@ -131,7 +130,7 @@ impl<B: Bus, D: DelayNs> Dps310<B, D> {
         self.write(RESET, SOFT_RESET).await?;
         self.delay.delay_us(START_UP).await;
         self.ready(COEF_RDY | SENSOR_RDY).await?;
-        // No check guards them: what reads alike twice was not bent on the bus.
+        // The coefficients have no check. Two equal reads show that the bus did not change them.
         let coefficients: [u8; 18] = self.read(COEF).await?;
         if self.read(COEF).await? != coefficients {
             return Err(Fault::SensorCalibration);
@@ -170,7 +169,7 @@ impl<B: Bus, D: DelayNs> Driver for Dps310<B, D> {
         self.write(MEAS_CFG, COMMAND_TEMPERATURE).await?;
         self.delay.delay_us(TEMPERATURE_CONVERSION).await;
         self.ready(TMP_RDY).await?;
-        // Pressure last, so that it is as young as can be.
+        // Pressure is measured last, so that it is as recent as possible.
         self.write(MEAS_CFG, COMMAND_PRESSURE).await?;
         self.delay.delay_us(PRESSURE_CONVERSION).await;
         self.ready(TMP_RDY | PRS_RDY).await?;
@@ -210,7 +209,7 @@ struct Calibration {
     c30: i64,
 }
 
-/// Bits of the scaled words below one: |Ts| <= 16 and |Ps| < 2.3 then take 32 and 30.
+/// Fraction bits of the scaled words. |Ts| <= 16 and |Ps| < 2.3 then take 32 and 30 bits.
 const FRACTION: u32 = 28;
 
 impl Calibration {
@@ -241,7 +240,7 @@ impl Calibration {
         })
     }
 
-    /// Pressure and temperature by sections 4.9.1 and 4.9.2, of words of 24 bits and the sign.
+    /// Computes pressure and temperature by sections 4.9.1 and 4.9.2, from signed words of 24 bits.
     fn sample(&self, pressure: i32, temperature: i32) -> Result<Sample, Fault> {
         // The ends of the word are the ends of the part's converter.
         const ENDS: [i32; 2] = [-0x80_0000, 0x7F_FFFF];
@@ -250,7 +249,7 @@ impl Calibration {
         }
         let ps = (i64::from(pressure) << FRACTION) / PRESSURE_SCALE;
         let ts = (i64::from(temperature) << FRACTION) / TEMPERATURE_SCALE;
-        // Coefficients in thousandths take 30 bits, so no product exceeds 2^62.
+        // Coefficients times 1000 take 30 bits, so no product exceeds 2^62.
         let times = |factor: i64, word: i64| (factor * word) >> FRACTION;
         let c = |coefficient: i64| coefficient * 1000;
         let polynomial = times(times(times(c(self.c30), ps) + c(self.c20), ps) + c(self.c10), ps);

@@ -12,14 +12,14 @@ use model_tables::constants::AIR;
 pub struct Sample {
     /// The pressure, compensated for temperature as far as the part can.
     pub pressure: Millipascals,
-    /// From this pressure up to the end of the transducer's range; below zero: beyond it, a lower bound.
+    /// Distance from this pressure to the end of the transducer's range. Below zero, the pressure is beyond the range and is a lower bound.
     pub headroom: Millipascals,
     /// The part's own temperature; `None` where it measures none.
     pub temperature: Option<Centidegrees>,
-    /// The word the part gave, if it is so fine that noise moves it: unchanged for long it is stuck; `None` of a
-    /// 12-bit converter that averages.
+    /// The word from the part, if it is so fine that noise changes it. A word that stays unchanged for long is stuck. `None`
+    /// for an averaging 12-bit converter.
     pub raw: Option<u32>,
-    /// From the middle of the time it was measured over to when the driver gave it, microseconds.
+    /// Time from the middle of the measurement to the return of the driver, microseconds.
     pub age: u32,
 }
 
@@ -33,32 +33,32 @@ impl Sample {
 /// The driver of a pressure transducer.
 #[allow(async_fn_in_trait)] // one task awaits it, on one thread: no bound is missing
 pub trait Driver {
-    /// Resets and identifies the part, reads its calibration and sets it up: to be done before the first sample and
-    /// after a fault that does not go away. It may be dropped half way and called again.
+    /// Resets and identifies the part, reads its calibration and sets it up: Called before the first sample, and after a fault
+    /// that persists. The future may be dropped before it ends, and the function called again.
     ///
     /// # Errors
     /// The [`Fault`] that keeps it from measuring.
     async fn start(&mut self) -> Result<(), Fault>;
 
-    /// Waits for the next sample. It may be dropped half way and called again.
+    /// Waits for the next sample. The future may be dropped before it ends, and the function called again.
     ///
     /// # Errors
-    /// The [`Fault`] that there is in place of a sample. The next call tries again.
+    /// The [`Fault`] in place of a sample. The next call tries again.
     async fn sample(&mut self) -> Result<Sample, Fault>;
 
-    /// Frees what lies between the part and the chip: a bus that is held, a converter that has stopped.
+    /// Frees the connection between part and chip: a bus that is held, or a converter that has stopped.
     async fn free(&mut self);
 }
 
-/// How far below the thinnest air a sound absolute part may read, pascals: its own error, and a little more height.
+/// A working absolute part may read this far below the thinnest air, pascals: its own error, and a little more height.
 const BELOW_THINNEST_AIR: i32 = 3_000;
 
-/// What an absolute part gives, once it is `recognised` by the first pressure after a start. The air is always in that, and
-/// whatever presses adds to it: only a part that is read by another one's formula is below. There is no upper bound, for
-/// it may be pressed.
+/// Passes on the sample of an absolute part, once the part is `recognised` by its first pressure after a start. That pressure
+/// includes the air pressure, and a press only adds to it. Only a part that is read with the formula of another part gives
+/// less. There is no upper bound, because the fingertip may be pressed.
 ///
 /// # Errors
-/// [`Fault::WrongSensor`] until a sample holds the air.
+/// [`Fault::WrongSensor`] until a sample is at least the air pressure.
 pub(super) fn recognise(recognised: &mut bool, sample: Sample) -> Result<Sample, Fault> {
     *recognised |= sample.pressure.0 >= (AIR[0] - BELOW_THINNEST_AIR) * 1000;
     if *recognised {

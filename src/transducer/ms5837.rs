@@ -13,13 +13,13 @@ use crate::units::{Centidegrees, Millipascals, saturate};
 use embedded_hal_async::delay::DelayNs;
 use model_tables::constants::{conversion, period};
 
-/// From one sample to the next, microseconds.
+/// Time from one sample to the next, microseconds.
 pub const PERIOD: u32 = period::MS5837;
 
 /// Commands (datasheet, "Commands"). The conversions' low bits choose the oversampling.
 const RESET: u8 = 0x1E;
 const PROM: u8 = 0xA0;
-/// Temperature with 256 samples: its noise of 0.012 degC is worth less than a pascal.
+/// Temperature with 256 samples. Its noise of 0.012 degC changes the pressure by less than a pascal.
 const CONVERT_TEMPERATURE: u8 = 0x50;
 /// Pressure with 2048 samples: 2.8 Pa of noise.
 const CONVERT_PRESSURE: u8 = 0x46;
@@ -35,8 +35,8 @@ const READ: u32 = 150;
 /// Versions in bits 11:5 of the first word: the 02BA01 and the 02BA21. (0x1A is the 30 bar part.)
 const VERSIONS: [u16; 2] = [0x00, 0x15];
 
-/// The sensitivity C1 is above this. The datasheets' typical values are 46372 for the 02BA and 34982 for the 30BA; the
-/// parts that the authors of `ArduPilot` collected (pull request 29122) lie apart at 37000.
+/// The sensitivity C1 is above this. The datasheets' typical values are 46372 for the 02BA and 34982 for the 30BA; the parts
+/// that the authors of `ArduPilot` collected (pull request 29122) are separated by 37000.
 const MIN_SENSITIVITY: u16 = 37_000;
 
 /// What the part measures, pascals: 10 to 2000 mbar.
@@ -50,7 +50,7 @@ pub struct Ms5837<B, D> {
     delay: D,
     address: u8,
     calibration: Option<Calibration>,
-    /// Since the last start it gave a pressure that this part can give.
+    /// Whether the part has given a plausible pressure since the last start.
     recognised: bool,
 }
 
@@ -80,7 +80,7 @@ impl<B: Bus, D: DelayNs> Ms5837<B, D> {
             .await
             .map_err(bus::fault)?;
         match u32::from_be_bytes([0, word[0], word[1], word[2]]) {
-            // Read before the conversion was done, after a reset in the middle of it, or twice.
+            // The word was read before the conversion ended, after a reset during it, or twice.
             0 => Err(Fault::SensorBusy),
             // A line that nobody drives.
             0x00FF_FFFF => Err(Fault::SensorImplausible),
@@ -111,7 +111,7 @@ impl<B: Bus, D: DelayNs> Driver for Ms5837<B, D> {
     async fn sample(&mut self) -> Result<Sample, Fault> {
         let calibration = self.calibration.ok_or(Fault::SensorReset)?;
         let temperature = self.convert(CONVERT_TEMPERATURE, TEMPERATURE_CONVERSION).await?;
-        // Pressure last, so that it is as young as can be.
+        // Pressure is measured last, so that it is as recent as possible.
         let pressure = self.convert(CONVERT_PRESSURE, PRESSURE_CONVERSION).await?;
         let sample = calibration.sample(pressure, temperature)?;
         recognise(&mut self.recognised, sample)
@@ -134,10 +134,10 @@ struct Calibration {
 }
 
 impl Calibration {
-    /// The calibration in the seven words, if they are this part's and whole.
+    /// Decodes the calibration in the seven words, if they belong to this part and their CRC is right.
     fn of(prom: [u16; 7]) -> Result<Self, Fault> {
         let [first, coefficients @ ..] = prom;
-        // No bit of an empty memory contradicts its CRC, which is 0.
+        // An empty memory passes the CRC, because its CRC is 0.
         let empty = coefficients.iter().any(|&word| word == 0 || word == u16::MAX);
         if empty || crc4(prom) != first >> 12 {
             return Err(Fault::SensorCalibration);
@@ -156,7 +156,7 @@ impl Calibration {
         })
     }
 
-    /// Pressure and temperature, of words below 2^24.
+    /// Computes pressure and temperature from words below 2^24.
     fn sample(&self, pressure: u32, temperature: u32) -> Result<Sample, Fault> {
         // dT within 2^24 and C6 below 2^16: 2^40. Divisions by powers of two are shifts, which round down.
         let dt = i64::from(temperature) - self.reference_temperature;
@@ -176,8 +176,8 @@ impl Calibration {
             (0, 0, 0)
         };
         let centidegrees = first_order - temperature_second;
-        // D1 SENS below 2^24 * 2^39 = 2^63 at the very worst; P comes in pascals, so a thousand is kept until the last
-        // shift for millipascals: |D1 SENS / 2^21 - OFF| is below 2^43, a thousand of it below 2^53.
+        // D1 SENS is below 2^24 * 2^39 = 2^63 in the worst case. The formula gives pascals; the factor 1000 for millipascals is
+        // applied before the last shift: |D1 SENS / 2^21 - OFF| is below 2^43, a thousand of it below 2^53.
         let scaled =
             ((i64::from(pressure) * (sensitivity - sensitivity_second)) >> 21) - (offset - offset_second);
         let millipascals = (scaled * 1000) >> 15;

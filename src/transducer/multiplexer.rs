@@ -1,5 +1,5 @@
-//! TCA9548A (Texas Instruments, SCPS207): an I2C bus to eight branches. It has one register; each bit of it is a branch that is open,
-//! from the stop after the write on (section 8.6.2). The pin RESET closes all of them (section 8.3.2).
+//! TCA9548A (Texas Instruments, SCPS207): an I2C bus to eight branches. It has one register with one bit for each branch. A set
+//! bit opens its branch, from the stop after the write on (section 8.6.2). The pin RESET closes all of them (section 8.3.2).
 
 use embedded_hal_async::i2c::{Error, ErrorKind, I2c, Operation};
 
@@ -13,10 +13,10 @@ pub struct BusBranch {
 }
 
 impl BusBranch {
-    /// A transaction with a part on this branch, which is opened, checked and closed around it.
+    /// A transaction with a part on this branch. The branch is opened and checked before it, and closed after it.
     ///
     /// # Errors
-    /// [`PortError`] of the multiplexer or the part. The branch may be open still unless the part did not acknowledge.
+    /// [`PortError`] of the multiplexer or the part. After an error the branch may still be open, unless the part did not acknowledge.
     pub async fn transaction<B: I2c>(
         self,
         bus: &mut B,
@@ -29,16 +29,16 @@ impl BusBranch {
             .await
             .map_err(|error| PortError(error.kind()));
         match outcome {
-            // All went well, or nobody acknowledged: the line is free to be closed.
+            // The transaction succeeded, or nobody acknowledged. In both cases the bus is free, so the branch can be closed.
             Ok(()) | Err(PortError(ErrorKind::NoAcknowledge(_))) => self.close(bus).await.and(outcome),
             Err(_) => outcome,
         }
     }
 
-    /// Opens this branch alone of its multiplexer, and looks whether it did.
+    /// Opens only this branch of its multiplexer, and reads the register back.
     ///
     /// # Errors
-    /// [`PortError`] of the bus where the multiplexer does not answer, and where it answers with another register.
+    /// [`PortError`] of the bus if the multiplexer does not answer, or if its register has another value.
     async fn open<B: I2c>(self, bus: &mut B) -> Result<(), PortError> {
         let wanted = [1 << (self.number & 7)];
         bus.write(self.multiplexer, &wanted)
@@ -58,7 +58,7 @@ impl BusBranch {
     /// Closes all branches of its multiplexer.
     ///
     /// # Errors
-    /// [`PortError`] of the bus where the multiplexer does not answer.
+    /// [`PortError`] of the bus if the multiplexer does not answer.
     async fn close<B: I2c>(self, bus: &mut B) -> Result<(), PortError> {
         bus.write(self.multiplexer, &[0])
             .await
@@ -76,7 +76,7 @@ impl Error for PortError {
     }
 }
 
-/// A multiplexer that does not answer is a fault of the bus: of the part behind it nothing is known.
+/// A multiplexer that does not answer is a fault of the bus, because the state of the part behind it is unknown.
 fn of_it(error: &impl Error) -> PortError {
     PortError(match error.kind() {
         ErrorKind::NoAcknowledge(_) => ErrorKind::Other,

@@ -9,21 +9,21 @@ use crate::units::{Millipascals, saturate};
 use model_tables::constants;
 use model_tables::constants::TransducerKind;
 
-/// A converter that runs for ever and whose DMA fills a ring of two blocks.
+/// A free-running converter whose DMA fills a ring of two blocks.
 #[allow(async_fn_in_trait)] // one task awaits it, on one thread: no bound is missing
 pub trait Converter {
-    /// One conversion, microseconds: [`counts::BLOCK_LENGTH`] of them are a [`PERIOD`].
+    /// Time of one conversion, microseconds. [`counts::BLOCK_LENGTH`] conversions take one [`PERIOD`].
     const CONVERSION: u32;
 
-    /// Starts it at the front of the ring, also from any state it is stuck in. Where the supply is measured, the first
-    /// code of two is the output's and the second the supply's.
+    /// Starts the converter at the front of the ring, from any state. If the supply is measured, the first of two codes
+    /// measures the output and the second the supply.
     fn restart(&mut self);
 
-    /// Waits until a block has just been filled: once a [`PERIOD`], at once when that is past.
+    /// Waits until a block has just been filled, once each [`PERIOD`]. Returns at once if that time is past.
     async fn tick(&mut self);
 
-    /// Codes of the ring that are written, less than its length; nothing if it stopped because a code was not fetched
-    /// in time.
+    /// Number of codes written in the ring, less than its length. `None` if the converter stopped because a code was not
+    /// fetched in time.
     fn position(&self) -> Option<usize>;
 
     /// The ring.
@@ -101,7 +101,7 @@ impl<C: Converter> Driver for Ratiometric<C> {
         }
     }
 
-    /// The converter is freed by a start.
+    /// A start frees the converter.
     async fn free(&mut self) {}
 }
 
@@ -110,12 +110,12 @@ impl<C: Converter> Driver for Ratiometric<C> {
 pub struct Conversion {
     /// Below 2^31.
     gain: i32,
-    /// Half a millipascal for rounding included; |offset| < 2^62.
+    /// Includes half a millipascal for rounding; |offset| < 2^62.
     offset: i64,
-    /// 0 to 40, so that the gain has 31 bits: times a sum of 19 bits, its rounding moves no result by more
-    /// than 2^19 / 2^31 = 2^-12 of what one unit of the sum is worth.
+    /// 0 to 40, so that the gain has 31 bits. Multiplied by a sum of 19 bits, the rounding of the gain changes a result by at
+    /// most 2^19 / 2^31 = 2^-12 of the pressure of one unit of the sum.
     shift: u32,
-    /// Above: beyond the transducer's range.
+    /// A higher pressure is beyond the transducer's range.
     range_end: Millipascals,
 }
 
@@ -123,7 +123,7 @@ impl Conversion {
     /// The conversion for a ratiometric transducer.
     ///
     /// # Panics
-    /// At compile time, for a transducer that the converter cannot read, or figures out of all reason.
+    /// At compile time, for a transducer that the converter cannot read, or for impossible values.
     pub const fn of(transducer: &constants::Transducer) -> Self {
         let TransducerKind::Ratiometric {
             output: [low, high], ..
@@ -140,8 +140,8 @@ impl Conversion {
             start < end && end <= i32::MAX / 1000,
             "the range is out of reason"
         );
-        // Millipascals for one unit of the sum: span / (output share * full scale). Widened to 128 bits because it is
-        // evaluated by the compiler alone.
+        // Millipascals for one unit of the sum: span / (output share * full scale). 128 bits cost nothing here, because only
+        // the compiler evaluates this.
         let span = ((end as i128 - start as i128) * 1000) << 16;
         let sums = (high - low) as i128 * CountSum::FULL_SCALE as i128;
         let mut shift = 40;
@@ -161,11 +161,11 @@ impl Conversion {
         }
     }
 
-    /// The pressure of a block, held at the ends of the word.
-    // A boundary that stays in the image, so that instructions from averaged counts to both results can be counted.
+    /// The pressure of a block, saturated at the ends of the word.
+    // Not inlined, so that the instructions from averaged counts to both results can be counted in the image.
     #[inline(never)]
     pub fn pressure(&self, sum: CountSum) -> Millipascals {
-        // gain < 2^31 and sum < 2^19: the product is below 2^50, and the offset leaves it a 63-bit word.
+        // gain < 2^31 and sum < 2^19: the product is below 2^50, and with the offset it stays within 63 bits.
         let sum = i64::from(sum.0.min(CountSum::FULL_SCALE));
         Millipascals(saturate((i64::from(self.gain) * sum + self.offset) >> self.shift))
     }

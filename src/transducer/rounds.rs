@@ -1,8 +1,8 @@
-//! The parts of a hand on one bus, in rounds: a sample of each, all of one instant, or why there is none.
+//! The parts of a hand on one bus, in rounds: a sample of each part, all at one instant, or the reason why there is none.
 //!
-//! Each part has a task of its own, [`keep`]: it waits for its time in the round, and its driver does the rest. The parts convert at the
-//! same time and take turns on the bus. A part that fails is tried less often, in the quiet time while the others convert, and no two
-//! such parts in one round:
+//! Each part has its own task, [`keep`]. It waits for its time in the round and then calls the driver. The parts convert at the
+//! same time and take turns on the bus. A part that fails is tried less often, while the bus is idle during the conversions of
+//! the others. Only one such part is tried in a round:
 //!
 //! | faults in a row | the next try |
 //! |---|---|
@@ -14,29 +14,29 @@ use crate::status::Fault;
 use crate::transducer::driver::{Driver, Sample};
 use core::cell::Cell;
 
-/// Rounds from one try of a part that does not answer to the next, at the most.
+/// Largest number of rounds between two tries of a part that does not answer.
 pub const LONGEST_PAUSE: u32 = 16;
 
 /// The time of the rounds, microseconds.
 #[allow(async_fn_in_trait)] // one task awaits it, on one thread: no bound is missing
 pub trait RoundTimer: Copy {
-    /// The time.
+    /// The present time.
     fn now(&self) -> u64;
 
-    /// Waits until it is as late as this, not at all when it is already.
+    /// Waits until this time. Returns at once if it is past.
     async fn until(&self, time: u64);
 }
 
-/// The times of a round, worked out for the parts of the hand: microseconds.
+/// The times of a round, computed for the parts of the hand, microseconds.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct RoundTimes<const N: usize> {
-    /// From one round to the next.
+    /// Time from one round to the next.
     pub period: u32,
-    /// From the beginning of a round to the instant that its samples are of.
+    /// Time from the start of a round to the instant of its samples.
     pub instant: u32,
-    /// How far the middle of a conversion may lie from that.
+    /// Largest distance of the middle of a conversion from that instant.
     pub skew: u32,
-    /// From the beginning of a round to that of each part.
+    /// Time from the start of a round to the start of each part.
     pub begins: [u32; N],
     /// Half of each part's conversion of the pressure.
     pub halves: [u32; N],
@@ -51,26 +51,26 @@ struct Outcome {
     measured: u64,
 }
 
-/// A part that has done nothing yet is on its way.
+/// Outcome of a part before its first sample.
 const NOT_YET: Outcome = Outcome {
     round: 0,
     sample: Err(Fault::SensorBusy),
     measured: 0,
 };
 
-/// The rounds of `N` parts: what their tasks and the reader of their samples share.
+/// The rounds of `N` parts: the state shared by their tasks and the reader of their samples.
 #[derive(Debug)]
 pub struct Rounds<const N: usize> {
     times: RoundTimes<N>,
     first: u64,
     outcomes: [Cell<Outcome>; N],
     commanded: [Cell<u64>; N],
-    /// The first round in which no part was started yet.
+    /// The first round in which a part may be started.
     starts_from: Cell<u32>,
 }
 
 impl<const N: usize> Rounds<N> {
-    /// Rounds from this time on, microseconds.
+    /// Rounds that begin at the time `first`, microseconds.
     pub const fn new(times: RoundTimes<N>, first: u64) -> Self {
         Self {
             times,
@@ -81,10 +81,10 @@ impl<const N: usize> Rounds<N> {
         }
     }
 
-    /// Where the part of a tip leaves the time of its last command.
+    /// Cell in which the part of a tip stores the time of its last command.
     ///
     /// # Panics
-    /// For a tip that there is not.
+    /// If the tip does not exist.
     pub const fn commanded(&self, tip: usize) -> &Cell<u64> {
         &self.commanded[tip]
     }
@@ -102,7 +102,7 @@ impl<const N: usize> Rounds<N> {
         self.begin(round) + u64::from(self.times.instant)
     }
 
-    /// Whether a part may be started in this round: one in each.
+    /// Whether a part may be started in this round. Each round starts at most one part.
     fn may_start(&self, round: u32) -> bool {
         let may = round >= self.starts_from.get();
         if may {
@@ -120,7 +120,7 @@ impl<const N: usize> Rounds<N> {
         });
     }
 
-    /// The sample of a tip in a round that is over, which began so long ago.
+    /// The sample of a tip in a completed round, with its age at `now`.
     fn sample(&self, tip: usize, round: u32, now: u64) -> Result<Sample, Fault> {
         let outcome = self.outcomes[tip].get();
         let sample = outcome.sample?;
@@ -135,12 +135,12 @@ impl<const N: usize> Rounds<N> {
     }
 }
 
-/// When a part that failed is tried again.
+/// Schedule for new tries of a part that failed.
 #[derive(Clone, Copy, Debug, Default)]
 struct Attempts {
     /// In a row.
     faults: u32,
-    /// The round of the next try, or one that is past.
+    /// The round of the next try. It may be past.
     resumes: u32,
 }
 
@@ -157,7 +157,7 @@ impl Attempts {
     }
 }
 
-/// Keeps the part of a tip going, for ever.
+/// Runs the part of a tip for ever.
 pub async fn keep<const N: usize>(
     rounds: &Rounds<N>,
     tip: usize,
@@ -172,7 +172,7 @@ pub async fn keep<const N: usize>(
             .until(rounds.begin(round) + u64::from(rounds.times.begins[tip]))
             .await;
         if !started {
-            // While the others convert, it can delay no command of theirs.
+            // A start during the conversions of the others cannot delay their commands.
             timer.until(rounds.instant(round)).await;
             if !rounds.may_start(round) {
                 continue;
@@ -208,7 +208,7 @@ pub struct RoundReader<'a, T, const N: usize> {
 }
 
 impl<'a, T: RoundTimer, const N: usize> RoundReader<'a, T, N> {
-    /// A reader that has read nothing.
+    /// A reader without any sample yet.
     pub const fn new(rounds: &'a Rounds<N>, timer: T) -> Self {
         Self {
             rounds,
@@ -217,8 +217,7 @@ impl<'a, T: RoundTimer, const N: usize> RoundReader<'a, T, N> {
         }
     }
 
-    /// The samples of the next round, in the order of the tips, or the reason why there is none. Rounds that were missed are not caught
-    /// up.
+    /// The samples of the next round, in the order of the tips, or the reason why there is none. Missed rounds are skipped.
     pub async fn next(&mut self) -> &[Result<Sample, Fault>; N] {
         let round = self.rounds.at(self.timer.now());
         self.timer.until(self.rounds.begin(round + 1)).await;

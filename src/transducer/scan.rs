@@ -1,5 +1,5 @@
-//! Ratiometric transducers of a hand, read by one converter that scans their channels: blocks of scans -> a sample of each, all of
-//! one instant, or why there is none.
+//! Ratiometric transducers of a hand, read by one converter that scans their channels: blocks of scans -> a sample of each
+//! transducer, all at one instant, or the reason why there is none.
 //!
 //! Each scan ends with the chip's internal reference. If a scan has shifted by one place, which can happen after an overrun,
 //! another channel's code is there. A code outside [`REFERENCE`] is a fault of every tip, and the converter is restarted. The check
@@ -20,8 +20,8 @@ pub const REFERENCE: Window = Window {
     open: 1620,
 };
 
-/// Rows of a block as DMA writes them, two codes a word, the earlier one in its lower half. A row is a scan where the ranks are an
-/// even number, and two scans where they are odd ([`row`]). Atomic, because the DMA may write while it is read.
+/// Rows of a block as DMA writes them, two codes a word, the earlier one in its lower half. A row is one scan if the number of
+/// ranks is even, and two scans if it is odd ([`row`]). Atomic, because the DMA may write while it is read.
 pub type ScanBlock<const ROW: usize, const ROWS: usize> = [[AtomicU32; ROW]; ROWS];
 
 /// Words of a row of scans of `tips` and the internal reference.
@@ -30,20 +30,20 @@ pub const fn row(tips: usize) -> usize {
     if ranks.is_multiple_of(2) { ranks / 2 } else { ranks }
 }
 
-/// A converter that scans for ever and whose DMA fills a ring of two blocks.
+/// A free-running converter that scans its channels. Its DMA fills a ring of two blocks.
 #[allow(async_fn_in_trait)] // one task awaits it, on one thread: no bound is missing
 pub trait ScanConverter<const ROW: usize, const ROWS: usize> {
-    /// One block, microseconds.
+    /// Time of one block, microseconds.
     const PERIOD: u32;
 
-    /// Starts it at the front of the ring, also from any state it is stuck in.
+    /// Starts the converter at the front of the ring, from any state.
     fn restart(&mut self);
 
-    /// Waits until a block has just been filled: once a [`ScanConverter::PERIOD`], at once when that is past.
+    /// Waits until a block has just been filled, once each [`ScanConverter::PERIOD`]. Returns at once if that time is past.
     async fn tick(&mut self);
 
-    /// Codes of the ring that are written, less than its length; nothing if it stopped because a code was not fetched
-    /// in time.
+    /// Number of codes written in the ring, less than its length. `None` if the converter stopped because a code was not
+    /// fetched in time.
     fn position(&self) -> Option<usize>;
 
     /// The ring.
@@ -56,14 +56,14 @@ pub struct Scan<C, const TIPS: usize, const ROW: usize, const ROWS: usize> {
     converter: C,
     started: bool,
     last: usize,
-    /// Of the words of a row.
+    /// Window edges for each word of a row.
     edges: [Edges; ROW],
     tips: [Conversion; TIPS],
-    /// The last ones: moved, they cost as much as they are worth.
+    /// The last samples. They are kept here, because moving them is expensive.
     samples: [Result<Sample, Fault>; TIPS],
 }
 
-/// What a block has of a rank.
+/// Data of one rank in a block.
 #[derive(Clone, Copy, Default)]
 struct Rank {
     /// At most 50 * 4095 < 2^18.
@@ -73,10 +73,10 @@ struct Rank {
 }
 
 impl Rank {
-    /// The codes added up.
+    /// The sum of the codes.
     ///
     /// # Errors
-    /// [`Fault::SensorOpen`] or [`Fault::SensorShort`] when even one code lies outside of its window.
+    /// [`Fault::SensorOpen`] or [`Fault::SensorShort`] if even one code is outside its window.
     const fn sum(self) -> Result<u32, Fault> {
         if self.open {
             Err(Fault::SensorOpen)
@@ -96,7 +96,7 @@ impl<C: ScanConverter<ROW, ROWS>, const TIPS: usize, const ROW: usize, const ROW
     /// Codes of a block.
     const BLOCK: usize = 2 * ROW * ROWS;
 
-    /// Scans of a block: codes of each rank.
+    /// Scans in a block, which is the number of codes of each rank.
     const SCANS: u32 = (Self::BLOCK / Self::RANKS) as u32;
 
     /// The transducers, in the order of the scan's ranks.
@@ -119,7 +119,7 @@ impl<C: ScanConverter<ROW, ROWS>, const TIPS: usize, const ROW: usize, const ROW
         }
     }
 
-    /// The next samples, or the reason why there are none: of a tip's line its own, of the converter all tips'.
+    /// The next samples, or the reason why there are none. A fault of a line affects its tip only; a fault of the converter affects all tips.
     pub async fn next(&mut self) -> &[Result<Sample, Fault>; TIPS] {
         if !self.started {
             self.converter.restart();
@@ -134,7 +134,7 @@ impl<C: ScanConverter<ROW, ROWS>, const TIPS: usize, const ROW: usize, const ROW
         &self.samples
     }
 
-    /// Takes the samples of the last block, or gives a fault and whether the converter has to be started anew.
+    /// Takes the samples of the last block, or returns a fault and whether the converter must be restarted.
     fn block(&mut self) -> Result<(), (Fault, bool)> {
         let position = self.converter.position().ok_or((Fault::SamplesLost, true))?;
         let Complete { half, since } = counts::look(&mut self.last, position, Self::BLOCK)
@@ -158,7 +158,7 @@ impl<C: ScanConverter<ROW, ROWS>, const TIPS: usize, const ROW: usize, const ROW
         }
     }
 
-    /// What a block has of each tip, and of the internal reference.
+    /// Adds up a block: the data of each tip, and of the internal reference.
     fn add_up(&self, half: usize) -> ([Rank; TIPS], Rank) {
         let block = &self.converter.ring()[half];
         let (mut tips, mut reference) = ([Rank::default(); TIPS], Rank::default());
@@ -178,7 +178,7 @@ impl<C: ScanConverter<ROW, ROWS>, const TIPS: usize, const ROW: usize, const ROW
         (tips, reference)
     }
 
-    /// The sum that a block of a single transducer would have: at most 50 * 4095 * 100 < 2^25 on the way.
+    /// Scales a total to the sum of a block of a single transducer. Intermediate values are at most 50 * 4095 * 100 < 2^25.
     const fn of_a_hundred(total: u32) -> CountSum {
         CountSum((total * BLOCK_LENGTH as u32 + Self::SCANS / 2) / Self::SCANS)
     }

@@ -1,5 +1,6 @@
-//! One I2C bus for several parts. They take turns, first come first served, a transaction at a time; a part behind a multiplexer has its
-//! branch opened, checked and closed around each of its own. After a transaction that broke off, the bus is freed before the next turn.
+//! One I2C bus for several parts. They take turns, first come first served, one transaction at a time. For a part behind a
+//! multiplexer, its branch is opened and checked before each transaction, and closed after it. After an aborted transaction,
+//! the bus is freed before the next turn.
 
 use crate::transducer::bus::Bus;
 use crate::transducer::multiplexer::{BusBranch, PortError};
@@ -18,7 +19,7 @@ pub struct SharedBus<B, const N: usize> {
 }
 
 impl<B: Bus, const N: usize> SharedBus<B, N> {
-    /// A bus that nobody uses yet. Each of its transactions has to end within
+    /// A bus that nobody uses yet. Each of its transactions must end within
     /// [`OPERATION_LIMIT`](model_tables::constants::hand_bus::OPERATION_LIMIT).
     pub const fn new(bus: B) -> Self {
         Self {
@@ -27,7 +28,7 @@ impl<B: Bus, const N: usize> SharedBus<B, N> {
         }
     }
 
-    /// Frees the bus and closes all branches, whatever a run before left open.
+    /// Frees the bus and closes all branches, including those that a previous run left open.
     pub async fn clear(&self) {
         self.bus.lock().await.clear().await;
     }
@@ -62,7 +63,7 @@ impl<B: Bus, const N: usize> SharedBus<B, N> {
     }
 }
 
-/// What a part of a hand has of the bus.
+/// Access of one part of a hand to the bus.
 #[derive(Debug)]
 pub struct BusPort<'a, B, T, const N: usize> {
     shared: &'a SharedBus<B, N>,
@@ -72,7 +73,7 @@ pub struct BusPort<'a, B, T, const N: usize> {
 }
 
 impl<'a, B: Bus, T: RoundTimer, const N: usize> BusPort<'a, B, T, N> {
-    /// The bus or a branch of it. The time of the part's last command, a transaction that only writes, is left in `commanded`.
+    /// Access to the bus or to a branch of it. The time of the part's last command, a transaction that only writes, is stored in `commanded`.
     pub const fn new(
         shared: &'a SharedBus<B, N>,
         branch: Option<BusBranch>,
@@ -104,6 +105,6 @@ impl<B: Bus, T: RoundTimer, const N: usize> I2c for BusPort<'_, B, T, N> {
 }
 
 impl<B: Bus, T: RoundTimer, const N: usize> Bus for BusPort<'_, B, T, N> {
-    /// The shared bus has done it, once for all.
+    /// The shared bus has already freed itself.
     async fn clear(&mut self) {}
 }

@@ -13,18 +13,18 @@ use crate::status::Fault;
 use crate::transducer::driver::{Driver, Sample};
 use embedded_hal_async::delay::DelayNs;
 
-/// First pause, microseconds; each further one is twice as long ...
+/// First pause, microseconds. Each further pause is twice as long, up to [`LONGEST_PAUSE`].
 const PAUSE: u32 = 1_000;
-/// ... up to this.
+/// Longest pause, microseconds.
 pub const LONGEST_PAUSE: u32 = 8_000;
 
-/// A transducer that is started, freed and started again as it needs.
+/// A transducer that is started, freed and restarted as needed.
 #[derive(Debug)]
 pub struct TransducerSupervisor<T, D> {
     transducer: T,
     delay: D,
     started: bool,
-    /// In a row.
+    /// Faults in a row.
     faults: u32,
 }
 
@@ -45,14 +45,14 @@ impl<T: Driver, D: DelayNs> TransducerSupervisor<T, D> {
         &self.transducer
     }
 
-    /// The next sample, or the next reason why there is none.
+    /// The next sample, or the reason why there is none.
     ///
     /// # Errors
     /// The transducer's [`Fault`].
     pub async fn next(&mut self) -> Result<Sample, Fault> {
         let outcome = self.attempt().await;
         match outcome {
-            // A line at its rail is what the transducer says, and no failure to hear it; lost samples are past.
+            // These faults need no restart. A line at its rail is a measured state and not a failed measurement, and lost samples are past.
             Ok(_)
             | Err(Fault::SensorOpen | Fault::SensorShort | Fault::SensorSupply | Fault::SamplesLost) => {
                 self.faults = 0;
