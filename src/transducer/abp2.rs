@@ -109,7 +109,7 @@ impl Line {
     /// Decodes the sample in the seven bytes, without its age.
     fn sample(&self, [status, p2, p1, p0, t2, t1, t0]: [u8; 7]) -> Result<Sample, Fault> {
         if status & STATUS_MASK != POWERED {
-            // 0xFF is a line that nobody drives. This part always gives some zero bits and the powered bit.
+            // 0xFF means that nobody drives the line. A status without the powered bit is not from this part.
             return Err(if status & POWERED == 0 || status == 0xFF {
                 Fault::SensorImplausible
             } else if status & MEMORY_ERROR != 0 {

@@ -59,7 +59,7 @@ const TEMPERATURE_SETTINGS: u8 = TEMPERATURE_SOURCE | TEMPERATURE_PRECISION;
 
 /// Time from a reset until the coefficients can be read, microseconds (section 3.6, table 8: at most 40 ms).
 const START_UP: u32 = 40_000;
-/// Number of attempts to read a flag that is late.
+/// Number of times that a flag is read before the driver gives up.
 const ATTEMPTS: u32 = 8;
 /// Time between these attempts, microseconds.
 const PATIENCE: u32 = 250;

@@ -58,7 +58,7 @@ const BELOW_THINNEST_AIR: i32 = 3_000;
 /// less. There is no upper bound, because the fingertip may be pressed.
 ///
 /// # Errors
-/// [`Fault::WrongSensor`] until a sample is at least the air pressure.
+/// [`Fault::WrongSensor`] until a sample includes the air pressure.
 pub(super) fn recognise(recognised: &mut bool, sample: Sample) -> Result<Sample, Fault> {
     *recognised |= sample.pressure.0 >= (AIR[0] - BELOW_THINNEST_AIR) * 1000;
     if *recognised {
