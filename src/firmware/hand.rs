@@ -1,5 +1,5 @@
-//! The tasks of a hand's firmware: [`signal`] makes the reports of all tips, [`send`] puts them on the line, [`listen`] takes
-//! commands from it, [`remember`] stores the calibrations. The first one feeds the watchdog, while all report.
+//! The tasks of a hand's firmware: [`signal`] makes the reports of all tips, [`send`] sends them, [`listen`] receives commands,
+//! [`remember`] stores the calibrations. `signal` feeds the watchdog as long as all tasks report.
 
 #[cfg(feature = "load-tip")]
 use crate::firmware::hand_tips;
@@ -35,7 +35,7 @@ use fingertip::{
     storage::log::StoreError,
 };
 
-/// After reset upon reset the flash is left alone.
+/// After too many resets in a row, the flash is not read.
 const NOT_READ: StoredTip = StoredTip {
     state: Stored::Unreadable,
     number: 0,
@@ -44,7 +44,7 @@ const NOT_READ: StoredTip = StoredTip {
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    // Before anything that can hang, so that every reset is counted.
+    // This comes before anything that can hang, so that every reset is counted.
     let reset_cause = board::begin();
     let start = CrashRecord::start(retained::begin(), reset_cause, NAMES.hash);
     retained::write(&start.crash_record);
@@ -119,9 +119,9 @@ async fn main(spawner: Spawner) {
     signal(clock, samples, waiting, board.watchdog, start).await
 }
 
-/// Turns samples into reports, and answers commands. Period: [`PERIOD`]. Deadline: the next one; when late, samples are lost, which is
-/// reported and counted. Feeds the watchdog as long as the other tasks report too. Without a converter or a bus it measures nothing and
-/// reports so at the same pace.
+/// Turns samples into reports, and answers commands. Period: [`PERIOD`]. Deadline: the next sample; when late, samples are
+/// lost, which is reported and counted. Feeds the watchdog as long as the other tasks report too. Without a converter or a bus
+/// it measures nothing, and reports this at the same rate.
 async fn signal(
     clock: Clock,
     mut source: Option<Samples>,
@@ -147,7 +147,7 @@ async fn signal(
         };
         let now = clock.now();
         if now.0 >= next_feed && (waiting.frames.borrow().is_empty() || cfg!(feature = "rs485")) {
-            // All that was put there before was taken; on a shared line it waits for the host.
+            // An empty queue shows that the send task works. On a shared line, frames wait for the host.
             alive(SEND, now);
         }
         if let Some(sample) = samples.iter().find_map(|sample| sample.ok()) {
@@ -169,7 +169,7 @@ async fn signal(
                 now,
                 asked,
                 |frame| waiting.put_frame(frame),
-                // Each tip asks for one at a time.
+                // Cannot fail: each tip has at most one save under way.
                 |tip, to_store| _ = TO_STORE.try_send((tip, to_store)),
             )
         {
@@ -198,7 +198,7 @@ async fn signal(
     }
 }
 
-/// Stores the calibrations, one tip at a time. Period: when asked for. Deadline: none; other tasks run meanwhile. Without a store
+/// Stores the calibrations, one tip at a time. Period: on request. Deadline: none; other tasks run meanwhile. Without a store
 /// every save fails.
 #[cfg(not(feature = "load-tip"))]
 #[embassy_executor::task]
@@ -219,7 +219,7 @@ async fn remember(mut store: Option<HandStore<FlashMemory, TIPS, RECORD>>, clock
     }
 }
 
-/// What goes to the debugger: every change of a tip's status.
+/// Log for the debugger: every change of a tip's status.
 struct Log([Option<Status>; TIPS]);
 
 impl Default for Log {

@@ -1,5 +1,5 @@
-//! What a hand's image with the feature `load-tip` adds: the tips in use, read at the start, and the task that loads another one while all
-//! are measured.
+//! Additions to a hand's image by the feature `load-tip`: the tips in use, read at the start, and the task that loads another
+//! tip while all tips are measured.
 
 use crate::firmware::queues::{IDLE, REMEMBER, STORED, TO_STORE, Waiting, alive};
 use crate::firmware::retained;
@@ -24,7 +24,7 @@ use fingertip::storage::log::StoreError;
 use fingertip::storage::tip_slots::TipSlots;
 use static_cell::{ConstStaticCell, StaticCell};
 
-/// The blocks in use, and the one that is judged.
+/// The blocks in use, and the block being checked.
 static IN_USE: [ConstStaticCell<[u8; LARGEST_BLOCK]>; TIPS] =
     [const { ConstStaticCell::new([0; LARGEST_BLOCK]) }; TIPS];
 static JUDGED: ConstStaticCell<[u8; LARGEST_BLOCK]> = ConstStaticCell::new([0; LARGEST_BLOCK]);
@@ -32,28 +32,28 @@ static JUDGED: ConstStaticCell<[u8; LARGEST_BLOCK]> = ConstStaticCell::new([0; L
 /// The designs in the blocks in use.
 static LOADED: [StaticCell<LoadedDesign<'static>>; TIPS] = [const { StaticCell::new() }; TIPS];
 
-/// Commands for the loader, with their tips. When full the newest is refused, and counted; its sender repeats it.
+/// Commands for the loader, with their tips. When the queue is full, the newest command is refused and counted. Its sender repeats it.
 pub(super) static LOADS: Channel<ThreadModeRawMutex, (u8, LoadRequest), 2> = Channel::new();
 
-/// From an answer after which the board restarts to the restart: the frames before it take 4 ms.
+/// Time from the answer to the restart. The frames that wait before the answer take 4 ms.
 const FAREWELL: Duration = Duration::from_millis(50);
 
 const _: () = assert!(2 * TIPS <= TIP_SLOTS.len(), "each tip has two slots");
 
-/// What a start finds.
+/// Result of reading the tips at a start.
 pub(super) struct FoundTips {
-    /// The loaded designs in use; `None`: the image's own is.
+    /// The loaded designs in use. `None` if the image's own design is in use.
     pub(super) loaded: [Option<&'static LoadedDesign<'static>>; TIPS],
-    /// What the blocks hold of each fingertip.
+    /// The calibration of each fingertip in its block; `None` without one.
     known: [Option<Calibration>; TIPS],
-    /// A loaded tip cannot be used.
+    /// Whether a loaded tip cannot be used.
     is_refused: [bool; TIPS],
-    /// What the stored calibrations are for.
+    /// Identities of the tips to which the stored calibrations must belong.
     pub(super) identities: [TipIdentity; TIPS],
 }
 
 impl FoundTips {
-    /// What is stored of a tip, with what its data add: a calibration where none is stored, and that its tables could not be used.
+    /// The stored data of a tip, completed from its block: a calibration if none is stored, and a state that shows if its tables could not be used.
     pub(super) fn complete(&self, tip: usize, stored: StoredTip) -> StoredTip {
         StoredTip {
             state: if self.is_refused[tip] {
@@ -67,7 +67,7 @@ impl FoundTips {
     }
 }
 
-/// The tips in use. After reset upon reset the flash is left alone.
+/// Reads the tips in use. After too many resets in a row, the flash is not read.
 pub(super) async fn start(memory: &mut FlashMemory, gave_up: bool) -> (FoundTips, TipLoader<TIPS>) {
     let slots = core::array::from_fn(|tip| TipSlots::of([TIP_SLOTS[2 * tip], TIP_SLOTS[2 * tip + 1]]));
     let mut loader = TipLoader::new(slots, TRANSDUCERS);
@@ -93,8 +93,8 @@ pub(super) async fn start(memory: &mut FlashMemory, gave_up: bool) -> (FoundTips
     (found, loader)
 }
 
-/// Stores the calibrations and loads tips, one at a time. Period: when asked for. Deadline: none; other tasks run meanwhile, but while a
-/// block is judged. Without a store everything fails.
+/// Stores the calibrations and loads tips, one at a time. Period: on request. Deadline: none; other tasks run meanwhile, except
+/// while a block is checked. Without a store every command fails.
 #[embassy_executor::task]
 pub(super) async fn remember(
     mut store: Option<HandStore<FlashMemory, TIPS, RECORD>>,
@@ -143,7 +143,7 @@ pub(super) async fn remember(
     }
 }
 
-/// Restarts with another design of one tip: on purpose, and without that tip's zero; the others go on with theirs.
+/// Restarts on purpose, with another design of one tip. That tip loses its zero; the others keep theirs.
 fn restart(changed: usize) -> ! {
     let mut zeros = retained::read_zeros().zeros(NAMES.hash);
     if let Some(zero) = zeros.get_mut(changed) {

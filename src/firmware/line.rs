@@ -1,4 +1,4 @@
-//! The serial line, both ways: [`send`] puts frames on it, [`listen`] takes commands from it.
+//! The serial line, both ways: [`send`] sends frames, [`listen`] receives commands.
 
 #[cfg(all(hand, feature = "load-tip"))]
 use crate::firmware::hand_tips::LOADS;
@@ -31,11 +31,11 @@ use fingertip::link::tips::read_load;
 use fingertip::link::tips::read_request;
 use fingertip::link::wire::{Deframer, Encoded};
 
-/// A loaded tip may have an `[object]` where the image's design has none.
+/// Whether a design may have an `[object]`: the image's design, or a loaded one.
 #[cfg(not(hand))]
 const OBJECT: bool = image::HAS_OBJECT || cfg!(feature = "load-tip");
 
-/// Whose turn it is on a shared line, and that it became the board's.
+/// The turn on a shared line, and a signal that the board got it.
 #[cfg(feature = "rs485")]
 static TURN: ThreadModeMutex<RefCell<Turn>> = ThreadModeMutex::new(RefCell::new(Turn::HOSTS));
 #[cfg(feature = "rs485")]
@@ -49,7 +49,7 @@ fn hear(byte: u8, ends_command: bool, clock: Clock) {
     }
 }
 
-/// A line of the board's own.
+/// A dedicated line.
 #[cfg(not(feature = "rs485"))]
 struct Way(Line);
 
@@ -85,8 +85,8 @@ impl FrameSink for Way {
     }
 }
 
-/// Sends frames. Period: as they come, on a shared line as the host gives the turn. Deadline: a period on average (a report takes 0.5 ms on
-/// the line); when late, the queue drops its oldest, and the signal task is none the later for it.
+/// Sends frames. Period: as frames arrive; on a shared line, as the host gives the turn. Deadline: a period on average (a
+/// report takes 0.5 ms on the line); when late, the queue drops its oldest frame, and the signal task is not delayed.
 #[embassy_executor::task]
 pub(super) async fn send(
     line: Line,
@@ -110,8 +110,8 @@ pub(super) async fn send(
     }
 }
 
-/// Takes commands. Period: as they come. Deadline: the ring of bytes is full, 2.8 ms of a line that never pauses; when
-/// late, bytes are lost, which is counted. Work is bounded by the rate of the line, and other tasks run in between.
+/// Receives commands. Period: as they arrive. Deadline: when the ring of bytes is full, after 2.8 ms on a line without pauses;
+/// when late, bytes are lost, which is counted. Work is bounded by the rate of the line, and other tasks run in between.
 #[embassy_executor::task]
 pub(super) async fn listen(mut serial_rx: SerialRx, clock: Clock) {
     let mut deframer = Deframer::default();
@@ -143,7 +143,7 @@ pub(super) async fn listen(mut serial_rx: SerialRx, clock: Clock) {
     }
 }
 
-/// Hands a command on; whether the body is one, and there is room for it.
+/// Passes on a command. Returns whether the body is a command and there is room for it.
 #[cfg(not(hand))]
 fn is_taken(body: &[u8]) -> bool {
     #[cfg(feature = "load-tip")]
@@ -153,7 +153,7 @@ fn is_taken(body: &[u8]) -> bool {
     command::read_known_body::<OBJECT>(body).is_ok_and(|request| REQUESTS.try_send(request).is_ok())
 }
 
-/// The same of a hand, whose commands have a tip.
+/// The same for a hand, whose commands have a tip.
 #[cfg(hand)]
 fn is_taken(body: &[u8]) -> bool {
     #[cfg(feature = "load-tip")]

@@ -1,5 +1,5 @@
-//! What the image adds to the library: the tasks, the transducer of the design on the board's port, and memory that a reset
-//! keeps.
+//! Additions of the image to the library: the tasks, the transducer of the design on the board's port, and memory that survives
+//! a reset.
 
 #[cfg(hand)]
 mod hand;

@@ -23,15 +23,15 @@ use fingertip::storage::log::StoreError;
 use fingertip::units::Microseconds;
 use static_cell::{ConstStaticCell, StaticCell};
 
-/// Tasks that wait for the host wake so often to report, and may be late by as much again; who sends frames is known by
-/// leaving none. The memory is given the time of an erasure.
+/// Tasks that wait for the host wake this often to report. They may be late by twice this time. The send task is alive if no
+/// frames are left waiting. The limit of the memory task allows for an erasure.
 pub(super) const IDLE: Duration = Duration::from_millis(50);
 const ALLOWED: [u64; 3] = [150_000, 150_000, 5_000_000];
 pub(super) const SEND: usize = 0;
 pub(super) const LISTEN: usize = 1;
 pub(super) const REMEMBER: usize = 2;
 
-/// 8 ms of reports; of a hand the greetings of all its tips too.
+/// Length of the queue: 8 ms of reports; for a hand, also the hellos of all its tips.
 pub(super) const WAITING: usize = if cfg!(hand) { 16 } else { 8 };
 
 /// Frames waiting for the line.
@@ -40,12 +40,12 @@ pub(super) struct Waiting {
     pub(super) more: Signal<NoopRawMutex, ()>,
 }
 
-/// The frames themselves, and the one on the line.
+/// Buffers of the waiting frames, and of the frame on the line.
 static FRAMES: ConstStaticCell<[Encoded; WAITING]> = ConstStaticCell::new([Encoded::NOTHING; WAITING]);
 pub(super) static SENT: ConstStaticCell<Encoded> = ConstStaticCell::new(Encoded::NOTHING);
 static OUTBOX: StaticCell<Waiting> = StaticCell::new();
 
-/// No frames waiting yet; taken once.
+/// The empty queue of frames. Called once.
 pub(super) fn outbox() -> &'static Waiting {
     OUTBOX.init_with(|| Waiting {
         frames: RefCell::new(Outbox::new(FRAMES.take().each_mut())),
@@ -74,32 +74,32 @@ impl Waiting {
     }
 }
 
-/// A command, of a hand with its tip.
+/// A command; for a hand, with its tip.
 #[cfg(not(hand))]
 pub(super) type Asked = Request;
 #[cfg(hand)]
 pub(super) type Asked = (u8, Request);
 
-/// Commands waiting for the next report. When full the newest is refused, and counted.
+/// Commands waiting for the next report. When the queue is full, the newest command is refused and counted.
 pub(super) static REQUESTS: Channel<ThreadModeRawMutex, Asked, 2> = Channel::new();
 
-/// What came over the line and was no command.
+/// Count of received data that were not a command.
 pub(super) static REFUSED: AtomicU32 = AtomicU32::new(0);
 
-/// To be stored, and what came of it.
+/// Calibrations to store, and the outcomes.
 #[cfg(not(hand))]
 pub(super) static TO_STORE: Channel<ThreadModeRawMutex, ToStore, 1> = Channel::new();
 #[cfg(not(hand))]
 pub(super) static STORED: Channel<ThreadModeRawMutex, (Result<(), StoreError>, u32), 1> = Channel::new();
 
-/// The same of a hand, with the tip: each has one under way at most.
+/// The same for a hand, with the tip. Each tip has at most one under way.
 #[cfg(hand)]
 pub(super) static TO_STORE: Channel<ThreadModeRawMutex, (u8, ToStore), { image::TIPS }> = Channel::new();
 #[cfg(hand)]
 pub(super) static STORED: Channel<ThreadModeRawMutex, (u8, Result<(), StoreError>, u32), { image::TIPS }> =
     Channel::new();
 
-/// Who reported when.
+/// Time of the last report of each task.
 pub(super) static TASK_MONITOR: ThreadModeMutex<RefCell<TaskMonitor<3>>> =
     ThreadModeMutex::new(RefCell::new(TaskMonitor::new(ALLOWED, Microseconds(0))));
 
@@ -109,9 +109,9 @@ pub(super) fn alive(task: usize, now: Microseconds) {
     TASK_MONITOR.lock(|task_monitor| task_monitor.borrow_mut().report(task, now));
 }
 
-/// Counts what was no command.
+/// Counts received data that were not a command.
 pub(super) fn refuse() {
-    // Only this task counts, and one core has no exclusive access to lose.
+    // Only this task counts, on one core, so load and store need not be one atomic step.
     REFUSED.store(
         REFUSED.load(Ordering::Relaxed).saturating_add(1),
         Ordering::Relaxed,

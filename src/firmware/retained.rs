@@ -1,6 +1,6 @@
-//! Memory that survives a reset, the handlers that leave a crash record in it, and the paint of the stack. This is the only file of
-//! the firmware with unsafe code. Unsafe are the section, which start-up does not clear, so that it may have any bits, the
-//! signature of the handlers, and the words of the stack.
+//! Memory that survives a reset, the handlers that write a crash record to it, and the paint of the stack. This is the only
+//! file of the firmware with unsafe code. The unsafe parts are the section that start-up does not clear, so that it may have
+//! any bits; the signature of the handlers; and the words of the stack.
 #![allow(unsafe_code)]
 
 use core::cell::UnsafeCell;
@@ -28,23 +28,23 @@ static WORDS_KEPT: Words = Words(UnsafeCell::new(MaybeUninit::uninit()));
 #[unsafe(link_section = ".uninit.tip_zeros")]
 static ZEROS_KEPT: Words<ZeroWords<TIPS>> = Words(UnsafeCell::new(MaybeUninit::uninit()));
 
-/// The zeros that the run before left, or whatever lies there.
+/// The zeros from the previous run, or arbitrary bits.
 #[cfg(hand)]
 pub(super) fn read_zeros() -> ZeroWords<TIPS> {
-    // SAFETY: plain words in RAM, for which any bits are a value; their check tells whether they mean something.
+    // SAFETY: plain words in RAM, for which any bits are a value; their check shows whether they are valid.
     unsafe { ZEROS_KEPT.0.get().cast::<ZeroWords<TIPS>>().read_volatile() }
 }
 
-/// Leaves these for the next run.
+/// Stores these zeros for the next run.
 #[cfg(hand)]
 pub(super) fn write_zeros(zeros: ZeroWords<TIPS>) {
     // SAFETY: as above; nothing holds a reference into it, and the signal task alone writes it.
     unsafe { ZEROS_KEPT.0.get().cast::<ZeroWords<TIPS>>().write_volatile(zeros) }
 }
 
-/// What the unused stack is filled with, as by the feature `paint-stack` of `cortex-m-rt`.
+/// Value that fills the unused stack, as with the feature `paint-stack` of `cortex-m-rt`.
 const PAINT: u32 = 0xCCCC_CCCC;
-/// Words at the stack's end that are never used, or it overflowed: below them lies no memory, which is a fault of the bus.
+/// Words at the end of the stack. If they were used, the stack overflowed. Below them is no memory, and an access there is a bus fault.
 const GUARD: usize = 16;
 
 unsafe extern "C" {
@@ -52,7 +52,7 @@ unsafe extern "C" {
     static mut _stack_end: u32;
 }
 
-/// Paints the unused stack; whether the run before used its last [`GUARD`] words.
+/// Paints the unused stack. Returns whether the previous run used the last [`GUARD`] words.
 fn repaint_stack() -> bool {
     let end = &raw mut _stack_end;
     // The stack is below the statics: from here down to its end nothing is in use.
@@ -69,10 +69,10 @@ fn repaint_stack() -> bool {
     reached
 }
 
-/// What the run before left, at a start.
+/// At a start: the record of the previous run, with a stack overflow if there was one.
 pub(super) fn begin() -> Option<CrashRecord> {
     let overflowed = repaint_stack();
-    // Without a record the run before painted nothing.
+    // Without a record, the stack was not painted before.
     let left = read()?;
     Some(CrashRecord {
         fault: if overflowed {
@@ -84,14 +84,14 @@ pub(super) fn begin() -> Option<CrashRecord> {
     })
 }
 
-/// What the run before left, or this one so far.
+/// The record of the previous run, or of this run so far.
 pub(crate) fn read() -> Option<CrashRecord> {
-    // SAFETY: plain words in RAM, for which any bits are a value; their check says whether they mean something.
+    // SAFETY: plain words in RAM, for which any bits are a value; their check shows whether they are valid.
     let words = unsafe { WORDS_KEPT.0.get().cast::<[u32; WORDS]>().read_volatile() };
     CrashRecord::from_words(&words)
 }
 
-/// Leaves this for the next run.
+/// Stores this record for the next run.
 pub(crate) fn write(crash_record: &CrashRecord) {
     // SAFETY: as above; nothing holds a reference into it.
     unsafe {
@@ -103,7 +103,7 @@ pub(crate) fn write(crash_record: &CrashRecord) {
     }
 }
 
-/// Adds what goes wrong to what is kept.
+/// Adds a fault to the stored record.
 pub(crate) fn record_fault(fault: LastFault, detail: u32) {
     let so_far = read().unwrap_or_default();
     write(&CrashRecord {
@@ -113,7 +113,7 @@ pub(crate) fn record_fault(fault: LastFault, detail: u32) {
     });
 }
 
-/// Leaves how far the start has come, for a reset that finds nothing else.
+/// Stores the progress of the start, for a reset without another trace.
 pub(crate) fn enter(stage: Stage) {
     record_fault(LastFault::None, stage as u32);
 }
@@ -136,7 +136,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 
 #[exception]
 unsafe fn NonMaskableInt() {
-    // A place of the calibration that cannot be read is its reader's matter; nothing else is foreseen.
+    // An unreadable place of the calibration is handled by its reader. Every other cause is a fault.
     if let Err(address) = ecc::take_failure() {
         record_fault(LastFault::NonMaskable, address);
         cortex_m::peripheral::SCB::sys_reset()

@@ -1,5 +1,5 @@
-//! Where the samples of a hand's tips come from: the converter's scans, or the rounds of the parts on the bus, each with a task of its
-//! own. Only the drivers of the hand's kinds are in the image.
+//! Source of the samples of a hand's tips: the converter's scans, or the rounds of the parts on the bus, where each part has
+//! its own task. The image contains only the drivers of the kinds in the hand.
 
 #[cfg(transducer = "bus")]
 pub(super) use on_the_bus::{Samples, of};
@@ -16,7 +16,7 @@ mod scanned {
     /// The samples of a block.
     pub(in crate::firmware) type Samples = Scan<Port, TIPS, ROW, ROWS>;
 
-    /// Of the board's converter.
+    /// The samples of the board's converter.
     #[allow(clippy::unused_async)] // a bus waits here
     pub(in crate::firmware) async fn of(port: Port, _clock: Clock, _spawner: Spawner) -> Samples {
         Scan::new(TRANSDUCERS, port)
@@ -40,7 +40,7 @@ mod on_the_bus {
     static BUS: StaticCell<SharedBus<Port, TIPS>> = StaticCell::new();
     static PARTS: StaticCell<Rounds<TIPS>> = StaticCell::new();
 
-    /// Of the parts on the board's bus, whose branches are all closed first: a reset of the chip leaves them open.
+    /// The samples of the parts on the board's bus. All branches are closed first, because a reset of the chip leaves them open.
     pub(in crate::firmware) async fn of(port: Port, clock: Clock, spawner: Spawner) -> Samples {
         let bus = BUS.init_with(|| SharedBus::new(port));
         bus.clear().await;

@@ -1,5 +1,5 @@
-//! The tasks of the firmware: [`signal`] makes reports, [`send`] puts them on the line, [`listen`] takes commands from
-//! it, [`remember`] stores the calibration. The first one feeds the watchdog, while all four report.
+//! The tasks of the firmware: [`signal`] makes reports, [`send`] sends them, [`listen`] receives commands, [`remember`] stores
+//! the calibration. `signal` feeds the watchdog as long as all four tasks report.
 
 use crate::firmware::line::{listen, send};
 use crate::firmware::queues::{self, REFUSED, REQUESTS, SEND, SENT, STORED, TO_STORE, Waiting, alive};
@@ -32,15 +32,15 @@ use fingertip::{
     board::FlashMemory, device::logic::ToStore, image::FirmwareDesign, storage::log::StoreError,
 };
 
-/// Every how many reports one goes to the log.
+/// One report out of this many goes to the log.
 const LOGGED: u32 = 250;
 
-/// From one report to the next, microseconds.
+/// Time from one report to the next, microseconds.
 const PERIOD: u32 = ImageDesign::PARAMETERS.period;
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    // Before anything that can hang, so that every reset is counted.
+    // This comes before anything that can hang, so that every reset is counted.
     let reset_cause = board::begin();
     let start = CrashRecord::start(retained::begin(), reset_cause, ImageDesign::CONSTANTS.hash);
     retained::write(&start.crash_record);
@@ -117,10 +117,10 @@ async fn main(spawner: Spawner) {
     signal(design, clock, transducer, waiting, board.watchdog, &beginning).await
 }
 
-/// Turns samples into reports, and answers commands. Period: one sample, 1 ms of a converter. Deadline: the next one;
-/// when late, samples are lost, which is reported and counted. Feeds the watchdog between samples or the reasons why
-/// there are none, as long as the other tasks report too; who does not is left for the next run to say. Without a
-/// transducer it measures nothing and says so at the same pace.
+/// Turns samples into reports, and answers commands. Period: one sample, 1 ms with a converter. Deadline: the next sample; when
+/// late, samples are lost, which is reported and counted. Feeds the watchdog between samples, as long as the other tasks report
+/// too. A task that does not report is recorded for the next run. Without a transducer it measures nothing, and reports this at
+/// the same rate.
 async fn signal(
     design: impl Design,
     clock: Clock,
@@ -146,7 +146,7 @@ async fn signal(
         };
         let now = clock.now();
         if now.0 >= next_feed && (waiting.frames.borrow().is_empty() || cfg!(feature = "rs485")) {
-            // All that was put there before was taken; on a shared line it waits for the host.
+            // An empty queue shows that the send task works. On a shared line, frames wait for the host.
             alive(SEND, now);
         }
         if let Ok(sample) = sample {
@@ -159,7 +159,7 @@ async fn signal(
         if let Ok(request) = REQUESTS.try_receive()
             && let Some(to_store) = device.request(now, request, |message| waiting.put(message))
         {
-            // The device asks for one at a time.
+            // Cannot fail: the device has at most one save under way.
             let _ = TO_STORE.try_send(to_store);
         }
         if now.0 < next_feed {
@@ -181,8 +181,7 @@ async fn signal(
     }
 }
 
-/// Stores the calibration. Period: when asked for. Deadline: none; other tasks run meanwhile. Without a store every save
-/// fails.
+/// Stores the calibration. Period: on request. Deadline: none; other tasks run meanwhile. Without a store every save fails.
 #[cfg(not(feature = "load-tip"))]
 #[embassy_executor::task]
 async fn remember(mut store: Option<Store<FlashMemory>>, clock: Clock) {
@@ -200,7 +199,7 @@ async fn remember(mut store: Option<Store<FlashMemory>>, clock: Clock) {
     }
 }
 
-/// What goes to the debugger: every change of status, and one report in [`LOGGED`].
+/// Log for the debugger: every change of status, and one report out of [`LOGGED`].
 #[derive(Default)]
 struct Log {
     reports: u32,
@@ -213,7 +212,7 @@ impl Log {
         if self.status != Some(status) {
             self.status = Some(status);
             let time = report.time.0;
-            // Not by `Display`, whose machinery takes 1.8 kB.
+            // `Display` is not used, because its code takes 1.8 kB.
             match status {
                 Status::Ok => defmt::info!("{=u64} us: ok", time),
                 Status::Fault(fault) => defmt::info!("{=u64} us: fault: {=str}", time, fault.reason()),

@@ -1,4 +1,4 @@
-//! What an image with the feature `load-tip` adds: the tip in use, read at the start, and the task that loads another one.
+//! Additions to an image by the feature `load-tip`: the tip in use, read at the start, and the task that loads another tip.
 
 use crate::firmware::queues::{IDLE, REMEMBER, STORED, TO_STORE, Waiting, alive};
 use crate::firmware::retained;
@@ -21,29 +21,29 @@ use fingertip::storage::store::Store;
 use fingertip::storage::tip_slots::TipSlots;
 use static_cell::ConstStaticCell;
 
-/// The block in use, and the one that is judged.
+/// The block in use, and the block being checked.
 static IN_USE: ConstStaticCell<[u8; LARGEST_BLOCK]> = ConstStaticCell::new([0; LARGEST_BLOCK]);
 static JUDGED: ConstStaticCell<[u8; LARGEST_BLOCK]> = ConstStaticCell::new([0; LARGEST_BLOCK]);
 
-/// Commands for the loader. When full the newest is refused, and counted; its sender repeats it.
+/// Commands for the loader. When the queue is full, the newest command is refused and counted. Its sender repeats it.
 pub(super) static LOADS: Channel<ThreadModeRawMutex, LoadRequest, 2> = Channel::new();
 
-/// From an answer after which the board restarts to the restart: the frames before it take 4 ms.
+/// Time from the answer to the restart. The frames that wait before the answer take 4 ms.
 const FAREWELL: Duration = Duration::from_millis(50);
 
-/// What a start finds.
+/// Result of reading the tip at a start.
 pub(super) struct Tip {
-    /// What is measured with.
+    /// The design in use.
     pub(super) design: TipDesign<'static, FirmwareDesign>,
-    /// What the flash's slots are known to hold.
+    /// The loader, with the known content of the slots.
     pub(super) loader: TipLoader<1>,
-    /// What the block holds of the one fingertip.
+    /// The calibration of the fingertip in the block; `None` without one.
     pub(super) known: Option<Calibration>,
-    /// A loaded tip cannot be used.
+    /// Whether a loaded tip cannot be used.
     pub(super) is_refused: bool,
 }
 
-/// The tip in use. After reset upon reset the flash is left alone.
+/// Reads the tip in use. After too many resets in a row, the flash is not read.
 pub(super) async fn start(memory: &mut FlashMemory, gave_up: bool) -> Tip {
     let slots = TipSlots::new(0, TIP_SLOT);
     let mut loader = TipLoader::new([slots], [ImageDesign::CONSTANTS.transducer]);
@@ -65,7 +65,7 @@ pub(super) async fn start(memory: &mut FlashMemory, gave_up: bool) -> Tip {
     }
 }
 
-/// With what the tip's data add: a calibration where none is stored, and that its tables could not be used.
+/// Completes `beginning` from the tip's block: a calibration if none is stored, and a state that shows if its tables could not be used.
 pub(super) fn beginning(beginning: Beginning, known: Option<Calibration>, is_refused: bool) -> Beginning {
     Beginning {
         stored: if is_refused {
@@ -78,8 +78,8 @@ pub(super) fn beginning(beginning: Beginning, known: Option<Calibration>, is_ref
     }
 }
 
-/// Stores the calibration, and loads a tip. Period: when asked for. Deadline: none; other tasks run meanwhile, but while a block is
-/// judged. Without a store everything fails.
+/// Stores the calibration, and loads a tip. Period: on request. Deadline: none; other tasks run meanwhile, except while a block
+/// is checked. Without a store every command fails.
 #[embassy_executor::task]
 pub(super) async fn remember(
     mut store: Option<Store<FlashMemory>>,
@@ -126,7 +126,7 @@ pub(super) async fn remember(
     }
 }
 
-/// Restarts with the other tip: on purpose, and without the zero of the one before.
+/// Restarts on purpose, with the other tip and without the zero of the previous one.
 fn restart() -> ! {
     let kept = retained::read().unwrap_or_default();
     retained::write(&CrashRecord {

@@ -1,4 +1,4 @@
-//! The transducer of the design, on the board's port. Only its driver is in the image.
+//! The transducer of the design, on the board's port. The image contains only its driver.
 
 #[cfg(not(transducer = "ratiometric"))]
 use embassy_time::Delay;
@@ -10,7 +10,7 @@ use model_tables::constants;
 
 const DESIGNED: constants::Transducer = ImageDesign::CONSTANTS.transducer;
 
-/// The converter's ticks pace it.
+/// The ticks of the converter set its rate.
 #[cfg(transducer = "ratiometric")]
 pub(crate) fn transducer(port: Port) -> impl Driver {
     fingertip::transducer::ratiometric::Ratiometric::new(&DESIGNED, port)
@@ -37,14 +37,14 @@ pub(crate) fn transducer(port: Port) -> impl Driver {
     fingertip::transducer::dps310::Dps310::new(address, port, Delay)
 }
 
-/// Says when the next sample is due: a part on a bus measures when it is told, a converter by itself.
+/// Waits until the next sample is due. A part on a bus measures on command; a converter runs by itself.
 pub(crate) struct SampleTimer {
-    /// Nothing, where a converter's ticks pace it.
+    /// Time of the next sample; `None` if the ticks of a converter set the rate.
     due: Option<Instant>,
 }
 
 impl SampleTimer {
-    /// The pace of the transducer, or of none.
+    /// A timer for the transducer, or for a board that does not measure.
     pub(crate) fn new(measures: bool) -> Self {
         let ticks = measures && cfg!(transducer = "ratiometric");
         Self {
@@ -52,7 +52,7 @@ impl SampleTimer {
         }
     }
 
-    /// Waits until the next sample is due; time that was lost is not caught up.
+    /// Waits until the next sample is due; lost time is not made up.
     pub(crate) async fn wait(&mut self) {
         let Some(due) = self.due else {
             return;
