@@ -30,20 +30,20 @@ pub type Line = UartTx<'static, Async>;
 /// The serial port's receiver.
 pub type SerialRx = RingBufferedUartRx<'static>;
 
-/// How far the port's rate, its clock by the nearest whole number, is from `baud`, parts in a million.
+/// Error of the port's rate against `baud`, parts in a million. The rate is the clock divided by the nearest whole number.
 const fn baud_error(clock: u32, baud: u32) -> u32 {
     let divider = (clock + baud / 2) / baud;
     (clock as u64 * 1_000_000 / divider as u64).abs_diff(baud as u64 * 1_000_000) as u32 / baud
 }
 
-/// A receiver of sixteen samples a bit bears 3.3 % of both ends together (RM0090 30.3.5); the other end has a crystal, and the
-/// L432KC's oscillator adds 1 %.
+/// A receiver with sixteen samples a bit tolerates 3.3 % for both ends together (RM0090 30.3.5); the other end has a crystal,
+/// and the L432KC's oscillator adds 1 %.
 const _: () = assert!(baud_error(SERIAL_CLOCK, BAUD) < if cfg!(hand) { 1 } else { 10_000 });
 
-/// Bytes heard and not yet taken: 2.8 ms of a line that never pauses.
+/// Received bytes that are not processed yet: 2.8 ms on a line without pauses.
 static HEARD: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 
-/// Where the calibration lies.
+/// The flash of the calibration.
 pub type FlashMemory = RetryingFlash<Region>;
 
 /// Resets the chip unless it is fed.
@@ -51,7 +51,7 @@ pub type Watchdog = IndependentWatchdog<'static, IWDG>;
 
 /// Time since the board was set up.
 ///
-/// Not the bare counter of the executor: setting that up can leave a compare flag behind, which starts it one
+/// The counter of the executor is not used directly. Its set-up can leave a compare flag set, and the counter then starts one
 /// period, 65 536 us, ahead.
 #[derive(Clone, Copy)]
 pub struct Clock {
@@ -59,7 +59,7 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// The time.
+    /// The present time.
     #[inline(never)]
     pub fn now(self) -> Microseconds {
         Microseconds(Instant::now().as_micros().saturating_sub(self.start.as_micros()))
@@ -79,17 +79,17 @@ impl RoundTimer for Clock {
 
 /// The objects that the tasks get.
 pub struct Board {
-    /// The time, from here on.
+    /// The time since this set-up.
     pub clock: Clock,
     /// The port of the transducer; `None` if nothing is measured.
     pub port: Option<Port>,
-    /// The way out for frames.
+    /// Sender of frames.
     pub line: Line,
-    /// The way in for commands.
+    /// Receiver of commands.
     pub serial_rx: SerialRx,
-    /// Where the calibration lies.
+    /// The flash of the calibration.
     pub memory: FlashMemory,
-    /// Running from here on.
+    /// The watchdog, already running.
     pub watchdog: Watchdog,
     /// Whether the crystal runs, if the board has one. If it does not run, the chip's own oscillator, 1 % off, is in use.
     pub crystal: bool,
@@ -109,7 +109,7 @@ impl Board {
     /// With `gave_up`, nothing is measured, and the port of the transducer is not set up. `cause` is that of the last reset.
     ///
     /// # Panics
-    /// For faults of the board's file, found by running the image once.
+    /// If the board's file has an error. Running the image once shows this.
     pub fn take(gave_up: bool, cause: ResetCause) -> Self {
         let (config, crystal) = clocks(cause);
         let pins = Pins::of(embassy_stm32::init(config));
@@ -131,7 +131,7 @@ impl Board {
         serial.baudrate = BAUD;
         #[cfg(feature = "rs485")]
         {
-            // Sixteenths of a bit: half a bit before the first start bit and after the last stop bit.
+            // In sixteenths of a bit: half a bit before the first start bit and after the last stop bit.
             serial.de_assertion_time = 8;
             serial.de_deassertion_time = 8;
         }
@@ -165,8 +165,8 @@ impl Board {
     }
 }
 
-/// Starts the watchdog, and reads and clears the flags of the last reset: all that is done before that reset is counted.
-/// Until it is set in [`Board::take`], the watchdog is fed for half a second (RM0090 21.3.3, RM0394 36.3.2).
+/// Starts the watchdog, and reads and clears the flags of the last reset: nothing else is done before that reset is counted.
+/// Until [`Board::take`] sets its time, the watchdog expires after half a second (RM0090 21.3.3, RM0394 36.3.2).
 pub fn begin() -> ResetCause {
     pac::IWDG.kr().write(|w| w.set_key(pac::iwdg::vals::Key::START));
     super::chip::reset_cause()

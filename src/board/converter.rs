@@ -10,8 +10,8 @@ use embassy_stm32::Peri;
 use embassy_stm32::peripherals::ADC1;
 use embassy_time::{Duration, Ticker};
 
-/// Whether the transducer has a supply of its own, which is measured beside its output: then every second conversion is of
-/// the supply.
+/// Whether the transducer has its own supply, which is measured beside its output. If so, every second conversion measures the
+/// supply.
 const SUPPLY_MEASURED: bool = ratiometric::supply_measured(&ImageDesign::CONSTANTS.transducer);
 
 /// The ring that the converter's DMA fills.
@@ -50,7 +50,7 @@ impl ratiometric::Converter for DmaConverter {
     fn position(&self) -> Option<usize> {
         let running = chip::converter_runs();
         let position = Ring::LENGTH - usize::from(chip::conversions_left());
-        // What the DMA wrote before it counted is there to be read.
+        // The fence makes the DMA's data visible before its count is used.
         fence(Ordering::SeqCst);
         running.then_some(position)
     }

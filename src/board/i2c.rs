@@ -1,6 +1,6 @@
-//! The bus to a transducer, or to those of a hand. It is set up again for every transaction, or once for those that one behind a
-//! multiplexer takes, so that a disturbed line cannot block the peripheral: an I2C of the STM32F4 that was disturbed reports busy until
-//! it is reset. A transaction that takes too long is aborted.
+//! The bus to a transducer, or to those of a hand. It is set up again for every transaction, so that a disturbed line cannot
+//! block the peripheral: a disturbed I2C of the STM32F4 reports busy until it is reset. The steps of a transaction behind a
+//! multiplexer share one set-up. A transaction that takes too long is aborted.
 
 #[cfg(hand)]
 use super::chosen::LINES;
@@ -19,10 +19,10 @@ use embedded_hal_async::i2c::{self, Operation};
 #[cfg(hand)]
 use model_tables::constants::hand_bus::OPERATION_LIMIT;
 
-/// Half a clock pulse of a line that is freed by hand: 100 kHz.
+/// Half a clock pulse while software frees the bus: 100 kHz.
 const HALF_PULSE: Duration = Duration::from_micros(5);
 
-/// One transaction.
+/// Time limit of one transaction.
 const LIMIT: Duration = Duration::from_micros(OPERATION_LIMIT as u64);
 
 /// The bus on the board's pins, at 400 kHz, with pull-ups of 2.2 to 4.7 kilo-ohm on the transducer's side.
@@ -34,7 +34,7 @@ impl I2cBus {
         let pins = &mut self.0;
         let mut config = Config::default();
         config.frequency = Hertz(400_000);
-        // Where the driver waits without yielding it gives up as soon.
+        // Same limit for the driver's waits that do not yield.
         config.timeout = LIMIT;
         I2c::new(
             pins.i2c.reborrow(),
@@ -47,7 +47,7 @@ impl I2cBus {
         )
     }
 
-    /// Clock and data as plain lines, released.
+    /// Clock and data as plain open-drain outputs, released.
     fn lines(&mut self) -> [OutputOpenDrain<'_>; 2] {
         let pins = &mut self.0;
         [
@@ -68,7 +68,7 @@ impl I2cBus {
     }
 }
 
-/// The peripheral while it is set up: for a transaction, or for all that one behind a multiplexer takes.
+/// The peripheral while it is set up: for one transaction, or for all steps of a transaction behind a multiplexer.
 struct Wire<'a>(I2c<'a, Async, Master>);
 
 impl i2c::ErrorType for Wire<'_> {
@@ -77,7 +77,7 @@ impl i2c::ErrorType for Wire<'_> {
 
 impl i2c::I2c for Wire<'_> {
     async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
-        // On a line that is held it would wait in vain.
+        // On a held line, the transaction would wait until its time limit.
         #[cfg(hand)]
         if !is_free() {
             return Err(Error::Bus);
@@ -88,7 +88,7 @@ impl i2c::I2c for Wire<'_> {
     }
 }
 
-/// Whether nobody holds a line; the pins are the bus's.
+/// Whether nobody holds clock or data. The pins must be set up for the bus.
 #[cfg(hand)]
 fn is_free() -> bool {
     LINES
@@ -115,7 +115,7 @@ impl Bus for I2cBus {
         if clock.is_high() && data.is_high() {
             return;
         }
-        // A part in the middle of a byte lets go after at most nine pulses (UM10204 3.1.16).
+        // A part in the middle of a byte releases the line after at most nine pulses (UM10204 3.1.16).
         for _ in 0..9 {
             clock.set_low();
             Timer::after(HALF_PULSE).await;

@@ -8,18 +8,18 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
-/// Longest erasure of a slot: 16 KB take 0.5 s, 8 bits at a time 0.8 s (DS9405 table 48); of a tip of a hand 128 KB, 2 s.
+/// Longest erasure of a slot. 16 KB take 0.5 s, or 0.8 s with 8 bits at a time (DS9405 table 48). A tip of a hand may have 128 KB, which take 2 s.
 const ERASE: Duration = Duration::from_secs(if cfg!(all(hand, feature = "load-tip")) {
     3
 } else {
     2
 });
 
-/// Longest write of a record: 12 words of 0.1 ms, of a chunk of a tip 16, of the record of twelve tips of a hand 104.
+/// Longest write. A record has 12 words of 0.1 ms each, a chunk of a tip 16 words, the record of a hand with twelve tips 104 words.
 const WRITE: Duration = Duration::from_millis(if cfg!(hand) { 20 } else { 10 });
 
-/// Forgets what the caches hold. The flash changes beneath them (RM0351 3.3.5, RM0090 3.5.1: a cache is reset while it
-/// is off), and of what was programmed the caches may hold the blank from before.
+/// Clears the caches (RM0351 3.3.5, RM0090 3.5.1: a cache is reset while it is off). After programming, they may still hold the
+/// blank flash.
 fn flush_caches() {
     let before = FLASH.acr().read();
     if !before.icen() && !before.dcen() {
@@ -36,19 +36,19 @@ fn flush_caches() {
     FLASH.acr().write_value(before);
 }
 
-/// A flash from an offset on.
+/// A part of the flash, starting at an offset.
 pub struct RetryingFlash<F> {
     flash: F,
     base: u32,
 }
 
 impl<F> RetryingFlash<F> {
-    /// The flash from `base` on.
+    /// The part of the flash that starts at `base`.
     pub const fn new(flash: F, base: u32) -> Self {
         Self { flash, base }
     }
 
-    /// The same flash from another base on.
+    /// The same flash with another start.
     #[cfg(feature = "load-tip")]
     pub const fn at(&mut self, base: u32) -> RetryingFlash<&mut F> {
         RetryingFlash {

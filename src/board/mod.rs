@@ -1,5 +1,5 @@
-//! The boards: one short file each with its pins, clocks and interrupts and their reasons, one file for each family of chips,
-//! and what all boards share.
+//! The boards: one short file for each board, with its pins, clocks and interrupts and their reasons; one file for each family
+//! of chips; and the parts that all boards share.
 
 mod common;
 #[cfg(all(transducer = "ratiometric", not(hand)))]

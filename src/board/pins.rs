@@ -7,7 +7,7 @@ pub(super) struct Input {
     pub(super) channel: u8,
     /// Its port.
     pub(super) port: embassy_stm32::pac::gpio::Gpio,
-    /// Its place there.
+    /// Number of the pin in the port.
     pub(super) pin: usize,
 }
 
@@ -25,7 +25,7 @@ impl Input {
     }
 }
 
-/// The peripherals that a board uses, by what they are used for: `Pins`, and `BusPins` for a transducer on a bus.
+/// The peripherals that a board uses, named by their use: `Pins`, and `BusPins` for a transducer on a bus.
 macro_rules! pins {
     (board { $($(#[$when:meta])? $name:ident: $peripheral:ident,)* } bus { $($(#[$bus_when:meta])? $bus_name:ident: $bus_peripheral:ident,)* }) => {
         /// What is used whatever the transducer is.

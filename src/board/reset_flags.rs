@@ -3,8 +3,8 @@
 use crate::status::ResetCause;
 use embassy_stm32::pac;
 
-/// Why the chip was reset; clears the flags. Every internal reset also pulls the pin, so that one is asked last, and a
-/// brown-out is a power-on too (RM0394 6.1.1, RM0440 7.1.1).
+/// Why the chip was reset; clears the flags. Every internal reset also sets the flag of the pin, so that flag is checked last.
+/// A brown-out also counts as a power-on (RM0394 6.1.1, RM0440 7.1.1).
 pub(super) fn reset_cause() -> ResetCause {
     let flags = pac::RCC.csr().read();
     pac::RCC.csr().modify(|register| register.set_rmvf(true));

@@ -4,13 +4,13 @@
 use super::chip::{route_converter, stop_conversions};
 use embassy_stm32::pac;
 
-/// Starts it at the front of the ring, also from any state it is stuck in.
+/// Starts the converter at the front of the ring, from any state.
 pub(super) fn restart_converter(ring: u32, length: u16) {
     use pac::bdma::vals::{Dir, Pl, Size};
     let (adc, dma, channel) = (pac::ADC1, pac::DMA1, pac::DMA1.ch(0));
     if adc.cr().read().adstart() {
         stop_conversions();
-        // It ends the conversion under way, 10 us.
+        // The conversion under way ends first, 10 us.
         while adc.cr().read().adstart() {}
     }
     channel.cr().write(|_| {});
@@ -32,12 +32,12 @@ pub(super) fn restart_converter(ring: u32, length: u16) {
     adc.cr().modify(|w| w.set_adstart(true));
 }
 
-/// Whether it runs: it stops when a code was not fetched in time.
+/// Whether the converter runs. It stops if a code was not fetched in time.
 pub(super) fn converter_runs() -> bool {
     !pac::ADC1.isr().read().ovr()
 }
 
-/// Conversions until the DMA is at the front of the ring again.
+/// Number of conversions until the DMA is at the front of the ring again.
 pub(super) fn conversions_left() -> u16 {
     pac::DMA1.ch(0).ndtr().read().ndt()
 }

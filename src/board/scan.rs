@@ -9,13 +9,13 @@ use embassy_stm32::Peri;
 use embassy_stm32::peripherals::ADC1;
 use embassy_time::{Duration, Ticker};
 
-/// One conversion of a tip's channel, microseconds.
+/// Time of one conversion of a tip's channel, microseconds.
 const CONVERSION: u32 = 10;
 
-/// What the build script took for the period is what the converter takes.
+/// Checks that the period of the build script is that of the converter.
 const _: () = assert!(PERIOD == SCANS as u32 * (CONVERSION * TIPS as u32 + chip::IDENTITY_CONVERSION));
 
-/// Codes in the ring.
+/// Number of codes in the ring.
 const LENGTH: usize = 2 * 2 * ROW * ROWS;
 
 /// The ring that the converter's DMA fills.
@@ -54,7 +54,7 @@ impl ScanConverter<ROW, ROWS> for DmaScan {
     fn position(&self) -> Option<usize> {
         let running = chip::converter_runs();
         let position = LENGTH - usize::from(chip::conversions_left());
-        // What the DMA wrote before it counted is there to be read.
+        // The fence makes the DMA's data visible before its count is used.
         fence(Ordering::SeqCst);
         running.then_some(position)
     }

@@ -13,8 +13,8 @@ use embassy_stm32::{Peri, peripherals::ADC1};
 #[cfg(transducer = "ratiometric")]
 use embassy_time::Duration;
 
-/// Why the chip was reset; clears the flags. Every internal reset also pulls the pin, so that one is asked last (RM0090
-/// 6.1.1).
+/// Why the chip was reset; clears the flags. Every internal reset also sets the flag of the pin, so that flag is checked last
+/// (RM0090 6.1.1).
 pub(super) fn reset_cause() -> ResetCause {
     let flags = pac::RCC.csr().read();
     pac::RCC.csr().modify(|register| register.set_rmvf(true));
@@ -38,12 +38,12 @@ pub(super) fn reset_cause() -> ResetCause {
 /// Powers and clocks the converter, and calibrates it where the chip needs it.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn power_converter(adc: Peri<'static, ADC1>) {
-    // Dropping it would undo that.
+    // Dropping the driver would switch the converter off.
     core::mem::forget(Adc::new(adc));
 }
 
-/// The next erasure works on words, in half of the time that bytes take: 128 KB in 2 s at most (DS9405 table 48). Its driver leaves the
-/// width as it is, which is a byte after reset; words take a supply of 2.7 V (RM0090 table 13).
+/// Makes the next erasure work on words, in half of the time for bytes: 128 KB in 2 s at most (DS9405 table 48). The driver
+/// does not set the width, which is a byte after reset. Words need a supply of at least 2.7 V (RM0090 table 13).
 #[cfg(all(hand, feature = "load-tip"))]
 pub(super) fn erase_by_words() {
     let control = pac::FLASH.cr();
@@ -55,8 +55,8 @@ pub(super) fn erase_by_words() {
     control.modify(|w| w.set_psize(pac::flash::vals::Psize::PSIZE32));
 }
 
-/// Sets up ADC1 to run free at 4 MHz, read by stream 0 of DMA2, channel 0. 28 cycles of sampling (7 us, enough for 10
-/// kilo-ohm) and 12 of conversion are 10 us; 100 of them 1 ms to the cycle.
+/// Sets up ADC1 to run free at 4 MHz, read by stream 0 of DMA2, channel 0. 28 cycles of sampling (7 us, enough for 10 kilo-ohm)
+/// and 12 of conversion take 10 us. 100 conversions take exactly 1 ms.
 #[cfg(all(transducer = "ratiometric", not(hand)))]
 pub(super) fn set_up_converter(supply_measured: bool) {
     OUTPUT.connect();
@@ -67,7 +67,7 @@ pub(super) fn set_up_converter(supply_measured: bool) {
     adc.sqr3().modify(|w| w.set_sq(0, OUTPUT.channel));
     if supply_measured {
         SUPPLY.connect();
-        // The upper channels have a register of their own, from 10 on.
+        // The channels from 10 on have their own register.
         adc.smpr1()
             .modify(|w| w.set_smp(usize::from(SUPPLY.channel) - 10, SampleTime::CYCLES28));
         adc.sqr3().modify(|w| w.set_sq(1, SUPPLY.channel));
@@ -75,7 +75,7 @@ pub(super) fn set_up_converter(supply_measured: bool) {
     }
 }
 
-/// Sampling of the internal reference, at least 10 us (DS9405 table 84): 56 cycles of 4 MHz are 14 us, and 12 of conversion make 17.
+/// Sampling of the internal reference, at least 10 us (DS9405 table 84): 56 cycles at 4 MHz take 14 us, and with 12 cycles of conversion 17 us.
 #[cfg(all(transducer = "ratiometric", hand))]
 pub(super) const IDENTITY_CONVERSION: u32 = 17;
 
@@ -108,14 +108,14 @@ pub(super) fn set_up_scan(channels: &[u8]) {
     adc.cr1().modify(|w| w.set_scan(true));
 }
 
-/// Starts it at the front of the ring, also from any state it is stuck in.
+/// Starts the converter at the front of the ring, from any state.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn restart_converter(ring: u32, length: u16) {
     use pac::dma::vals::{Dir, Pl, Size};
     let (adc, dma, stream) = (pac::ADC1, pac::DMA2, pac::DMA2.st(0));
     adc.cr2().write(|_| {});
     stream.cr().write(|_| {});
-    // It ends the transfer under way, a few cycles.
+    // The transfer under way ends first, in a few cycles.
     while stream.cr().read().en() {}
     dma.ifcr(0).write(|w| {
         w.set_tcif(0, true);
@@ -144,18 +144,18 @@ pub(super) fn restart_converter(ring: u32, length: u16) {
         w.set_cont(true);
         w.set_adon(true);
     });
-    // It needs 3 us to wake (DS9405 table 74).
+    // The converter needs 3 us to start (DS9405 table 74).
     embassy_time::block_for(Duration::from_micros(3));
     adc.cr2().modify(|w| w.set_swstart(true));
 }
 
-/// Whether it runs: it stops when a code was not fetched in time.
+/// Whether the converter runs. It stops if a code was not fetched in time.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn converter_runs() -> bool {
     !pac::ADC1.sr().read().ovr()
 }
 
-/// Conversions until the DMA is at the front of the ring again.
+/// Number of conversions until the DMA is at the front of the ring again.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn conversions_left() -> u16 {
     pac::DMA2.st(0).ndtr().read().ndt()

@@ -1,8 +1,8 @@
 //! The STM32G4: flags of the last reset, and its converter.
 //!
-//! The converter is powered, calibrated and clocked by the driver of embassy-stm32. The ring is not the driver's `RingBufferedAdc`: that one
-//! interrupts twice a ring and hands out copies without a time, and an instant that is known, and a converter that is seen to stall,
-//! need the place of the DMA.
+//! The converter is powered, calibrated and clocked by the driver of embassy-stm32. The driver's `RingBufferedAdc` is not used.
+//! It interrupts twice a ring and returns copies without a time. The time of a block, and the detection of a stalled converter,
+//! need the position of the DMA.
 
 #[cfg(all(transducer = "ratiometric", hand))]
 use super::chosen::CHANNELS;
@@ -30,16 +30,16 @@ pub(super) fn failed_bank(register: pac::flash::regs::Eccr) -> u32 {
 /// Powers, clocks and calibrates the converter.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn power_converter(adc: Peri<'static, ADC1>) {
-    // The driver leaves it on.
+    // The driver leaves the converter on.
     Adc::new(adc, AdcConfig::default());
 }
 
-/// Sampling of every channel: 247.5 cycles of 26 MHz, 9.5 us, enough for 10 kilo-ohm. With 12.5 of conversion they are 10 us; 100 of them
-/// 1 ms to the cycle.
+/// Sampling of every channel: 247.5 cycles of 26 MHz, 9.5 us, enough for 10 kilo-ohm. With 12.5 cycles of conversion this takes
+/// 10 us. 100 conversions take exactly 1 ms.
 #[cfg(transducer = "ratiometric")]
 const SAMPLING: SampleTime = SampleTime::CYCLES247_5;
 
-/// Gives a channel its sampling.
+/// Sets the sampling time of a channel.
 #[cfg(transducer = "ratiometric")]
 fn sample(channel: u8) {
     let channel = usize::from(channel);
@@ -49,7 +49,7 @@ fn sample(channel: u8) {
     }
 }
 
-/// A rank of the sequence: this pin.
+/// Puts this pin at a rank of the sequence.
 #[cfg(transducer = "ratiometric")]
 fn convert(rank: usize, input: &Input) {
     input.connect();
@@ -57,7 +57,7 @@ fn convert(rank: usize, input: &Input) {
     place(rank, input.channel);
 }
 
-/// A rank of the sequence: this channel.
+/// Puts this channel at a rank of the sequence.
 #[cfg(transducer = "ratiometric")]
 fn place(rank: usize, channel: u8) {
     match rank {
@@ -66,7 +66,7 @@ fn place(rank: usize, channel: u8) {
     }
 }
 
-/// For ever, a sequence of so many ranks, each code to the DMA.
+/// Runs a sequence of `ranks` ranks continuously, with each code to the DMA.
 #[cfg(transducer = "ratiometric")]
 fn run_free(ranks: u8) {
     use pac::adc::vals::{Dmacfg, Dmaen};
@@ -88,7 +88,7 @@ pub(super) fn set_up_converter(supply_measured: bool) {
     run_free(1 + u8::from(supply_measured));
 }
 
-/// Sampling of the internal reference, at least 4 us (DS12288, embedded voltage reference): 9.5 us, as of every channel.
+/// Sampling of the internal reference, at least 4 us (DS12288, embedded voltage reference): 9.5 us, as for every channel.
 #[cfg(all(transducer = "ratiometric", hand))]
 pub(super) const IDENTITY_CONVERSION: u32 = 10;
 
@@ -116,7 +116,7 @@ pub(super) fn route_converter() {
     pac::DMAMUX1.ccr(0).write(|w| w.set_dmareq_id(5));
 }
 
-/// Asks for an end after the conversion under way.
+/// Requests a stop after the conversion under way.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn stop_conversions() {
     pac::ADC1

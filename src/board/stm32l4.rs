@@ -13,7 +13,7 @@ use embassy_stm32::pac;
 #[cfg(transducer = "ratiometric")]
 use embassy_stm32::{Peri, peripherals::ADC1};
 
-/// Start of the region of the calibration, from the start of the flash: it has one bank.
+/// Start of the region of the calibration, from the start of the flash: this chip has one bank.
 pub(super) const REGION: u32 = 0;
 
 /// Start of the bank that a failed read was in, from the start of the flash.
@@ -24,16 +24,16 @@ pub(super) fn failed_bank(_register: pac::flash::regs::Eccr) -> u32 {
 /// Powers and clocks the converter, and calibrates it where the chip needs it.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn power_converter(adc: Peri<'static, ADC1>) {
-    // Dropping it would undo that.
+    // Dropping the driver would switch the converter off.
     core::mem::forget(Adc::new(adc));
 }
 
 /// Sets up ADC1 to run free at 6 MHz, read by channel 1 of DMA1, request 0. 47.5 cycles of sampling (7.9 us, enough for 10
-/// kilo-ohm) and 12.5 of conversion are 10 us; 100 of them 1 ms to the cycle.
+/// kilo-ohm) and 12.5 of conversion take 10 us. 100 conversions take exactly 1 ms.
 #[cfg(all(transducer = "ratiometric", not(hand)))]
 pub(super) fn set_up_converter(supply_measured: bool) {
     OUTPUT.connect();
-    // The core's 24 MHz by four, in step with it.
+    // The core's 24 MHz divided by four, synchronous with the core.
     pac::ADC1_COMMON.ccr().modify(|w| w.set_ckmode(0b11));
     let adc = pac::ADC1;
     adc.smpr(0)
@@ -51,7 +51,7 @@ pub(super) fn set_up_converter(supply_measured: bool) {
     run_free();
 }
 
-/// For ever, each code to the DMA.
+/// Runs the sequence continuously, with each code to the DMA.
 #[cfg(transducer = "ratiometric")]
 fn run_free() {
     let adc = pac::ADC1;
@@ -65,7 +65,7 @@ fn run_free() {
     while !adc.isr().read().adrdy() {}
 }
 
-/// Sampling of the internal reference, at least 4 us (DS11451, embedded voltage reference): 7.9 us, as of every channel.
+/// Sampling of the internal reference, at least 4 us (DS11451, embedded voltage reference): 7.9 us, as for every channel.
 #[cfg(all(transducer = "ratiometric", hand))]
 pub(super) const IDENTITY_CONVERSION: u32 = 10;
 
@@ -108,7 +108,7 @@ pub(super) fn route_converter() {
     pac::DMA1.cselr().modify(|w| w.set_cs(0, 0));
 }
 
-/// Asks for an end after the conversion under way.
+/// Requests a stop after the conversion under way.
 #[cfg(transducer = "ratiometric")]
 pub(super) fn stop_conversions() {
     pac::ADC1.cr().modify(|w| w.set_adstp(true));
