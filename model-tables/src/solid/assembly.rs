@@ -9,15 +9,15 @@ use super::mesh::{CUBIC_PRESSURES, FUNCTIONS, Mesh, NODES, PRESSURES};
 use super::state::State;
 use crate::material::Hyperelastic as _;
 
-/// The elements of a mesh, of one kind.
+/// The elements of a mesh, all of one kind.
 #[derive(Clone, Debug)]
 struct Elements<const N: usize, const T: usize> {
     batches: Vec<Batch<N, T>>,
     /// Where the upper half of an element's stiffness is kept in its column: for every layer of elements, by the places of its functions.
     places: Vec<[[usize; N]; N]>,
-    /// Excess of volume in the latest state.
+    /// Excess volume in the latest state.
     excess: Vec<[Lanes; T]>,
-    /// Volume by the nodes, in the state of the latest stiffness.
+    /// Derivative of the volume by the nodes, in the state of the latest stiffness.
     volume: Vec<[[[Lanes; N]; 2]; T]>,
     through: usize,
     work: Box<Stiffness<N, T>>,
@@ -186,11 +186,11 @@ pub(super) struct Assembly(Kind);
 #[derive(Clone, Debug)]
 enum Kind {
     Quadratic(Elements<NODES, PRESSURES>),
-    /// Cubic through the wall.
+    /// Elements that are cubic through the wall.
     Cubic(Elements<FUNCTIONS, CUBIC_PRESSURES>),
 }
 
-/// Calls a method of the elements, of whichever kind, with the processor's vector instructions.
+/// Calls a method of either kind of elements, with the processor's vector instructions.
 macro_rules! of_either {
     ($assembly:expr, $elements:ident => $call:expr) => {
         match $assembly {
@@ -207,7 +207,7 @@ macro_rules! of_either {
 }
 
 impl Assembly {
-    /// Of a mesh.
+    /// The elements of a mesh.
     pub(super) fn new(mesh: &Mesh, material: &Material) -> Self {
         Self(if mesh.is_cubic() {
             Kind::Cubic(Elements::new(mesh, material))
@@ -216,7 +216,7 @@ impl Assembly {
         })
     }
 
-    /// Adds the forces on the nodes in a state; the largest excess of volume.
+    /// Adds the forces on the nodes in a state. Returns the largest excess volume.
     pub(super) fn forces(
         &mut self,
         material: &Material,
@@ -227,7 +227,7 @@ impl Assembly {
         of_either!(&mut self.0, elements => elements.forces(material, memory, state, forces))
     }
 
-    /// Adds the stiffness in a state, pressures eliminated.
+    /// Adds the stiffness in a state, with the pressures eliminated.
     pub(super) fn stiffness(
         &mut self,
         material: &Material,

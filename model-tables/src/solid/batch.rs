@@ -1,20 +1,20 @@
 //! Several elements side by side: their forces and their stiffness.
 //!
 //! The pressure of an element belongs to this element only, so it is eliminated before assembly. Its rows `B u = -g` have no
-//! diagonal. For the step of Newton's method they get a small one, `-m / c`, with `m` the volume of a term of the pressure and `c`
-//! the constant `BULK`, as if the wall were slightly compressible. The residual does not have this term, so the solution is exactly
-//! incompressible; a step leaves about `1 / c` of an excess of volume to the next one. As a benefit, the remaining equations are
-//! symmetric, and positive definite where the state is stable.
+//! diagonal. For the step of Newton's method they get a small one, `-m / c`, with `m` the volume of a term of the pressure and
+//! `c` the constant `BULK`. This acts as if the wall were slightly compressible. The residual does not have this term, so the
+//! solution is exactly incompressible; a step leaves about `1 / c` of an excess of volume to the next one. As a benefit, the
+//! remaining equations are symmetric, and positive definite where the state is stable.
 
 use super::element::{self, Deformation, Material};
 use super::lanes::{LANES, Lanes};
 use super::memory::{self, HeldStress};
 use super::mesh::{CUBIC_PRESSURES, Mesh, NODES, PLACES, POINTS};
 
-/// Bulk modulus of the steps, in shear moduli.
+/// Bulk modulus in the steps of Newton's method, in shear moduli.
 const BULK: f64 = 1e5;
 
-/// Where an element's functions are among a mesh's nodes: `N` of them, in the order of the nodes.
+/// Position of an element's `N` functions among a mesh's nodes, in the order of the nodes.
 pub fn nodes<const N: usize>(mesh: &Mesh, column: usize, layer: usize) -> [usize; N] {
     core::array::from_fn(|i| {
         let function = function::<N>(i);
@@ -40,24 +40,24 @@ fn function<const N: usize>(place: usize) -> usize {
 /// Elements side by side, of `N` functions and `T` terms of the pressure.
 #[derive(Clone, Debug)]
 pub struct Batch<const N: usize, const T: usize> {
-    /// How many of the lanes are elements; the others weigh nothing.
+    /// Number of lanes that hold an element. The other lanes have weight 0.
     pub count: usize,
-    /// Where each function is among the mesh's nodes.
+    /// Position of each function among the mesh's nodes.
     pub nodes: [[usize; N]; LANES],
     /// Undeformed volume of each Gauss point.
     weight: [Lanes; POINTS],
     /// Derivatives by the undeformed radius and height, and values over the radius, of the functions at each Gauss point.
     gradient: Box<[[[Lanes; N]; 3]; POINTS]>,
-    /// [`BULK`] over the volume that each term of the pressure stands for.
+    /// [`BULK`] divided by the volume of each term of the pressure.
     bulk: [Lanes; T],
 }
 
 /// Forces of elements side by side.
 #[derive(Clone, Debug)]
 pub struct Forces<const N: usize, const T: usize> {
-    /// On radii and heights.
+    /// Forces on radii and heights.
     pub nodes: [[Lanes; N]; 2],
-    /// Excess of volume.
+    /// Excess volume.
     pub excess: [Lanes; T],
 }
 
@@ -102,7 +102,7 @@ impl<const N: usize, const T: usize> Batch<N, T> {
 
     fn new(mesh: &Mesh, first: usize, count: usize, shear_modulus: f64) -> Self {
         let through = mesh.elements.through;
-        // Beyond the last element stands the last once more, without weight.
+        // The lanes after the last element repeat it with weight 0.
         let element = |lane: usize| first + lane.min(count - 1);
         let mut weight = [Lanes::ZERO; POINTS];
         let mut gradient = Box::new([[[Lanes::ZERO; N]; 3]; POINTS]);
@@ -289,7 +289,7 @@ fn pressure_at<const T: usize>(terms: &[f64; CUBIC_PRESSURES], pressures: &[Lane
 }
 
 impl<const N: usize, const T: usize> Stiffness<N, T> {
-    /// Adds a Gauss point's part.
+    /// Adds the contribution of a Gauss point.
     #[inline(always)]
     fn add(
         &mut self,

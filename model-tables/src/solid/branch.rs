@@ -1,6 +1,6 @@
-//! States in balance beside the path of a press: those of a thin dome that buckles inwards, see [`super::path`].
+//! States in balance that are not on the path of a press: those of a thin dome that buckles inwards, see [`super::path`].
 //!
-//! The search starts from a few guesses. Everything that it finds is a state; if it finds none, there may still be one.
+//! The search starts from a few guesses. Everything that it finds is a state in balance. If it finds none, there may still be one.
 
 use super::equilibrium::SolidWall;
 use super::section;
@@ -12,7 +12,7 @@ use super::station::Kept;
 const MIRRORED: [f64; 5] = [0.25, 0.35, 0.5, 0.7, 1.0];
 /// Beyond a state that is no minimum of the energy, the way from the path's state to it once more, this many times.
 const BEYOND: [f64; 2] = [4.0, 8.0];
-/// Difference of forces or pressures from which on two states at one indentation are two, relative.
+/// Smallest relative difference of force or pressure at which two states at one indentation count as different.
 const DISTINCT: f64 = 5e-3;
 /// Energy of a state over that of the path's, from which on it is none of a press: elements fold onto themselves.
 const MAX_ENERGY: f64 = 2.0;
@@ -21,7 +21,7 @@ const MAX_ENERGY: f64 = 2.0;
 pub(super) struct Beside {
     pub(super) state: State,
     pub(super) balance: Balance,
-    /// Whether it is a minimum of the energy, where a wall can stay; else it is the crest between two of them.
+    /// Whether it is a minimum of the energy, in which a wall can stay. Otherwise it is the crest between two minima.
     pub(super) is_stable: bool,
 }
 
@@ -55,7 +55,7 @@ pub(super) fn beside(
     crest
 }
 
-/// What a guess settles to, if that is another state than the path's.
+/// The state that a guess converges to. `None` if that is the state of the path.
 fn settle(wall: &mut SolidWall, fluid: &Fluid, kept: &Kept, plate: f64, mut state: State) -> Option<Beside> {
     let balance = wall.settle(&mut state, plate, fluid).ok()?;
     let distinct = |a: f64, b: f64| (a - b).abs() > DISTINCT * a.abs().max(b.abs());

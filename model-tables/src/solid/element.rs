@@ -52,13 +52,13 @@ impl Constants {
     }
 }
 
-/// Volume stiffness `k`, in shear moduli, where there is one.
+/// Volume stiffness `k`, in shear moduli, if there is one.
 const VOLUME_STIFFNESS: f64 = 1.0 / 3.0;
 
 /// Volume stiffness besides, in `-C2` of a law that softens.
 const CURVATURE: f64 = 8.0;
 
-/// A law, and a stiffness against what the pressure's terms leave free of an element's volume.
+/// A law, and a stiffness against the volume changes that the pressure's terms do not prevent.
 #[derive(Clone, Copy, Debug)]
 pub struct Material {
     /// The law.
@@ -87,7 +87,7 @@ impl Material {
     }
 }
 
-/// The pressure of an undeformed wall free of stress.
+/// The pressure of an undeformed, unstressed wall.
 pub fn pressure_at_rest(law: &Law) -> f64 {
     let constants = Constants::of(law);
     -(2.0 * constants.first[0] + 4.0 * constants.second)
@@ -142,7 +142,7 @@ pub(super) fn in_plane<T: Real>([f11, f12, _, f21, f22]: Deformation<T>) -> (T, 
 pub struct Stress<T = f64> {
     /// Nominal stress: derivatives of the density by the deformation.
     pub nominal: Deformation<T>,
-    /// Volume ratio less one.
+    /// Volume ratio minus one.
     pub excess: T,
 }
 
@@ -242,7 +242,7 @@ pub fn energy_density<T: Real>(material: &Material, deformation: Deformation<T>)
     energy + excess * excess * (0.5 * material.volume_stiffness)
 }
 
-/// The lesser of the in-plane determinant and the hoop stretch: positive unless turned inside out.
+/// The smaller of the in-plane determinant and the hoop stretch. It is positive unless the element is turned inside out.
 pub fn least(deformation: Deformation) -> f64 {
     in_plane(deformation).0.min(deformation[2])
 }
@@ -253,7 +253,7 @@ pub fn pressure_terms(x: f64, y: f64) -> [f64; CUBIC_PRESSURES] {
     [1.0, x, y, x * y, y * y - 1.0 / 3.0]
 }
 
-/// Pressure at a place; an element that has fewer terms has none of the others.
+/// Pressure at a place. The missing terms of an element with fewer terms count as 0.
 pub fn pressure_at(x: f64, y: f64, pressures: &[f64; CUBIC_PRESSURES]) -> f64 {
     let terms = pressure_terms(x, y);
     (0..CUBIC_PRESSURES).map(|i| terms[i] * pressures[i]).sum()

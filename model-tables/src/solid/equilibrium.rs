@@ -22,27 +22,27 @@ use crate::material::Law;
 const CONTACT_STIFFNESS: f64 = 200.0;
 /// Largest unbalanced force of a node, and with it the largest excess of an element's volume, over the plate's force.
 const RELATIVE_TOLERANCE: f64 = 1e-8;
-/// The same in moduli times radius times thickness (volume: square radii times thickness), where there is hardly a force.
+/// The same in moduli times radius times thickness (volume: square radii times thickness), used if the force is nearly zero.
 const TOLERANCE: f64 = 1e-10;
-/// Iterations, those with earlier factors among them, after which a state counts as lost.
+/// Largest number of iterations, including those with earlier factors. After it, the state counts as not found.
 const MAX_ITERATIONS: usize = 60;
 /// Largest displacement of a node in an iteration, over the wall thickness.
 const STEP_LIMIT: f64 = 0.5;
-/// Displacement of a node, over the wall thickness, after which the wall's part of the equations is set up anew. What changes with the contact's edge
-/// is the plate's part.
+/// Displacement of a node, over the wall thickness, after which the wall's part of the equations is set up again. A moving
+/// contact edge changes only the plate's part.
 const RENEWAL: f64 = 0.1;
 /// Smallest part of a step that is taken, with friction.
 const MIN_DAMPING: f64 = 0.125;
-/// A step that leaves more than this part of the residual is the last with its factors.
+/// If a step leaves more than this share of the residual, the equations are factored again.
 const CONTRACTION: f64 = 0.1;
-/// A step that leaves more than this part although the plate's part is of its own state is the last with the wall's.
+/// If a step leaves more than this share with a plate's part of its own state, the wall's part is set up again too.
 const WALL_CONTRACTION: f64 = 0.5;
 
-/// Which part of the factors is of the latest iterate.
+/// The part of the factors that belongs to the latest iterate.
 #[derive(PartialEq)]
 enum Renewed {
     Nothing,
-    /// What the plate adds.
+    /// The plate's part.
     Plate,
     All,
 }
@@ -56,17 +56,17 @@ pub struct Tangent {
     pub force: f64,
 }
 
-/// A wall, and room to solve it.
+/// A wall, and the memory to solve it.
 #[derive(Clone, Debug)]
 pub struct SolidWall {
     /// The undeformed wall.
     pub mesh: Mesh,
     /// Its material, in shear moduli.
     pub material: Material,
-    /// What it remembers, where it relaxes.
+    /// Its memory, if it relaxes.
     pub(super) memory: Option<Memory>,
     assembly: Assembly,
-    /// Largest unbalanced force where there is hardly one on the plate, in moduli times radius times thickness.
+    /// Largest unbalanced force if the plate's force is nearly zero, in moduli times radius times thickness.
     tolerance: f64,
     /// Contact pressure over penetration.
     contact_stiffness: f64,
@@ -87,7 +87,7 @@ pub struct SolidWall {
     by_edge: Vec<[[f64; 6]; 6]>,
     /// Negative pivots of each column.
     negative: Vec<usize>,
-    /// Newton's step, and the part of it that goes with the fluid's pressure.
+    /// Newton's step, and its derivative by the fluid's pressure.
     step: State,
     by_pressure: State,
     /// Factorisations so far.
@@ -159,7 +159,7 @@ impl SolidWall {
             .sum()
     }
 
-    /// How many times as stiff as relaxed the wall is in the step of time at hand.
+    /// Stiffness of the wall in the present time step, over its relaxed stiffness.
     fn stiffening(&self) -> f64 {
         self.memory.as_ref().map_or(1.0, Memory::stiffening)
     }
@@ -169,8 +169,9 @@ impl SolidWall {
         self.assembly.energy(&self.material, state)
     }
 
-    /// Potential energy of the latest settled state: strain energy, and the work of the pressures on what is left of excess volume. An excess within the
-    /// tolerance is an error of first order in the one, and of second order in this.
+    /// Potential energy of the latest settled state: strain energy, and the work of the pressures on the remaining excess
+    /// volume. An excess within the tolerance causes an error of first order in the strain energy, but of second order in this
+    /// sum.
     pub fn potential(&self, state: &State) -> f64 {
         self.energy(state) + self.assembly.work_of_pressures(state)
     }
@@ -241,7 +242,7 @@ impl SolidWall {
             }
             let force = balance.force / self.mesh.thickness;
             if balance.residual < self.tolerance * self.stiffening() + RELATIVE_TOLERANCE * force {
-                // Admissible only right side out: the equations go on beyond.
+                // A state with an element inside out is not admissible, although the equations continue there.
                 let least = self.deformations(state, false).map(element::least);
                 return if least.fold(f64::INFINITY, f64::min) > 0.0 {
                     Ok(balance)
@@ -267,7 +268,7 @@ impl SolidWall {
                 Renewed::Nothing
             };
             if self.sliding.is_some() {
-                // Points that stick and slide in turn.
+                // Some points alternate between sticking and sliding.
                 damping = if contraction > 1.0 {
                     (0.5 * damping).max(MIN_DAMPING)
                 } else {
@@ -327,7 +328,7 @@ impl SolidWall {
         balance
     }
 
-    /// Takes the forces out that act on what is held: the rim, and the pole sideways.
+    /// Removes the forces on the held unknowns: the rim, and the radius of the pole.
     fn hold(&mut self) {
         let stride = self.mesh.stride();
         let rim = self.forces.len() - stride;

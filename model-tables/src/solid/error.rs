@@ -1,4 +1,4 @@
-//! Why the solid gives no answer, in words.
+//! Reasons why the solid gives no answer, as text.
 
 use super::Failure;
 use crate::limit::{Limit, refuse_cup, refuse_cylinder, refuse_indentation, refuse_unsolved};
@@ -7,53 +7,53 @@ use core::fmt;
 /// Why the solid gives no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SolidError {
-    /// A solid rests unstretched, or at a pressure.
+    /// A solid must rest unstretched, or at a pressure.
     RestNotForSolid,
-    /// The law has no stiffness where nothing is strained: its shear modulus is not positive.
+    /// The law has no stiffness in the unstrained state: its shear modulus is not positive.
     NoStiffness {
         /// The shear modulus, pascals.
         shear_modulus: f64,
     },
     /// Inflation does not reach this pressure; pascals.
     PressureOutOfReach {
-        /// What was asked for.
+        /// The requested pressure.
         asked: f64,
-        /// The greatest that inflation passes.
+        /// The largest pressure that inflation reaches.
         greatest: f64,
     },
-    /// What touches has no axial symmetry.
+    /// The object has no axial symmetry.
     NotAxisymmetric,
-    /// A cup does not touch the pole first.
+    /// The cup does not touch the pole first.
     CupTooTight {
         /// Its radius, metres.
         radius: f64,
-        /// The least that touches the pole first, metres.
+        /// The smallest radius that touches the pole first, metres.
         least: f64,
     },
     /// The rest state was not found.
     RestUnsolved {
-        /// What failed.
+        /// The failure of the solver.
         failure: Failure,
     },
-    /// The indentation lies beyond the end of the press.
+    /// The indentation is beyond the end of the press.
     BeyondLimit {
-        /// The indentation asked for, metres.
+        /// The requested indentation, metres.
         asked: f64,
-        /// The end.
+        /// The end of the press.
         limit: Limit,
     },
-    /// An indentation is a length >= 0.
+    /// The indentation must be a length >= 0.
     NotAnIndentation {
-        /// What was asked for, metres.
+        /// The requested indentation, metres.
         asked: f64,
     },
     /// The state was not found.
     PressUnsolved {
-        /// The indentation asked for, metres.
+        /// The requested indentation, metres.
         asked: f64,
         /// The largest indentation reached on the way, metres.
         reached: f64,
-        /// What failed.
+        /// The failure of the solver.
         failure: Failure,
     },
 }

@@ -1,10 +1,11 @@
 //! Friction between the outer surface and an object: Coulomb's law, by return mapping (Simo and Laursen, "An augmented Lagrangian treatment
 //! of contact problems involving friction", Comput. Struct. 42 (1992) 97).
 //!
-//! A point that touches is tied to the object by a stiff spring along the object's meridian. Its traction is `k (s - a)`, with `s` the place of the
-//! point on the object and `a` that of its anchor; beyond `mu p` the anchor follows. A point that comes into contact within a step is
-//! anchored where it was when its penetration, taken as linear over the step, passed zero. Points are fixed to the wall, so that each keeps its
-//! anchor. What sliding changes of the pressure's part in the traction is left out of the linear equations, which keeps them symmetric.
+//! A touching point is connected to the object by a stiff spring along the object's meridian. Its traction is `k (s - a)`, with
+//! `s` the place of the point on the object and `a` that of its anchor; beyond `mu p` the anchor follows. A point that comes
+//! into contact within a step is anchored where it was when its penetration, taken as linear over the step, passed zero. Points
+//! are fixed to the wall, so that each keeps its anchor. What sliding changes of the pressure's part in the traction is left
+//! out of the linear equations, which keeps them symmetric.
 
 use super::mesh::shape;
 use super::object::{Action, Surface};
@@ -26,11 +27,11 @@ struct Trace {
     depth: f64,
     /// Its place along the object's meridian.
     arc: f64,
-    /// Where it is anchored; NaN where it does not touch.
+    /// Its anchor; NaN if it does not touch.
     anchor: f64,
 }
 
-/// What friction does to a point.
+/// Action of friction on a point.
 #[derive(Clone, Copy, Debug)]
 struct Traction {
     /// Per undeformed area, against an increasing place.
@@ -39,7 +40,7 @@ struct Traction {
     slope: f64,
     /// The anchor at the end of the step.
     anchor: f64,
-    /// Where the anchor was at the start of it, or when the point touched.
+    /// The anchor at the start of the step, or when the point touched.
     from: f64,
 }
 
@@ -68,7 +69,7 @@ fn saturate(x: f64) -> (f64, f64) {
 }
 
 impl Sliding {
-    /// Of so many edges. `None` without friction.
+    /// The friction of `edges` edges. `None` without friction.
     pub(super) fn new(law: Friction, stiffness: f64, edges: usize) -> Option<Self> {
         let none = Trace {
             depth: -1.0,
@@ -147,7 +148,7 @@ impl Sliding {
         }
     }
 
-    /// The anchors of an edge's points at the end of a step, and the energy that sliding took in it.
+    /// The anchors of an edge's points at the end of a step, and the energy lost by sliding in it.
     pub(super) fn finish(
         &self,
         edge: usize,

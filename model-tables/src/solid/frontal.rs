@@ -7,7 +7,7 @@
 
 use super::lanes::vectorised;
 
-/// Rows that are eliminated together; a column's own are a multiple of it, four for each node through the wall.
+/// Number of rows that are eliminated together. A column has a multiple of it: four rows for each node through the wall.
 const BLOCK: usize = 4;
 
 /// A symmetric matrix, and after [`FrontalMatrix::eliminate`] its factors.
@@ -18,16 +18,16 @@ pub struct FrontalMatrix {
     columns: usize,
     /// Rows of left and middle stations, each as wide as its column; behind them those of the rim.
     matrix: Vec<f64>,
-    /// The factors, alike.
+    /// The factors, in the same layout.
     values: Vec<f64>,
-    /// What elimination before a column left on its left station, column by column.
+    /// The remainder that elimination before a column left on its left station, column by column.
     carried: Vec<f64>,
     /// One over the entries of `D`.
     inverse: Vec<f64>,
 }
 
 impl FrontalMatrix {
-    /// Room for a number of columns.
+    /// A matrix for a number of columns.
     pub fn new(station: usize, columns: usize) -> Self {
         let rows = (2 * columns + 1) * station;
         Self {
@@ -40,7 +40,7 @@ impl FrontalMatrix {
         }
     }
 
-    /// All zero.
+    /// Sets all entries to zero.
     pub fn clear(&mut self) {
         self.matrix.fill(0.0);
     }

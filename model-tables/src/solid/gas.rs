@@ -19,12 +19,12 @@ impl TrappedGas {
         ambient: STANDARD_ATMOSPHERE,
     };
 
-    /// How much smaller the gas is at a gauge pressure in pascals, > -ambient, than at none: cubic metres.
+    /// Decrease of the gas volume from no gauge pressure to this gauge pressure in pascals, > -ambient: cubic metres.
     pub fn compressed(&self, pressure: f64) -> f64 {
         self.volume * pressure / (self.ambient + pressure)
     }
 
-    /// Derivative of that by the pressure, cubic metres per pascal.
+    /// Derivative of this decrease by the pressure, cubic metres per pascal.
     pub fn compliance(&self, pressure: f64) -> f64 {
         let absolute = self.ambient + pressure;
         self.volume * self.ambient / (absolute * absolute)

@@ -37,26 +37,26 @@ const FIRST_TRAVEL: f64 = 1.0 / 16.0;
 /// The first step after the plate's speed has changed in contact: its travel over the largest, its length in time over the step before. The fast
 /// terms of the series follow a turn at once, also where the plate then stands still.
 const AFTER_TURN: f64 = 1.0 / 64.0;
-/// Most growth of a step from one to the next.
+/// Largest growth of the step length from one step to the next.
 const LARGEST_GROWTH: f64 = 2.0;
-/// Change of speed, over the greater of both, from which on the motion begins anew.
+/// Smallest change of speed, over the larger of both speeds, after which the motion counts as new.
 const TURN: f64 = 0.3;
 /// Travel, over the height, in which no next state is found where there is none.
 const SMALLEST_TRAVEL: f64 = 1e-6;
-/// Halvings of a step that fails.
+/// Largest number of halvings of a step that fails.
 const MAX_HALVINGS: u32 = 24;
-/// Steps of one interval at most, refused ones too: a press of the whole height takes a fifth of them.
+/// Largest number of steps of one interval, including refused ones. A press of the whole height needs a fifth of them.
 const MAX_STEPS: u32 = 2_000;
-/// Energy that may be missing after a step, over the work done in it and over the most done so far.
+/// Allowed energy error of a step, over the work done in it and over the largest work so far.
 const ENERGY_TOLERANCE: [f64; 2] = [0.05, 5e-3];
-/// The same of the first step, in which the contact is smaller than an element.
+/// The same for the first step, in which the contact is smaller than an element.
 const FIRST_ENERGY_TOLERANCE: f64 = 0.4;
 /// Accuracy of a given force, relative.
 const FORCE_TOLERANCE: f64 = 1e-6;
 /// Newton iterations for a given force.
 const FORCE_ITERATIONS: usize = 30;
 
-/// What is given at an instant.
+/// The given quantity at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
     /// The plate's travel from first touch of the untouched wall, metres; negative: above it.
@@ -74,7 +74,7 @@ pub struct Instant {
     pub pressure_rise: f64,
     /// Force on the plate, newtons.
     pub force: f64,
-    /// How far the pole of the outer surface is down, metres.
+    /// Downward displacement of the pole of the outer surface, metres.
     pub apex_depression: f64,
 }
 
@@ -92,7 +92,7 @@ enum Rejected {
     Touches(EndsBy),
     /// The actuator has no state.
     Actuator(DiscEnd),
-    /// Too long: by so much.
+    /// The step is too long, by this factor.
     TooLong(f64),
 }
 
@@ -100,7 +100,7 @@ enum Rejected {
 struct Solved {
     indentation: f64,
     balance: Balance,
-    /// How much of what is allowed it takes.
+    /// Share of the allowed error that it uses.
     share: f64,
     /// Strain energy of the wall at its end.
     energy: f64,
@@ -117,7 +117,7 @@ pub struct History {
     fluid: Fluid,
     /// Volume of all the fluid.
     whole: f64,
-    /// Where it goes, if it goes anywhere.
+    /// The volumes into which the fluid moves, if there are any.
     outlet: Option<Box<Outlet>>,
     /// Outer radial semi-axis, metres.
     length: f64,
@@ -134,13 +134,13 @@ pub struct History {
     onward: State,
     /// Length of the latest step, seconds.
     seconds: f64,
-    /// What the next step may be.
+    /// Limit of the next step.
     next: Next,
     /// Speed of the plate, or rate of its force, in the latest interval.
     speed: f64,
     /// Relaxed strain energy of the wall.
     energy: f64,
-    /// Work of the wall's stresses and of what the fluid carried out so far, and the most that it was.
+    /// Work of the wall's stresses and of the fluid that left so far, and its largest value.
     work: f64,
     most_work: f64,
     /// Work of the plate so far.
@@ -307,7 +307,7 @@ impl History {
         }
     }
 
-    /// Goes on to a time in seconds, at which the plate is where `drive` has it, evenly.
+    /// Advances to a time in seconds. `drive` gives the plate at that time; its motion until then is linear.
     ///
     /// # Errors
     /// [`HistoryError`]; the history is then of no further use.

@@ -7,11 +7,11 @@ use crate::design::Membrane;
 use crate::solid::{Failure, SolidError};
 use core::f64::consts::PI;
 
-/// A plate far above anything.
+/// Height of a plate that nothing reaches.
 const NO_PLATE: f64 = 1e6;
 /// Growth of the fluid's volume from state to state of an inflation.
 const INFLATION_STEP: f64 = 0.03;
-/// Growth of the fluid's volume in all, after which an inflation gives up.
+/// Total growth of the fluid's volume after which an inflation stops without a result.
 const LARGEST_INFLATION: f64 = 100.0;
 /// Growth of the pole stretch from state to state.
 const STRETCH_STEP: f64 = 0.04;
@@ -162,7 +162,7 @@ pub fn held(wall: &mut SolidWall, state: &mut State, pascals: f64, unit: f64) ->
     loop {
         let next = volume * (1.0 + step);
         let mut trial = state.clone();
-        // What the last step did, once more.
+        // Repeats the last step as a guess.
         trial.add(1.0, state);
         trial.add(-1.0, &before);
         if let Err(failure) = wall.settle(&mut trial, NO_PLATE, &filled(next)) {

@@ -242,17 +242,17 @@ struct Point {
 #[derive(Clone, Debug)]
 pub(super) struct Memory {
     relaxation: Relaxation,
-    /// Of the step at hand.
+    /// Constants of the present step.
     decays: [Decay; MAX_TERMS],
     taken: f64,
     held: Vec<HeldStress>,
     points: Vec<[Point; POINTS]>,
-    /// At the end of the step at hand.
+    /// Values at the end of the present step.
     next: Vec<[Point; POINTS]>,
 }
 
 impl Memory {
-    /// Of an undeformed wall that has always been so.
+    /// The memory of an undeformed wall without any past deformation.
     pub(super) fn new(mesh: &Mesh, relaxation: &Relaxation) -> Self {
         let elements = mesh.points.len();
         let none = Point {
@@ -276,17 +276,17 @@ impl Memory {
         }
     }
 
-    /// How many times as stiff as relaxed the wall is in the step at hand.
+    /// Stiffness of the wall in the present step, over its relaxed stiffness.
     pub(super) fn stiffening(&self) -> f64 {
         1.0 + self.taken
     }
 
-    /// What does not change in the step at hand, of a batch of elements.
+    /// The constants of the present step, for a batch of elements.
     pub(super) fn held(&self, batch: usize) -> &HeldStress {
         &self.held[batch]
     }
 
-    /// Begins a step of `seconds` after the latest that was taken; the one at hand is forgotten.
+    /// Begins a step of `seconds` after the latest accepted step, and discards the present one.
     pub(super) fn begin(&mut self, seconds: f64) {
         let count = self.relaxation.terms().len();
         for (decay, term) in self.decays.iter_mut().zip(self.relaxation.terms()) {
@@ -306,7 +306,7 @@ impl Memory {
         }
     }
 
-    /// Ends the step at hand in a state. The memory's work in it, of the mean of its stresses before and after.
+    /// Ends the present step in a state. The memory's work in it, of the mean of its stresses before and after.
     pub(super) fn end(&mut self, mesh: &Mesh, material: &Material, state: &State) -> f64 {
         let count = self.relaxation.terms().len();
         let through = mesh.elements.through;
@@ -333,7 +333,7 @@ impl Memory {
         work
     }
 
-    /// Takes the step as it was ended.
+    /// Accepts the ended step.
     pub(super) fn take(&mut self) {
         core::mem::swap(&mut self.points, &mut self.next);
     }

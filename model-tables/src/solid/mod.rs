@@ -1,16 +1,16 @@
 //! The solid model of a fingertip: an axisymmetric wall that bends, for thick and unstretched domes.
 //!
-//! The wall between two half ellipsoids of revolution is an incompressible hyperelastic solid, bonded to a rigid base
-//! over its whole rim, filled with fluid and pressed by a rigid, flat, frictionless plate. Finite elements: biquadratic
-//! displacement, discontinuous linear pressure. Unlike in the membrane the plate's force is not the fluid's pressure
-//! times the contact area: at light touch the wall's bending carries most of it.
+//! The wall between two half ellipsoids of revolution is an incompressible hyperelastic solid, bonded to a rigid base over its
+//! whole rim, filled with fluid and pressed by a rigid, flat, frictionless plate. Finite elements: biquadratic displacement,
+//! discontinuous linear pressure. Unlike in the membrane, the plate's force is not the fluid's pressure times the contact area:
+//! at light touch the wall's bending carries most of it.
 //!
-//! [`mesh`] (the undeformed wall) -> [`element`] (the mechanics of a point) -> [`batch`] (forces and stiffness of four elements side by side,
-//! in [`lanes`]), [`fluid`] (the volume inside) and [`object`] with [`plate`] and `friction` (contact) -> [`frontal`] (linear equations, column by column) -> [`equilibrium`]
-//! (Newton's method) -> [`inflation`] -> [`path`] (the
-//! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units, and by `branch` those beside the path)
-//! -> [`section`] (what is read off along the meridian). [`disc`] is the feedback actuator: a flat wall that goes by the fluid's
-//! pressure; [`gas`] what is trapped in the line to it.
+//! [`mesh`] (the undeformed wall) -> [`element`] (the mechanics of a point) -> [`batch`] (forces and stiffness of four elements
+//! side by side, in [`lanes`]), [`fluid`] (the volume inside) and [`object`] with [`plate`] and `friction` (contact) ->
+//! [`frontal`] (linear equations, column by column) -> [`equilibrium`] (Newton's method) -> [`inflation`] -> [`path`] (the
+//! [`station`]s of a press from rest, and its end) -> [`press`] (asked states, in SI units, and by `branch` those beside the
+//! path) -> [`section`] (quantities along the meridian). [`disc`] is the feedback actuator, a flat wall under the fluid's
+//! pressure. [`gas`] is the gas trapped in the line to it.
 #![cfg_attr(
     feature = "std",
     expect(
@@ -71,14 +71,14 @@ pub use error::SolidError;
 
 use core::fmt;
 
-/// Why a state of the solid was not found.
+/// Reasons why a state of the solid was not found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Failure {
     /// Every step on the way turns an element inside out.
     InsideOut,
     /// The equations are singular.
     Singular,
-    /// What was found in balance is not on the path from rest.
+    /// The state in balance that was found is not on the path from rest.
     Elsewhere,
     /// Newton's method did not converge.
     Stalled {

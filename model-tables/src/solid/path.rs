@@ -1,4 +1,4 @@
-//! The path of a press from rest: states in balance, each from those before it.
+//! The path of a press from rest: states in balance, each solved from those before it.
 //!
 //! **Why there may be two states at one indentation.** A thin dome under a flat plate first lies flat against it. From an
 //! indentation of about two wall thicknesses on, it can also buckle: the middle of the contact lifts off, inwards, and the plate
@@ -26,30 +26,30 @@ use crate::limit::EndsBy;
 const FIRST_STEP: f64 = 4e-3;
 /// Largest step, over the height.
 const LARGEST_STEP: f64 = 0.035;
-/// Step under which a path without further state ends, over the height.
+/// Smallest step, over the height. The path ends if no state is found within it.
 const SMALLEST_STEP: f64 = 1e-5;
 /// Accuracy of the end of a press at the base, over the height.
 const LIMIT_TOLERANCE: f64 = 1e-7;
 /// Largest growth of a step.
 const LARGEST_GROWTH: f64 = 3.0;
-/// Part of what is allowed at which a step keeps its length.
+/// Share of the allowed error at which a step keeps its length.
 const EASY: f64 = 0.5;
 /// Largest displacement of a node between prediction and solution, in walls. The states of a dome that lies flat and one that has buckled are
 /// further apart than that wherever both last.
 pub(super) const LARGEST_CORRECTION: f64 = 0.1;
-/// Energy that may be missing after a step, over the work done in it.
+/// Allowed energy error of a step, over the work done in it.
 const ENERGY_TOLERANCE: f64 = 5e-3;
 /// The same in the first step, where the contact is smaller than an element and its force no power of the indentation.
 const FIRST_ENERGY_TOLERANCE: f64 = 0.2;
-/// Halvings on the way to an asked state.
+/// Largest number of halvings on the way to a requested state.
 const MAX_HALVINGS: usize = 12;
 
-/// Why a state is not the next of the path.
+/// Why a state is not the next state of the path.
 #[derive(Clone, Copy, Debug)]
 enum Rejected {
     Failed(Failure),
     Touches(EndsBy),
-    /// In balance, but of another branch, or too far from the last to tell.
+    /// The state is in balance, but on another branch, or too far from the last state to decide.
     Elsewhere,
 }
 
@@ -58,11 +58,11 @@ enum Rejected {
 pub enum Stop {
     /// The press ends before it.
     Ends(EndsBy),
-    /// It was not found between two of the path, after this one.
+    /// The state was not found between two states of the path, of which this is the first.
     Failed {
         /// The last indentation found.
         reached: f64,
-        /// What failed.
+        /// The failure of the solver.
         failure: Failure,
     },
 }
@@ -78,7 +78,7 @@ pub struct Path {
     /// Steps that keep their length, after one that failed.
     cautious: u32,
     ends_by: Option<EndsBy>,
-    /// The state in work.
+    /// The state being solved.
     work: State,
     guess: State,
 }
@@ -86,7 +86,7 @@ pub struct Path {
 impl Path {
     /// The rest state alone.
     pub fn new(rest: State, volume: f64, energy: f64, height: f64) -> Self {
-        // Nothing touches yet.
+        // There is no contact yet.
         let mut tangent = rest.clone();
         tangent.clear();
         Self {
@@ -156,7 +156,7 @@ impl Path {
             let asked = targets.len() == 1;
             self.interpolate(&below, &above, target);
             let found = self.balance(wall, fluid, &below, target).and_then(|balance| {
-                // All that may miss up to the next state of the path may miss up to here.
+                // The energy error allowed up to the next state of the path is allowed up to here.
                 let whole = above.kept.work - below.kept.work;
                 if asked {
                     let [_, stiffness] = between(&below, &above, target, force);
@@ -272,7 +272,7 @@ impl Path {
         let from = below.kept.indentation;
         let step = above.kept.indentation - from;
         let x = (indentation - from) / step;
-        // Nothing touches at rest: there is no slope.
+        // There is no contact at rest, so there is no slope.
         let w = if from > 0.0 {
             hermite(x)
         } else {

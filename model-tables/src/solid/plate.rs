@@ -1,4 +1,4 @@
-//! The plate: a rigid, flat, frictionless plane that the outer surface may touch and not cross.
+//! The plate: a rigid, flat, frictionless plane. The outer surface may touch it but not cross it.
 //!
 //! A stiff penalty: the contact pressure is `k d` at a penetration `d`, per undeformed area. An edge's height is a parabola, so its
 //! intersections with the plate are known in closed form, and the integrals run exactly over the touching part. The force and its

@@ -1,4 +1,4 @@
-//! Why a disc gives no answer, in words.
+//! Reasons why a disc gives no answer, as text.
 
 use super::DiscDesign;
 use crate::solid::Failure;
@@ -7,15 +7,15 @@ use core::fmt;
 /// Cause of the end of a disc's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DiscEnd {
-    /// The pressure has its greatest value: beyond, the disc inflates under less and less.
+    /// The pressure has reached its maximum. After it, the disc inflates further under a falling pressure.
     PressureMaximum,
     /// The bulge turns over the frame that clamps it.
     BulgeTouchesFrame,
-    /// The material law softens at strains that the disc reaches, and nothing more is in balance.
+    /// The material law softens at strains that the disc reaches, and there is no further state in balance.
     MaterialSoftens,
     /// The disc folds onto itself.
     WallFolds,
-    /// The next state in balance lies elsewhere.
+    /// The next state in balance is on another branch.
     NoFurtherState,
 }
 
@@ -37,40 +37,40 @@ impl DiscEnd {
 pub struct DiscLimit {
     /// Greatest pressure, pascals.
     pub pressure: f64,
-    /// Why there is no state beyond it.
+    /// Why there is no state above this pressure.
     pub ends_by: DiscEnd,
 }
 
 /// Why a disc gives no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DiscError {
-    /// The law has no stiffness where nothing is strained.
+    /// The law has no stiffness in the unstrained state.
     NoStiffness {
         /// The shear modulus, pascals.
         shear_modulus: f64,
     },
     /// A length or a stiffness is out of its range.
     NotADisc {
-        /// What was given.
+        /// The given value.
         design: DiscDesign,
     },
-    /// A gauge pressure is a number of at least 0.
+    /// The gauge pressure must be a number of at least 0.
     NotAPressure {
-        /// What was asked for, pascals.
+        /// The requested pressure, pascals.
         asked: f64,
     },
-    /// The disc does not stand the pressure.
+    /// The disc has no state at this pressure.
     BeyondLimit {
-        /// What was asked for, pascals.
+        /// The requested pressure, pascals.
         asked: f64,
-        /// The end.
+        /// The end of the disc's path.
         limit: DiscLimit,
     },
     /// The state was not found.
     Unsolved {
-        /// What was asked for, pascals.
+        /// The requested pressure, pascals.
         asked: f64,
-        /// What failed.
+        /// The failure of the solver.
         failure: Failure,
     },
 }
@@ -116,7 +116,7 @@ impl fmt::Display for DiscError {
 impl core::error::Error for DiscError {}
 
 impl DiscError {
-    /// What ends, in a word.
+    /// Name of what ends.
     pub(crate) fn word(&self) -> &'static str {
         match self {
             Self::BeyondLimit { limit, .. } => limit.ends_by.word(),

@@ -12,15 +12,15 @@ use crate::solid::mesh::Elements;
 use crate::solid::state::{Balance, State};
 use core::f64::consts::PI;
 
-/// Largest distance of a node from where a step is expected to lead it, over the radius, as of a fingertip's over its height.
+/// Largest distance of a node from its predicted place after a step, over the radius. For a fingertip the same limit applies over its height.
 const LARGEST_BEND: f64 = 6e-4;
-/// Energy that may be missing after a step, over the work done in it and over the most done so far.
+/// Allowed energy error of a step, over the work done in it and over the largest work so far.
 const ENERGY_TOLERANCE: [f64; 2] = [0.05, 5e-3];
-/// The same while nothing has been done before.
+/// The same while no work has been done before.
 const FIRST_ENERGY_TOLERANCE: f64 = 0.4;
 /// Volume, over that of the disc, from which on energies are compared: a blocked disc takes only what its contact gives way.
 const MIN_VOLUME: f64 = 1e-3;
-/// Most growth of a step from one to the next.
+/// Largest growth of the step length from one step to the next.
 const LARGEST_GROWTH: f64 = 2.0;
 
 /// A disc in time, at the end of its latest step.
@@ -30,7 +30,7 @@ pub struct DiscInTime {
     plate: f64,
     length: f64,
     modulus: f64,
-    /// Whether what is over it stores energy.
+    /// Whether the body over the disc stores energy.
     on_foundation: bool,
     state: State,
     balance: Balance,
@@ -39,14 +39,14 @@ pub struct DiscInTime {
     compliance: f64,
     /// Relaxed strain energy of the disc, and energy of a foundation.
     energy: f64,
-    /// Work of stresses and foundation so far, and the most that it was; of the fluid.
+    /// Work of stresses and foundation so far, and its largest value; work of the fluid so far.
     work: f64,
     most_work: f64,
     supplied: f64,
     /// Length of the latest step, seconds, and the displacements in it.
     seconds: f64,
     onward: State,
-    /// The step at hand.
+    /// The present step.
     trial: State,
     guess: State,
     of_trial: Balance,
@@ -61,7 +61,7 @@ pub(in crate::solid) struct StepWork {
 }
 
 impl DiscInTime {
-    /// The undeformed disc, which has always been so, without pressure. A relaxation without terms is an elastic disc.
+    /// An undeformed disc without pressure, and without any past deformation. A relaxation without terms makes it elastic.
     ///
     /// # Errors
     /// As [`Disc::new`](super::Disc::new).
@@ -127,7 +127,7 @@ impl DiscInTime {
         [self.length, self.modulus]
     }
 
-    /// Begins a step of so many seconds; the one at hand is forgotten.
+    /// Begins a step of `seconds`, and discards the present one.
     pub(in crate::solid) fn begin(&mut self, seconds: f64) {
         if let Some(memory) = &mut self.wall.memory {
             memory.begin(seconds);
@@ -156,14 +156,14 @@ impl DiscInTime {
         Ok([self.of_trial.volume, self.wall.compliance()])
     }
 
-    /// How much of the bend that a step may have the one at hand takes.
+    /// Share of the allowed bend that the present step uses.
     pub(in crate::solid) fn share(&self) -> f64 {
         let (trial, guess) = (self.trial.nodes.as_flattened(), self.guess.nodes.as_flattened());
         let bends = trial.iter().zip(guess).map(|(x, y)| (x - y).abs());
         bends.fold(0.0, f64::max) / LARGEST_BEND
     }
 
-    /// The work in the step at hand. What is in balance but on another branch fails this.
+    /// The work in the present step. A state in balance on another branch fails this check.
     pub(in crate::solid) fn work_of_step(&mut self) -> Option<StepWork> {
         let mut energy = self.wall.potential(&self.trial);
         if self.on_foundation {

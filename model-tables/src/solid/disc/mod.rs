@@ -4,7 +4,7 @@
 //! to its deflection (Winkler), per undeformed area. The clamp holds the rim over the whole thickness; its frame is flush with the
 //! disc's outer face.
 //!
-//! The path goes by pressure from zero. There is no state at a held pressure above the maximum pressure of the disc.
+//! The path goes by pressure from zero. At a held pressure above its maximum pressure, the disc has no state.
 
 mod error;
 mod in_time;
@@ -33,12 +33,12 @@ pub const DISC: Elements = Elements {
 /// Contact pressure of a rigid plate over penetration, in moduli over thicknesses. So stiff that the clamp takes less than 1 % of the force of
 /// a disc that lies on the plate all over; a dome's contact, which has no clamp beside it, takes less.
 const RIGID: f64 = 2e4;
-/// Largest unbalanced force, in moduli times square radii: some ten times the round-off.
+/// Largest unbalanced force, in moduli times square radii: about ten times the rounding error.
 const TOLERANCE: f64 = 2e-13;
-/// A plate far above anything.
+/// Height of a plate that nothing reaches.
 const NO_PLATE: f64 = 1e6;
 
-/// What is over a disc.
+/// The body over a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FarSide {
     /// Nothing.
@@ -83,9 +83,9 @@ pub struct DiscDesign {
     pub thickness: f64,
     /// Its law.
     pub law: Law,
-    /// What is over it.
+    /// The body over it.
     pub far_side: FarSide,
-    /// Friction of what is over it.
+    /// Friction of the body over it.
     pub friction: Friction,
 }
 
@@ -94,21 +94,21 @@ pub struct DiscDesign {
 pub struct DiscState {
     /// Gauge pressure of the fluid, pascals.
     pub pressure: f64,
-    /// Force on what is over it, newtons.
+    /// Force on the body over the disc, newtons.
     pub force: f64,
     /// Radius of the contact's outer edge, deformed, metres.
     pub contact_radius: f64,
     /// Volume of fluid that the disc has taken, cubic metres.
     pub volume: f64,
-    /// Derivative of that by the pressure, cubic metres per pascal.
+    /// Derivative of this volume by the pressure, cubic metres per pascal.
     pub compliance: f64,
-    /// How far the outer face has moved at the centre, metres.
+    /// Displacement of the outer face at the centre, metres.
     pub travel: f64,
     /// Stretch of the middle of the disc at the centre, dimensionless.
     pub centre_stretch: f64,
     /// Strain energy of the disc, and energy in the contact or the foundation, joules.
     pub energy: f64,
-    /// Work of the fluid along the path from the undeformed state, less what friction took, joules: the same.
+    /// Work of the fluid along the path from the undeformed state, less the work of friction, joules. It equals `energy`.
     pub work: f64,
 }
 
@@ -150,7 +150,7 @@ impl Found<'_> {
 /// A disc in its clamp, undeformed. Lengths in its radius, stresses in its shear modulus.
 struct Clamped {
     wall: SolidWall,
-    /// Height of what is over it.
+    /// Height of the body over it.
     plate: f64,
     /// Its radius, metres.
     length: f64,
@@ -274,7 +274,7 @@ impl Disc {
         }
     }
 
-    /// The greatest pressure, if it is not above `highest`, pascals, and why there is no state beyond it.
+    /// The largest pressure of the disc, pascals, and why there is no state above it. `None` if it is above `highest`.
     pub fn limit(&mut self, highest: f64) -> Option<DiscLimit> {
         let (pressure, ends_by) = self.path.end(&mut self.wall, highest / self.modulus)?;
         Some(DiscLimit {

@@ -1,4 +1,4 @@
-//! States of a disc by the fluid's pressure, each from those before it.
+//! States of a disc in the order of the fluid's pressure. Each is solved from those before it.
 //!
 //! A step must pass the same checks as a step of a [press](crate::solid::path). Its state is a minimum of the energy at a held
 //! pressure, it is where the previous states predict it, and the stored energy grows by the fluid's work. Steps are halved if they
@@ -16,25 +16,25 @@ use core::f64::consts::PI;
 const FIRST_STEP: f64 = 0.15;
 /// Largest step, moduli.
 const LARGEST_STEP: f64 = 0.1;
-/// Pressure of a state that is hardly loaded, over that of the first step.
+/// Pressure of a nearly unloaded state, over that of the first step.
 const HARDLY: f64 = 1e-4;
-/// Step under which a path ends, over the pressure.
+/// Smallest step, over the pressure. The path ends if it needs a smaller one.
 const SMALLEST_STEP: f64 = 1e-6;
 /// Largest growth of a step.
 const LARGEST_GROWTH: f64 = 3.0;
-/// Part of what is allowed at which a step keeps its length.
+/// Share of the allowed error at which a step keeps its length.
 const EASY: f64 = 0.5;
 /// Largest displacement of a node between prediction and solution, in thicknesses.
 const LARGEST_CORRECTION: f64 = 0.1;
-/// Energy that may be missing after a step, over the work done in it.
+/// Allowed energy error of a step, over the work done in it.
 const ENERGY_TOLERANCE: f64 = 2e-3;
-/// The same in the first step, which is as small as what is left unbalanced allows.
+/// The same for the first step, which is as small as the unbalanced force allows.
 const FIRST_ENERGY_TOLERANCE: f64 = 5e-2;
 /// Volume, over that of the disc, from which on energies are compared: a blocked disc takes only what its contact gives way.
 const MIN_VOLUME: f64 = 1e-3;
 /// Relative growth of the volume, over that of the pressure, from which on the pressure counts as at its greatest.
 const AT_MAXIMUM: f64 = 30.0;
-/// Halvings on the way to an asked state.
+/// Largest number of halvings on the way to a requested state.
 const MAX_HALVINGS: u32 = 12;
 
 /// A state of the path.
@@ -42,15 +42,15 @@ const MAX_HALVINGS: u32 = 12;
 pub(super) struct Kept {
     pub(super) state: State,
     pub(super) balance: Balance,
-    /// Its derivative by the pressure.
+    /// Derivative of the state by the pressure.
     tangent: State,
-    /// The volume's.
+    /// Derivative of the volume by the pressure.
     pub(super) compliance: f64,
-    /// Where its points are anchored on what touches; empty without friction.
+    /// Anchors of its points on the touching body; empty without friction.
     anchors: Vec<f64>,
     /// Energy of the disc and of the contact.
     pub(super) energy: f64,
-    /// Work of the fluid since the undeformed state, less what friction took.
+    /// Work of the fluid since the undeformed state, less the work of friction.
     pub(super) work: f64,
 }
 
@@ -60,7 +60,7 @@ impl Kept {
     }
 }
 
-/// Why a state is not the next of the path.
+/// Why a state is not the next state of the path.
 #[derive(Clone, Copy, Debug)]
 enum Rejected {
     Failed(Failure),
@@ -90,7 +90,7 @@ pub(super) fn held(pressure: f64) -> Fluid {
 #[derive(Clone, Debug)]
 pub(super) struct Path {
     stations: Vec<Kept>,
-    /// Height of what is over the disc.
+    /// Height of the body over the disc.
     plate: f64,
     /// The first step, and the next.
     first: f64,
@@ -145,9 +145,9 @@ impl Path {
         }
         let mut below = self.stations[after - 1].clone();
         let mut halvings = 0;
-        // The state asked for; where it is not found, one half way before it first.
+        // Solves for the requested state. If it is not found, solves for a state half way before it first.
         let mut target = pressure;
-        // All that may miss up to the next state of the path may miss up to here.
+        // The energy error allowed up to the next state of the path is allowed up to here.
         let whole = above.work - below.work;
         loop {
             let guess = between(&below, &above, target);
@@ -169,7 +169,7 @@ impl Path {
         }
     }
 
-    /// The end of the path, its pressure and why, if that is not beyond a pressure.
+    /// The pressure at the end of the path, and the reason. `None` if the end is above the given pressure.
     pub(super) fn end(&mut self, wall: &mut SolidWall, highest: f64) -> Option<(f64, DiscEnd)> {
         while self.ends_by.is_none() && (self.stations.len() == 1 || self.last().pressure() < highest) {
             self.extend(wall);
@@ -234,8 +234,8 @@ impl Path {
         guess
     }
 
-    /// Solves from a guess for the state after another one, and holds it to what it must pass: its energy may miss a part of `scale`, or of the work done
-    /// since. Beside the state, how much of what is allowed it takes.
+    /// Solves from a guess for the state after another one, and checks it. The allowed energy error is a share of `scale`, or
+    /// of the work done since. Returns the state, and the share of the allowed error that it uses.
     fn solve(
         &self,
         wall: &mut SolidWall,
@@ -261,7 +261,7 @@ impl Path {
         // P dV is d(PV) - V dP: a trapezium with the slopes of both ends, of fourth order.
         let (first, last) = (below.balance.volume, balance.volume);
         let moved = pressure * last - below.pressure() * first;
-        // From the undeformed state the response is linear.
+        // The response from the undeformed state is linear.
         let bent = if below.pressure() > 0.0 {
             step / 12.0 * (below.compliance - compliance)
         } else {
@@ -310,7 +310,7 @@ fn between(below: &Kept, above: &Kept, pressure: f64) -> State {
     guess
 }
 
-/// Whether the outer face has gone through the frame; the crease at the rim does not count.
+/// Whether the outer face has crossed the frame. The crease at the rim is ignored.
 pub(super) fn touches_frame(wall: &SolidWall, state: &State) -> bool {
     let mesh = &wall.mesh;
     let crease = CREASE * mesh.thickness;

@@ -1,4 +1,4 @@
-//! What touches the wall: the object's action on the outer edges, and its friction from step to step.
+//! The object that touches the wall: its action on the outer edges, and its friction from step to step.
 
 use super::{SolidWall, edge};
 use crate::object::Friction;
@@ -39,13 +39,13 @@ impl SolidWall {
         self.tolerance = tolerance;
     }
 
-    /// Puts an object in the plate's place.
+    /// Replaces the plate by an object.
     pub fn touch(&mut self, surface: Surface, friction: Friction) {
         self.surface = surface;
         self.sliding = Sliding::new(friction, self.contact_stiffness, self.mesh.elements.along);
     }
 
-    /// What touches the outer surface.
+    /// The object that touches the outer surface.
     pub fn surface(&self) -> &Surface {
         &self.surface
     }
@@ -55,7 +55,7 @@ impl SolidWall {
         self.sliding.is_some()
     }
 
-    /// Starts a step from a state, in which the points of the outer edges have these anchors. Nothing without friction.
+    /// Starts a step from a state in which the points of the outer edges have these anchors. Does nothing without friction.
     pub fn start_sliding(&mut self, state: &State, apex: f64, anchors: &[f64]) {
         let Some(mut sliding) = self.sliding.take() else {
             return;
@@ -71,7 +71,7 @@ impl SolidWall {
         self.sliding = Some(sliding);
     }
 
-    /// The anchors at the end of a step in a settled state, and the energy that sliding took in it. Nothing without friction.
+    /// The anchors at the end of a step in a settled state, and the energy lost by sliding in it. Empty without friction.
     pub fn finish_sliding(&self, state: &State, apex: f64) -> (Vec<f64>, f64) {
         let Some(sliding) = &self.sliding else {
             return (Vec::new(), 0.0);

@@ -10,57 +10,57 @@ use core::fmt;
 pub enum HistoryError {
     /// The wall is inflated at rest.
     Inflated,
-    /// The fluid's circuit gives way.
+    /// The fluid's circuit is compliant.
     Compliant,
-    /// What touches has friction: a state then depends on all before it.
+    /// The object has friction, so a state would depend on all states before it.
     Friction,
-    /// What touches does not fit.
+    /// The object is not valid for this wall.
     Object(SolidError),
     /// The law has no stiffness; shear modulus in pascals.
     NoStiffness(f64),
-    /// Time does not go on.
+    /// The requested time is not after the previous instant.
     NotAfter {
-        /// What was asked for, seconds.
+        /// The requested time, seconds.
         asked: f64,
         /// The instant before, seconds.
         before: f64,
     },
-    /// The wall comes down on its base.
+    /// The wall reaches its base.
     Ends {
-        /// When, seconds.
+        /// Time, seconds.
         time: f64,
         /// Indentation, metres.
         indentation: f64,
-        /// What ends the press.
+        /// The end of the press.
         by: EndsBy,
     },
-    /// The actuator does not stand what comes next.
+    /// The actuator has no state at the next pressure.
     Actuator {
-        /// When, seconds.
+        /// Time, seconds.
         time: f64,
         /// Pressure of the state before, pascals.
         pressure: f64,
-        /// Why there is none after it.
+        /// Why there is no state after it.
         by: DiscEnd,
     },
-    /// An interval did not come to its end.
+    /// The end of an interval was not reached.
     TooManySteps {
-        /// When, seconds.
+        /// Time, seconds.
         time: f64,
         /// Indentation there, metres.
         indentation: f64,
         /// Force there, newtons.
         force: f64,
-        /// Steps that were tried.
+        /// Number of steps that were tried.
         steps: u32,
     },
     /// A state was not found.
     Unsolved {
-        /// When, seconds.
+        /// Time, seconds.
         time: f64,
         /// Indentation of the state before, metres.
         indentation: f64,
-        /// What failed.
+        /// The failure of the solver.
         failure: Failure,
     },
 }

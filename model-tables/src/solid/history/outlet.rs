@@ -12,14 +12,14 @@ use crate::solid::state::{Balance, Fluid, State};
 
 /// Iterations between fingertip and actuator.
 const ITERATIONS: usize = 40;
-/// Difference between what the fluid goes to takes and what the fingertip was solved with, over either.
+/// Allowed relative difference between the volume that the outlet takes and the volume with which the fingertip was solved.
 const TOLERANCE: f64 = 1e-8;
 /// The same over the cube of the fingertip's radius, where hardly any has gone: below what a wall's own volume is solved to.
 const FLOOR: f64 = 1e-12;
 /// Iterations by the tangent of the actuator's volume; after them by the secant.
 const NEWTON: usize = 12;
 
-/// What the fluid goes to.
+/// The volumes into which the fluid moves.
 #[derive(Clone, Debug)]
 pub(super) struct Outlet {
     pub(super) disc: DiscInTime,
@@ -43,7 +43,7 @@ impl Outlet {
         }
     }
 
-    /// What the line has taken at a pressure, and the derivative, in the fingertip's units.
+    /// Volume that the line has taken at a pressure, and its derivative, in the fingertip's units.
     fn line(&self, pressure: f64) -> [f64; 2] {
         let pascals = pressure * self.modulus;
         let unit = self.length * self.length * self.length;
