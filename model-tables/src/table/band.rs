@@ -1,18 +1,18 @@
-//! The band of an unknown object, as a chip has it: how far the truth may lie from what is read.
+//! The band of an unknown object on the chip: how far the true values may be from the readings.
 
 use crate::units::PressureRise;
 
-/// Most rows of a band on the chip.
+/// Largest number of rows of a band on the chip.
 pub const MAX_BAND_ROWS: usize = 5;
 
-/// The truth less the reading over a part of the pressure rises, tenths of a percent of the reading: least and most.
+/// Smallest and largest error, true value minus reading, for a range of pressure rises, in tenths of a percent of the reading.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct ChipBandRow {
     /// The last rise of the row, counts.
     pub to: PressureRise,
-    /// Of the force, tenths of a percent of reading.
+    /// Errors of the force, tenths of a percent of the reading.
     pub force: [i16; 2],
-    /// Of the indentation, tenths of a percent of reading.
+    /// Errors of the indentation, tenths of a percent of the reading.
     pub indentation: [i16; 2],
 }
 
@@ -25,24 +25,24 @@ impl ChipBandRow {
     };
 }
 
-/// A band of 1 to [`MAX_BAND_ROWS`] rows, one beside the other, by pressure rise.
+/// A band of 1 to [`MAX_BAND_ROWS`] adjacent rows, in the order of the pressure rise.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct ChipBand {
-    /// The first rise of the first row, counts: below it nothing is stated.
+    /// The first rise of the first row, counts. The band states nothing below it.
     pub from: PressureRise,
-    /// How many rows there are, 1 to [`MAX_BAND_ROWS`].
+    /// Number of rows, 1 to [`MAX_BAND_ROWS`].
     pub count: u8,
-    /// The rows; those behind `count` are [`ChipBandRow::NOTHING`].
+    /// The rows; those after `count` are [`ChipBandRow::NOTHING`].
     pub rows: [ChipBandRow; MAX_BAND_ROWS],
 }
 
 impl ChipBand {
-    /// The rows that there are.
+    /// The rows in use.
     pub fn rows(&self) -> &[ChipBandRow] {
         self.rows.get(..usize::from(self.count)).unwrap_or(&self.rows)
     }
 
-    /// The row of a pressure rise; nothing outside of the band.
+    /// The row of a pressure rise. `None` outside the band.
     pub fn at(&self, rise: PressureRise) -> Option<&ChipBandRow> {
         if rise < self.from {
             return None;

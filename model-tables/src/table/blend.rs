@@ -1,21 +1,22 @@
 //! Tables of an object between a flat plate and a reference ball: their coefficients, blended once.
 //!
-//! Plate and ball have tables of one layout. For another object each output is `plate + w (ball - plate)` at every pressure, with a
-//! weight `w` of its own ([`law`](super::law)); the sum of a segment is linear in its coefficients, so the coefficients are blended
-//! and not the outputs. A lookup then costs as much as with one table. Rounding could make an output fall between two segments. To
-//! prevent this, a segment's constant is raised until the segment begins where the one below ends. The lowest segment, first
-//! contact, is the same for plate and ball, and so for every blend: zero reads zero.
+//! Plate and ball have tables of one layout. For another object each output is `plate + w (ball - plate)` at every pressure,
+//! with its own weight `w` ([`law`](super::law)). The sum of a segment is linear in its coefficients, so the coefficients are
+//! blended and not the outputs. A lookup then costs as much as with one table. Rounding could make an output fall between two
+//! segments. To prevent this, a segment's constant is raised until the segment begins where the one below ends. The lowest
+//! segment, first contact, is the same for plate and ball, and so for every blend: zero reads zero.
 
 use super::law::{WEIGHT_BITS, Weights};
 use super::{Constant, Layout, LoadedTables, Reading, TablesError};
 use crate::units::PressureRise;
 use certified_lookup::Segments;
 
-/// Most words of a table that is blended at run time: of 40 segments, the most with two octaves or one each, 6 words each.
+/// Largest number of words of a table that is blended at run time: 40 segments with 6 words each. 40 is the largest number of
+/// segments of one or two octaves.
 pub const MAX_WORDS: usize = 240;
 
-/// Blends the words of two tables of one layout, [`Layout::words`] a segment, the segment of the largest inputs first. Octaves
-/// are not cut: of a layout with halvings the words are the plate's.
+/// Blends the words of two tables of one layout, [`Layout::words`] a segment, the segment of the largest inputs first. Layouts
+/// with halvings are not blended: the result has the plate's words.
 pub fn blend(layout: &Layout, plate: &[i32], ball: &[i32], weights: &Weights, blended: &mut [i32]) {
     let width = layout.words();
     let count = plate.len() / width;
@@ -35,7 +36,7 @@ pub fn blend(layout: &Layout, plate: &[i32], ball: &[i32], weights: &Weights, bl
         }
         mix(layout.constant, ball, weights, own);
         let number = layout.first_index.wrapping_add(index as u32);
-        // The first input of the segment, with the bias in it.
+        // The first input of the segment, including the bias.
         let first = 1_u32 << (32_u32.saturating_sub(layout.octaves * (number + 1)) & 31);
         let at = |words: &[i32], number: u32, input: u32| {
             let mantissa = input.wrapping_shl(layout.octaves * number);
@@ -52,13 +53,13 @@ pub fn blend(layout: &Layout, plate: &[i32], ball: &[i32], weights: &Weights, bl
             let shifts = [octave + layout.shifts[0], octave + layout.shifts[1]];
             raise(layout.constant, starts, ends, shifts, own);
         }
-        // What the segment above must not begin below.
+        // The output below which the segment above must not begin.
         let last = (u64::from(first) << layout.octaves) - 1;
         below = Some(at(own, number, last as u32));
     }
 }
 
-/// A segment's words, those of the plate to begin with.
+/// The words of a segment. They start as those of the plate.
 fn mix(constant: Constant, ball: &[i32], weights: &Weights, own: &mut [i32]) {
     for (at, (word, &ball)) in own.iter_mut().zip(ball).enumerate() {
         let plate = *word;
@@ -84,7 +85,7 @@ fn mix(constant: Constant, ball: &[i32], weights: &Weights, own: &mut [i32]) {
     }
 }
 
-/// Raises the constants of a segment that begins below the end of the one before.
+/// Raises the constants of a segment that would begin below the end of the previous one.
 fn raise(constant: Constant, starts: [i32; 2], ends: [i32; 2], shifts: [u32; 2], own: &mut [i32]) {
     for (((word, start), end), shift) in own.iter_mut().zip(starts).zip(ends).zip(shifts) {
         let missing = end.saturating_sub(start);
@@ -99,14 +100,14 @@ fn raise(constant: Constant, starts: [i32; 2], ends: [i32; 2], shifts: [u32; 2],
     }
 }
 
-/// Of two words, the weight in `2^-WEIGHT_BITS`.
+/// The blend of two words. The weight is in units of `2^-WEIGHT_BITS`.
 fn between(plate: i32, ball: i32, weight: i32) -> i32 {
-    // 2^32 times 2^31 at most.
+    // At most 2^32 times 2^31.
     let apart = (i64::from(ball) - i64::from(plate)).saturating_mul(i64::from(weight));
     held(i64::from(plate) + (apart.saturating_add(1 << (WEIGHT_BITS - 1)) >> WEIGHT_BITS))
 }
 
-/// Of two coefficients.
+/// The blend of two coefficients.
 fn half(plate: i16, ball: i16, weight: i32) -> i16 {
     let value = between(i32::from(plate), i32::from(ball), weight);
     value.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16
@@ -116,8 +117,8 @@ fn held(value: i64) -> i32 {
     value.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
 }
 
-/// The last input that a blend answers: where its weights end, and not deeper than the plate's tables were made for and a
-/// thirty-second more, which is the blend's own error. A ball reaches that depth at a lower pressure than the plate.
+/// The last input of a blend. It is at most the end of the weights. Its indentation is at most that of the plate's tables plus
+/// a thirty-second, which is the error of the blend. A ball reaches that depth at a lower pressure than the plate.
 pub fn last_answered(
     layout: &Layout,
     weights: &Weights,
@@ -153,10 +154,10 @@ pub struct BlendedTables {
 }
 
 impl BlendedTables {
-    /// Blends two tables of one layout, and checks what came of it as [`LoadedTables`] are.
+    /// Blends two tables of one layout, and checks the result like [`LoadedTables`].
     ///
     /// # Errors
-    /// [`TablesError`]: the blend may answer wrongly.
+    /// [`TablesError`] if the blend may give wrong values.
     pub fn new(
         layout: &Layout,
         plate: &[[u8; 4]],
@@ -214,7 +215,7 @@ impl BlendedTables {
         .into()
     }
 
-    /// The last rise that is no bound.
+    /// The last rise at which the outputs are values and not bounds.
     pub const fn last_rise(&self) -> PressureRise {
         PressureRise(self.layout.maximum)
     }

@@ -8,13 +8,13 @@ use super::{Constant, Layout, TablesError};
 use crate::units::{Micronewtons, PressureRise};
 use certified_lookup::{Place, Segments, product, rises};
 
-/// Most words of the tables that these stand beside.
+/// Largest number of words of the tables with which these are used.
 pub const MAX_WORDS: usize = super::blend::MAX_WORDS;
 
-/// Everything of the tables of a feedback force but the coefficients.
+/// The layout of the tables of a feedback force: everything except the coefficients.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct FeedbackScale {
-    /// Bits of a sum below one micronewton, beside those of the octave: 0 to 31.
+    /// Fraction bits of a sum in micronewtons, in addition to those of the octave: 0 to 31.
     pub shift: u32,
     /// Force at rest, micronewtons: 0 to 2^30 - 1.
     pub at_rest: i32,
@@ -23,9 +23,9 @@ pub struct FeedbackScale {
 /// Tables of a feedback force: `SEGMENTS` segments of `WORDS` words, as [`words_per_segment`] says.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct FeedbackTables<const SEGMENTS: usize, const WORDS: usize> {
-    /// How a sum is read.
+    /// Layout of the sums.
     pub scale: FeedbackScale,
-    /// Segments downwards: the one of the largest inputs first.
+    /// Segments in descending order: the one of the largest inputs first.
     pub segments: [[i32; WORDS]; SEGMENTS],
 }
 
@@ -33,7 +33,7 @@ impl<const SEGMENTS: usize, const WORDS: usize> FeedbackTables<SEGMENTS, WORDS> 
     /// Bytes of the coefficients.
     pub const BYTES: usize = size_of::<[[i32; WORDS]; SEGMENTS]>();
 
-    /// The force at a pressure rise, from the layout that it shares. Total: every rise has an answer; beyond both ends it is theirs.
+    /// The force at a pressure rise, from the shared layout. Every rise has a value. Beyond an end it is the value at that end.
     #[inline(always)]
     #[allow(clippy::inline_always)] // so that the layout folds into the code, and one pre-lookup is enough for all outputs
     pub fn lookup(&self, layout: &Layout, rise: PressureRise) -> Micronewtons {
@@ -58,7 +58,7 @@ pub const fn words_per_segment(layout: &Layout) -> usize {
 #[allow(clippy::inline_always)] // part of the lookup
 pub(crate) fn force_at(layout: &Layout, scale: FeedbackScale, words: &[i32], place: Place) -> Micronewtons {
     let [linear, second, third, fourth] = layout.factors(place.mantissa);
-    // Nothing is ever missing in generated tables; this keeps panics out.
+    // Generated tables have all words. The default value only avoids a panic.
     let word = |at: usize| words.get(at).copied().unwrap_or(0);
     let coefficient = |n: usize| beside(word(1 + n / 2), n);
     let constant = word(0);
@@ -89,7 +89,7 @@ const fn beside(word: i32, number: usize) -> i16 {
     }
 }
 
-/// Tables of a feedback force whose words lie in memory as little-endian bytes, at any address; they read exactly as [`FeedbackTables`].
+/// Tables of a feedback force whose words are little-endian bytes in memory, at any address. They give exactly the values of [`FeedbackTables`].
 #[derive(Clone, Copy, Debug)]
 pub struct LoadedFeedback<'a> {
     scale: FeedbackScale,
@@ -124,7 +124,7 @@ impl<'a> LoadedFeedback<'a> {
         if at_zero.0 != scale.at_rest {
             return Err(TablesError::Zero);
         }
-        // As the force of tables that have no indentation.
+        // Checked like the force of tables without an indentation.
         let mut paired = [[0; 4]; MAX_WORDS];
         for (index, own) in paired.chunks_mut(layout.words()).take(segments).enumerate() {
             let segment = loaded.segment(index);
@@ -160,7 +160,7 @@ impl<'a> LoadedFeedback<'a> {
         words
     }
 
-    /// How a sum is read.
+    /// Layout of the sums.
     pub const fn scale(&self) -> FeedbackScale {
         self.scale
     }

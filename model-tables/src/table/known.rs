@@ -10,18 +10,18 @@ use super::Reading;
 use super::law::{BlendLaw, Touched, WEIGHT_BITS};
 use crate::units::{Micronewtons, Nanometres, PressureRise};
 
-/// What the law `F H = F_t H_t` leaves open, one standard deviation, as a divisor of the force.
+/// Uncertainty of the law `F H = F_t H_t`: one standard deviation is the force divided by this.
 const PRODUCT: i32 = 16;
-/// What a blend leaves open of the indentation, as a divisor.
+/// Uncertainty of a blend: one standard deviation is the indentation divided by this.
 const BLEND: i32 = 64;
-/// Below this part of the tables' last rise objects are told apart by less than what tables are off, as a shift.
+/// Below this part of the tables' last rise, the differences between objects are smaller than the errors of the tables. As a shift.
 const LIGHT: u32 = 7;
-/// Largest radius that is told from a plate, micrometres.
+/// Largest radius that can be distinguished from a plate, micrometres.
 const LARGEST: i32 = 1_000_000;
 /// Curvature times radius: 1/km times micrometres.
 const PER_KILOMETRE: i32 = 1_000_000_000;
 
-/// Where what is told does not hold, one bit each.
+/// Cases in which the result is not valid, one bit each.
 pub mod doubts {
     /// The touch is light: force up to 17 % low, curvature unknown.
     pub const LIGHT: u16 = 1;
@@ -31,7 +31,7 @@ pub mod doubts {
     pub const TIGHT: u16 = 4;
 }
 
-/// What was read at one pressure.
+/// A reading at one pressure.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct ReadPair {
     /// Force.
@@ -44,14 +44,14 @@ pub struct ReadPair {
     pub indentation_sigma: Nanometres,
 }
 
-/// What a known indentation tells.
+/// The contact from a known indentation.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct KnownContact {
     /// Force without any curvature.
     pub force: Micronewtons,
-    /// Its 1-sigma: of the reading and of the law. The error of the known indentation, percent for percent, is the hand's to add.
+    /// Its 1-sigma, from the reading and the law. The hand must add the error of the known indentation, percent for percent.
     pub force_sigma: Micronewtons,
-    /// Curvature of what is touched, 1/km: 1e9 over the radius in micrometres; 0: flat.
+    /// Curvature of the touched object, 1/km: 1e9 over the radius in micrometres; 0: flat.
     pub curvature: i32,
     /// Its 1-sigma.
     pub curvature_sigma: i32,
@@ -127,7 +127,7 @@ fn rise_at(
 /// Tables of one design, for what a known indentation tells: each reads a pressure rise.
 #[derive(Clone, Copy, Debug)]
 pub struct Lookups<T, P, B> {
-    /// What is touched, as it is read now, and its last rise.
+    /// Lookup of the object that is touched now.
     pub touched: T,
     /// Its last rise, and that of the plate's tables.
     pub last: [PressureRise; 2],
@@ -143,7 +143,7 @@ where
     P: Fn(PressureRise) -> Reading,
     B: Fn(PressureRise) -> Reading,
 {
-    /// What a known indentation, above 0, tells beside a reading through the touched object's tables.
+    /// The contact from a known indentation, above 0, and a reading through the touched object's tables.
     pub fn tell(&self, law: &BlendLaw, read: &ReadPair, known: Nanometres) -> KnownContact {
         let [force, force_sigma] = force(read, known.0);
         let rise = rise_at(&self.touched, self.last[0], read.indentation);

@@ -3,7 +3,7 @@
 /// Fraction bits of a weight.
 pub const WEIGHT_BITS: u32 = 10;
 
-/// What touches, as a hand tells it. Radii in micrometres, > 0.
+/// The touched object, as stated by a hand. Radii are in micrometres, > 0.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Touched {
     /// A flat plate.
@@ -22,7 +22,7 @@ impl Touched {
         matches!(self, Self::Cup(_))
     }
 
-    /// Code and radius; a plate's is 0.
+    /// Code and radius. The radius of a plate is 0.
     pub const fn code(self) -> (u8, i32) {
         match self {
             Self::Plate => (0, 0),
@@ -32,7 +32,7 @@ impl Touched {
         }
     }
 
-    /// What has a code and a radius.
+    /// The object with this code and radius.
     pub const fn of(code: u8, radius: i32) -> Option<Self> {
         match code {
             0 if radius == 0 => Some(Self::Plate),
@@ -56,25 +56,25 @@ impl core::fmt::Display for Touched {
     }
 }
 
-/// Weights of the reference object in units of `2^-10`, and the last input that is answered with them.
+/// Weights of the reference object in units of `2^-10`, and the last input for which they are valid.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Weights {
-    /// Of the force.
+    /// Weight of the force.
     pub force: i32,
-    /// Of the indentation.
+    /// Weight of the indentation.
     pub indentation: i32,
     /// Last input covered, counts: that of the tables or less.
     pub maximum: i32,
 }
 
 impl Weights {
-    /// Those of the plate.
+    /// The weights of the plate.
     pub const PLATE: Self = Self {
         force: 0,
         indentation: 0,
         maximum: i32::MAX,
     };
-    /// Those of the reference object.
+    /// The weights of the reference object.
     pub const REFERENCE: Self = Self {
         force: 1 << WEIGHT_BITS,
         indentation: 1 << WEIGHT_BITS,
@@ -103,13 +103,13 @@ pub struct BlendLaw {
 /// Fraction bits of `t` and of the coefficients.
 pub(crate) const LAW_BITS: u32 = 12;
 
-/// Longest length of a law, micrometres: of a larger ball a plate is told.
+/// Largest length in a law, micrometres. For a larger ball, the host states a plate.
 const LONGEST: i32 = 1_000_000;
-/// Largest coefficient of a law that is loaded: 64.
+/// Largest coefficient of a loaded law: 64.
 const LARGEST: i32 = 64 << LAW_BITS;
 
 impl BlendLaw {
-    /// The first field that the law cannot compute with, of tables that end at `maximum`; nothing where all can.
+    /// The first invalid field of the law, for tables that end at `maximum`. `None` if all are valid.
     pub fn out_of_range(&self, maximum: i32) -> Option<&'static str> {
         let length = |length: i32| (1..=LONGEST).contains(&length);
         let small = |law: &[[i32; 3]; 2]| {
@@ -136,7 +136,7 @@ impl BlendLaw {
         .find_map(|(field, holds)| (!holds).then_some(field))
     }
 
-    /// The weights of an object; nothing for a radius that no solved object vouches for.
+    /// The weights of an object. `None` for a radius outside the range of the solved objects.
     pub const fn weights(&self, touched: Touched) -> Option<Weights> {
         let (radius, of, divisor) = match touched {
             Touched::Plate => return Some(Weights::PLATE),

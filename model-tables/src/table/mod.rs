@@ -1,9 +1,9 @@
 //! The lookup on the chip: pressure rise -> force and indentation, integers only.
 //!
-//! How it works and what is proven of it is in `certified_lookup`; here its two outputs are the force in micronewtons and the
-//! indentation in nanometres, its input is the pressure rise, and tables of other objects and of a feedback force are made of it.
+//! `certified_lookup` describes how it works and what is proven. Here the input is the pressure rise. The two outputs are the
+//! force in micronewtons and the indentation in nanometres. Tables of other objects and of a feedback force use it too.
 //!
-//! The tables of a design are a constant, so the compiler folds everything but the coefficients.
+//! The tables of a design are a constant, so the compiler folds everything except the coefficients.
 
 pub mod band;
 pub mod blend;
@@ -16,14 +16,14 @@ use crate::units::{Micronewtons, Nanometres, PressureRise};
 
 pub use certified_lookup::{Constant, Layout, LoadedTables, Outputs, Powers, Tables, TablesError};
 
-/// What the tables say of a pressure rise.
+/// Table values at a pressure rise.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Reading {
     /// Force on the plate.
     pub force: Micronewtons,
     /// Indentation of the pole.
     pub indentation: Nanometres,
-    /// The input lay above the tables: force and indentation are lower bounds.
+    /// The input was above the tables. Force and indentation are lower bounds.
     pub saturated: bool,
     /// The input was negative and read as zero.
     pub negative: bool,

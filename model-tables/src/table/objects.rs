@@ -1,4 +1,4 @@
-//! Tables of other objects than a plate that are known at run time only.
+//! Tables of objects other than a plate, loaded at run time.
 
 use super::blend::BlendedTables;
 use super::known::{KnownContact, Lookups, ReadPair};
@@ -6,10 +6,10 @@ use super::law::{BlendLaw, Touched};
 use super::{ContactLookup as _, LoadedTables, Reading, TablesError};
 use crate::units::{Nanometres, PressureRise};
 
-/// The reference ball's tables beside those of the plate, and the law of the weights.
+/// The tables of the plate and of the reference ball, and the law of the weights.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadedObjects<'a> {
-    /// What is touched at the start.
+    /// The object that is touched at the start.
     pub start: Touched,
     law: BlendLaw,
     plate: LoadedTables<'a>,
@@ -20,7 +20,7 @@ impl<'a> LoadedObjects<'a> {
     /// Of the plate's tables, and the words of the ball's.
     ///
     /// # Errors
-    /// [`TablesError`]: such tables may answer wrongly.
+    /// [`TablesError`] if the tables may give wrong values.
     pub fn new(
         start: Touched,
         law: BlendLaw,
@@ -44,14 +44,14 @@ impl<'a> LoadedObjects<'a> {
         })
     }
 
-    /// The tables of an object; nothing for one that the law refuses, or whose blend may answer wrongly.
+    /// The tables of an object. `None` if the law does not cover it, or if its blend may give wrong values.
     pub fn blended(&self, touched: Touched) -> Option<BlendedTables> {
         let weights = self.law.weights(touched)?;
         let (plate, ball) = (self.plate.words(), self.ball.words());
         BlendedTables::new(self.plate.layout(), plate, ball, &weights).ok()
     }
 
-    /// What a known indentation, above 0, tells beside a reading through tables that end at `last`.
+    /// The contact from a known indentation, above 0, and a reading through tables that end at `last`.
     pub fn tell(
         &self,
         touched: impl Fn(PressureRise) -> Reading,
