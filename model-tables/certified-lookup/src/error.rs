@@ -2,23 +2,23 @@
 
 use core::fmt;
 
-/// Why tables are not used.
+/// Reasons for refusing tables.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum TablesError {
-    /// A field of the layout is not in its range.
+    /// A field of the layout is out of its range.
     Layout(&'static str),
-    /// The words are not those of the segments that the layout needs.
+    /// The number of words does not fit the segments of the layout.
     Words {
         /// Words needed.
         needed: usize,
         /// Words found.
         found: usize,
     },
-    /// An input of zero does not read as two zeros.
+    /// The outputs at input zero are not both zero.
     Zero,
     /// An output falls after this input, counts.
     Falls(i32),
-    /// An output grows so little up to this input, counts, that the work allowed does not show whether it ever falls.
+    /// Up to this input, counts, an output grows so little that the allowed work cannot show whether it falls.
     Flat(i32),
 }
 

@@ -12,9 +12,9 @@
 //! outputs fall, so that 16 bits suffice in every segment. There is no search, no division, no loop and no branch on
 //! data, and no input can panic.
 //!
-//! The tables of a design are a constant, so the compiler folds everything but the coefficients.
+//! The tables of a design are a constant, so the compiler folds everything except the coefficients.
 
-/// Most fraction bits of the input's unit.
+/// Largest number of fraction bits of the input's unit.
 pub(crate) const MAX_FRACTION_BITS: u32 = 16;
 
 /// Powers of `s` beside 1 that a segment's sums are made of.
@@ -31,7 +31,7 @@ pub enum Powers {
 }
 
 impl Powers {
-    /// How many there are.
+    /// Number of powers.
     pub const fn terms(self) -> usize {
         match self {
             Self::Two => 2,
@@ -79,7 +79,7 @@ pub struct Layout {
 pub struct Tables<const SEGMENTS: usize, const WORDS: usize> {
     /// Where the segments lie.
     pub layout: Layout,
-    /// Segments downwards: the one of the largest inputs first.
+    /// Segments in descending order: the one of the largest inputs first.
     pub segments: [[i32; WORDS]; SEGMENTS],
 }
 

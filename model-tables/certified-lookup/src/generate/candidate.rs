@@ -10,9 +10,9 @@ use super::truth::Truth;
 use crate::layout::{Constant, Layout};
 use std::cell::Cell;
 
-/// Samples of a segment that a fit sees; the certificate sees every input.
+/// Number of samples of a segment that a fit uses. The certificate checks every input.
 const SAMPLES: usize = 41;
-/// Samples lie between inputs: integers must stay this far inside the tolerance.
+/// The samples do not cover every input, so the integers must stay this far inside the tolerance.
 const MARGIN: f64 = 0.985;
 /// Sums stay below this share of 2^31.
 const FULL: f64 = 0.98;
@@ -28,7 +28,7 @@ pub(super) enum Shifts {
     Every,
 }
 
-/// One way to cut the input, its samples in both outputs, and how close sums of real coefficients come.
+/// One segmentation of the input, its samples in both outputs, and the error of sums with real coefficients.
 pub(super) struct Candidate<'a> {
     pub(super) truth: &'a Truth,
     pub(super) segmentation: Segmentation,
@@ -192,7 +192,7 @@ impl Candidate<'_> {
                 round(&samples, layout.powers.terms(), layout.constant, MARGIN)
             };
             let (closer, wider) = (CLOSER[first..].iter(), CLOSER[..first].iter().rev());
-            // What cannot be had within a part of the tolerance cannot be had closer.
+            // If a share of the tolerance cannot be met, a smaller share cannot be met either.
             let mut fits = closer
                 .map_while(|closer| fitted(closer, before))
                 .chain(wider.filter_map(|wider| fitted(wider, before)));
@@ -236,7 +236,7 @@ impl Candidate<'_> {
         for count in counts(span, layout.bias) {
             let value = self.truth.at(count)[output];
             let allowed = tolerance.at(value);
-            // Zero input reads zero, and there is no fall from the segment below.
+            // Input zero gives zero, and the output does not fall from the segment below.
             let (mut low, mut high) = (libm::ceil(value - allowed), libm::floor(value + allowed));
             if count == 0 {
                 (low, high) = (0.0, 0.0);
@@ -274,7 +274,7 @@ enum Failed {
     Falls,
 }
 
-/// The error an output is allowed.
+/// Allowed error of an output.
 #[derive(Clone, Copy)]
 pub(super) struct Tolerance {
     share: f64,

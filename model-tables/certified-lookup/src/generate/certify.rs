@@ -1,4 +1,4 @@
-//! The certificate: every representable input, compared with the curve.
+//! The certificate: every representable input is compared with the curve.
 //!
 //! Up to [`EVALUATED`] inputs are evaluated one by one. Beyond, [`Tally::bound`] evaluates only the inputs that exact bounds of the
 //! sums do not settle; errors, steps and monotonicity are those of all inputs all the same, to the digit.
@@ -11,20 +11,20 @@ use super::truth::{Piece, Truth};
 use super::{AccuracyGoal, CurvePair, CurvePoint};
 use crate::layout::{Layout, Outputs};
 
-/// Inputs that are evaluated one by one at most: 2^22.
+/// Largest number of inputs that are evaluated one by one: 2^22.
 const EVALUATED: i32 = 1 << 22;
 
 /// Proven properties of tables over every input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// Inputs that it holds of: all from zero to the maximum.
+    /// Number of inputs for which it holds: all from zero to the maximum.
     pub inputs: u64,
     /// Whether each was evaluated. If not, largest errors, steps and monotonicity come from exact bounds, and evaluation where
     /// they do not settle it; root-mean-square and mean errors from evenly spaced inputs.
     pub every_input_evaluated: bool,
     /// Errors of each output, absolute ones in its unit.
     pub outputs: [Errors; 2],
-    /// Error of the comparison itself, relative: the local polynomials that stand for the curve.
+    /// Error of the comparison itself, relative, caused by the local polynomials that replace the curve.
     pub comparison_error: f64,
 }
 
@@ -202,7 +202,7 @@ fn parts<'a>(
 }
 
 impl<'a> Part<'a> {
-    /// What the chip says at a count.
+    /// The outputs of the chip at a count.
     fn outputs(&self, count: i32) -> Outputs {
         let layout = &self.tables.layout;
         layout.outputs(count, layout.place(count), self.words)
@@ -226,7 +226,7 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Inputs beyond the ends read as the ends do, with their flag.
+/// Inputs beyond an end give the outputs of that end, with its flag.
 fn ends_are_held(tables: &OwnedTables) -> bool {
     let maximum = tables.layout.maximum;
     let (zero, last) = (tables.lookup(0), tables.lookup(maximum));

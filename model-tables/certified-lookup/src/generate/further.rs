@@ -9,7 +9,7 @@ use super::tally::Errors;
 use super::truth::Truth;
 use super::{AccuracyGoal, CurvePair, CurvePoint};
 
-/// What tables read at the end of their lowest segment; `None` where their layout has no segments that hold enough inputs.
+/// The outputs of tables at the end of their lowest segment. `None` if the layout has no segments with enough inputs.
 pub fn lowest_segment_end(tables: &OwnedTables) -> Option<[i32; 2]> {
     let segments = Segmentation::of(tables.layout)?;
     let (lowest, _) = segments.spans.split_first()?;

@@ -1,11 +1,11 @@
-//! Sums of least largest error, by exchange: Remez's algorithm over samples.
+//! Sums with the smallest maximum error, by exchange: Remez's algorithm over samples.
 //!
 //! Powers of `s >= 0` with gaps between them are a Chebyshev system as those without are (Descartes' rule of
 //! signs), so the best sum is the one whose error alternates between its extremes once more than it has coefficients.
 
-/// Coefficients of a sum at most.
+/// Largest number of coefficients of a sum.
 pub const MAX_COEFFICIENTS: usize = 5;
-/// Exchanges at most; a handful is usual.
+/// Largest number of exchanges. A few are usual.
 const EXCHANGES: usize = 30;
 /// The largest error this close to that of the alternation is taken for it.
 const CLOSE: f64 = 1.002;

@@ -2,7 +2,7 @@
 
 use crate::layout::{Layout, Outputs};
 
-/// Tables of any number of segments; reads exactly as [`crate::Tables`] does.
+/// Tables of any number of segments. They give exactly the values of [`crate::Tables`].
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct OwnedTables {
     /// Position of the segments, and the layout of their words.

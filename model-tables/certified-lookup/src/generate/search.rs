@@ -7,7 +7,7 @@ use super::owned::OwnedTables;
 use super::shape::{Segmentation, Shape, biases, instructions};
 use super::truth::Truth;
 
-/// Segments at most.
+/// Largest number of segments.
 const MAX_SEGMENTS: usize = 32;
 /// Tables of so many bytes are small, and a lookup of so many instructions is quick. Where small tables can meet the
 /// accuracy with a quick lookup they are taken before smaller ones with a slower; beyond, bytes alone count.
@@ -15,7 +15,7 @@ const SMALL: usize = 192;
 const QUICK: u32 = 28;
 /// A first look above this share of the tolerance leaves nothing for rounding.
 const HOPEFUL: f64 = 0.97;
-/// How much is tried before larger tables are.
+/// Limits of the search at one size of tables.
 struct Effort {
     /// Segmentations of a size whose coefficients are rounded, those first that leave it most room.
     rounded: usize,
@@ -28,14 +28,14 @@ struct Effort {
     every_shift: bool,
 }
 
-/// For small tables with a quick lookup, which are what is wanted.
+/// Limits for small tables with a quick lookup, which are preferred.
 const EVERYTHING: Effort = Effort {
     rounded: usize::MAX,
     offered: usize::MAX,
     patience: usize::MAX,
     every_shift: false,
 };
-/// For the others.
+/// Limits for all other tables.
 const USUAL: Effort = Effort {
     rounded: 8,
     offered: 2,

@@ -40,7 +40,7 @@ pub(super) struct Truth {
     pub(super) fraction_bits: u32,
     /// Last count.
     pub(super) maximum: i32,
-    /// Both outputs at the end, which the last count may lie a little beyond.
+    /// Both outputs at the end. The last count may be slightly above the end.
     pub(super) full_scale: [f64; 2],
 }
 
