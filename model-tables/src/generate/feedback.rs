@@ -21,13 +21,13 @@ pub struct FeedbackCurve {
 pub struct CertifiedFeedback {
     /// The layout, that of the tables of force and indentation.
     pub layout: Layout,
-    /// How a sum is read.
+    /// Layout of the sums.
     pub scale: FeedbackScale,
     /// The words, [`words_per_segment`] a segment, the segment of the largest inputs first.
     pub words: Vec<i32>,
     /// Errors of the force gained since rest on every input, micronewtons.
     pub errors: Errors,
-    /// Error of the comparison itself, relative: the local polynomials that stand for the curve.
+    /// Error of the comparison itself, relative, caused by the local polynomials that replace the curve.
     pub comparison_error: f64,
 }
 
@@ -53,7 +53,7 @@ impl CertifiedFeedback {
 }
 
 impl FeedbackCurve {
-    /// Tables beside others, if there are some that meet the accuracy of the force.
+    /// Tables in the layout of others. `None` if no such tables meet the accuracy of the force.
     pub(super) fn tables(
         &self,
         beside: &OwnedTables,

@@ -1,7 +1,7 @@
-//! The generator: a press curve and the accuracy wanted of it -> integer tables and their certificate.
+//! The generator: a press curve and the required accuracy -> integer tables and their certificate.
 //!
-//! [`from_design_file`] does every step: design file -> full model -> tables, with every input checked. The tables are made and proven by `certified_lookup`. Tables that do not meet the
-//! design's accuracy are never returned.
+//! [`from_design_file`] does every step: design file -> full model -> tables, with a check of every input. The tables are made
+//! and proven by `certified_lookup`. Tables that do not meet the design's accuracy are never returned.
 
 mod design;
 mod emit;
@@ -20,7 +20,7 @@ pub use design::{
     from_design_or_worse, solve,
 };
 
-/// Version of the tables' layout and of the generator; counts up when either changes the integers.
+/// Version of the tables' layout and of the generator. It increases if a change of either changes the integers.
 pub const TABLE_VERSION: u32 = 6;
 
 /// Tables and their certificate.
@@ -44,7 +44,7 @@ pub struct Certified {
 /// Proven properties of tables over every input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
-    /// Inputs that it holds of: all from zero to the maximum.
+    /// Number of inputs for which it holds: all from zero to the maximum.
     pub inputs: u64,
     /// Whether each was evaluated. If not, largest errors, steps and monotonicity come from exact bounds, and evaluation where
     /// they do not settle it; root-mean-square and mean errors from evenly spaced inputs.
@@ -53,7 +53,7 @@ pub struct Certificate {
     pub force: Errors,
     /// Errors of the indentation; absolute ones in nanometres.
     pub indentation: Errors,
-    /// Error of the comparison itself, relative: the local polynomials that stand for the curve.
+    /// Error of the comparison itself, relative, caused by the local polynomials that replace the curve.
     pub comparison_error: f64,
 }
 
@@ -94,7 +94,7 @@ fn curve_point(contact: Contact) -> CurvePoint {
     }
 }
 
-/// What tables of force and indentation must meet.
+/// Accuracy that tables of force and indentation must meet.
 fn goal(accuracy: &Accuracy) -> AccuracyGoal {
     AccuracyGoal {
         percent_of_reading: [
@@ -122,9 +122,9 @@ pub fn tables(
 /// Further curves that get tables of the same layout.
 #[derive(Clone, Debug, Default)]
 pub struct Beside {
-    /// Other objects than the plate; `None`: the plate alone.
+    /// Objects other than the plate; `None` for the plate only.
     pub objects: Option<SolvedObjects>,
-    /// The feedback actuator; `None`: there is none that presses.
+    /// The feedback actuator; `None` if there is none that presses.
     pub feedback: Option<FeedbackCurve>,
 }
 

@@ -24,10 +24,11 @@ pub use solved::{NoObjects, SolvedObject, SolvedObjects};
 /// What the tables of the reference object are held to, as a multiple of what those of the plate are: its share of a blend's error.
 const REFERENCE_ACCURACY: f64 = 3.0;
 
-/// Percent of reading of a solved object: a blend that is further off is not offered. A ball and a cup differ in more than a weight.
+/// Largest error of a blend, percent of the reading of a solved object. A blend with a larger error is not offered. A ball and
+/// a cup differ in more than a weight.
 const FARTHEST: f64 = 6.0;
 
-/// A law may lie so much beyond its ends, in units of a weight.
+/// Largest excess of a law beyond its ends, in units of a weight.
 const MARGIN: i32 = 1 << (WEIGHT_BITS - 5);
 
 /// Tables of the reference object, and the errors of a blend of them with the plate's.
@@ -50,13 +51,13 @@ pub struct ObjectTables {
 /// A blend of integers, as the chip has it, against a solved object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlendError {
-    /// The object's radius, millimetres; of a cup negative.
+    /// The object's radius, millimetres; negative for a cup.
     pub radius_mm: f64,
     /// Whether the law was fitted to it.
     pub fitted: bool,
-    /// As deep as the design is pressed.
+    /// Errors up to the indentation of the design.
     pub pressed: BlendErrors,
-    /// Up to the last pressure rise that is answered.
+    /// Errors up to the last pressure rise of the blend.
     pub answered: BlendErrors,
 }
 
@@ -72,14 +73,14 @@ pub struct BlendErrors {
 }
 
 impl ObjectTables {
-    /// The tables of an object, as the chip blends them; nothing for one that the law refuses.
+    /// The tables of an object, as the chip blends them. `None` if the law does not cover the object.
     pub fn blended(&self, plate: &OwnedTables, touched: Touched) -> Option<OwnedTables> {
         let weights = self.law.weights(touched)?;
         Some(answered(plate, &self.ball, &weights))
     }
 }
 
-/// A blend up to the last rise that it answers.
+/// A blend up to its last rise.
 fn answered(plate: &OwnedTables, ball: &OwnedTables, weights: &Weights) -> OwnedTables {
     let mut tables = blended(plate, ball, weights);
     let plain = |rise| plate.contact_at(rise);
@@ -97,7 +98,7 @@ fn blended(plate: &OwnedTables, ball: &OwnedTables, weights: &Weights) -> OwnedT
 }
 
 impl SolvedObjects {
-    /// The reference object's tables in the layout of the plate's, if there are some with which no blend ever falls.
+    /// The reference object's tables in the layout of the plate's. `None` if every such table lets some blend fall.
     pub(super) fn tables(
         &self,
         plate: &OwnedTables,
@@ -143,7 +144,7 @@ impl SolvedObjects {
             if !errors.iter().any(is_far) && rises(plate, &ball, &law) {
                 break errors;
             }
-            // The tightest that is not of the reference's kind is left out.
+            // The tightest object of the other kind is left out.
             let other = usize::from(!self.reference.is_cup());
             if law.least[other] == 0 {
                 return None;

@@ -1,4 +1,4 @@
-//! Why a design gets no tables.
+//! Reasons why a design gets no tables.
 
 use crate::constants::BELOW_ZERO_DEVIATIONS;
 use crate::curve::CurveFailure;
@@ -15,24 +15,24 @@ use std::fmt;
 pub enum GenerateError {
     /// The design file cannot be used.
     File(DesignFileError),
-    /// Making tables needs a section that is not there.
+    /// A section that the tables need is missing.
     MissingSection {
         /// The section.
         section: &'static str,
     },
-    /// The wall relaxes, and the design is none that its convolution holds for: the key, and the remedy.
+    /// The wall relaxes, but its convolution is not valid for this design: the key, and the remedy.
     NotConvolved(&'static str),
-    /// The design has an actuator as a disc, and is none that tables hold for with one: the key, and the remedy.
+    /// The design has an actuator disc, but tables with an actuator are not valid for this design: the key, and the remedy.
     NotHaptic(&'static str),
-    /// Fingertip and actuator give no answer together.
+    /// The loop of fingertip and actuator has no solution.
     Loop(LoopError),
-    /// The wall relaxes, and the solid finds no press in time that the chip's rules are fitted to.
+    /// The wall relaxes, but the solid finds no press in time to which the chip's rules can be fitted.
     InTime(HistoryError),
     /// `air.reference` is `"part"`: no board has a second transducer.
     SecondTransducer,
     /// The model gives no answer, or ends before `max_indentation_mm`.
     Model(ModelError),
-    /// Pressure or force do not grow throughout.
+    /// Pressure or force do not grow over the whole press.
     Curve(CurveFailure<ModelError>),
     /// A pressure lies outside the transducer's range.
     OutOfRange {
@@ -45,43 +45,43 @@ pub enum GenerateError {
         /// The absolute range that those are left of, where `transducer.range_kpa` is one; kilopascals.
         absolute: Option<[f64; 2]>,
     },
-    /// The whole press raises the pressure by no more than what passes for noise around zero.
+    /// The whole press raises the pressure by no more than the noise around zero.
     Unfelt {
-        /// By how much, pascals.
+        /// The pressure rise, pascals.
         rise: f64,
-        /// What passes for noise, pascals.
+        /// The limit of noise, pascals.
         least: f64,
         /// The transducer's key that says so, and its value in pascals.
         key: (&'static str, f64),
     },
-    /// The membrane is further off the solid than `accuracy.model_percent` allows.
+    /// The membrane differs from the solid by more than `accuracy.model_percent`.
     CoarseMembrane {
         /// By how much, in words.
         error: String,
-        /// What is allowed, percent.
+        /// The allowed difference, percent.
         allowed: f64,
     },
-    /// The mesh is further off a finer one than `accuracy.model_percent` allows.
+    /// The mesh differs from a finer one by more than `accuracy.model_percent`.
     CoarseMesh {
         /// By how much, in words.
         error: String,
-        /// What is allowed, percent.
+        /// The allowed difference, percent.
         allowed: f64,
     },
     /// The data that the tables are to come from end before `max_indentation_mm`.
     BeyondData {
-        /// The indentation asked for, millimetres.
+        /// The requested indentation, millimetres.
         asked: f64,
-        /// The deepest one of the data, millimetres.
+        /// The largest indentation of the data, millimetres.
         deepest: f64,
     },
-    /// There are no tables of other objects than a plate.
+    /// There are no tables for objects other than a plate.
     Objects(NoObjects),
     /// No tables meet the accuracy.
     NoTables(NoTables),
 }
 
-/// A state whose pressure the transducer has to read.
+/// A state whose pressure the transducer must read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DesignState {
     /// At rest.
