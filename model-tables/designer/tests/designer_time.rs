@@ -2,7 +2,7 @@
 
 mod program;
 
-use program::{header_and_rows, refusal};
+use program::{designer, header_and_rows, refusal};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
@@ -236,6 +236,46 @@ fn what_has_no_end_is_refused() {
         text.contains("its rows span 1e9 s") && text.contains("cut the record"),
         "{text}"
     );
+}
+
+/// Files and notes of `table`: eight terms of which three relax within a report every 7 ms are fewer on the chip, and Agilus30 at 1 ms is whole.
+#[test]
+fn table_has_the_fewest_terms_for_accuracy_and_rate() {
+    const DENSE: &str =
+        "tau_s = [1e-4, 1e-3, 3e-3, 0.01, 0.1, 1, 10, 100]\ng = [400, 100, 40, 20, 5, 2, 1, 0.3]";
+    let every_7_ms = PRINTED.replace("{}", DENSE).replace(
+        "kind = \"ratiometric\"\nrange_kpa = [-10, 900]",
+        "kind = \"ms5837-02ba\"\nrange_kpa = [-8, 90]",
+    );
+    for (name, file, note, count, certified) in [
+        (
+            "fewer",
+            write("fewer.toml", &every_7_ms),
+            "6 of 8 terms of the series are enough for a report every 7 ms: they add 0.07 %",
+            "count: 6,",
+            true,
+        ),
+        (
+            "whole",
+            design("whole", AGILUS30, ""),
+            "7 of 7 terms of the series are enough for a report every 1 ms: 6 would add 10.23 %, and [accuracy] allows 1 %",
+            "count: 7,",
+            false,
+        ),
+    ] {
+        let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("time-terms-{name}"));
+        let output = designer(&["table", &file, "--out", &out.display().to_string()]);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && stderr.contains(note), "{stderr}");
+        let written = |file: &str| fs::read_to_string(out.join(file)).expect("it was written");
+        assert!(written("tables.rs").contains(count), "{name}");
+        let certificate = written("certificate.toml");
+        assert_eq!(
+            certificate.contains("terms = 6\nof = 8\n"),
+            certified,
+            "{certificate}"
+        );
+    }
 }
 
 /// While pressed and held force within 4 % and indentation within 2 % of the largest; from then on no force that pulls, and none where contact

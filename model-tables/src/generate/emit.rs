@@ -86,16 +86,15 @@ impl Generated {
 
     /// Its wall in time as the chip knows it, if it relaxes.
     pub fn wall(&self) -> Option<WallSeries> {
-        let relaxation = self.design.relaxation.as_ref()?;
+        let chip = self.chip_series.as_ref()?;
         let bits = self.certified.tables.layout.fraction_bits;
         let rules = self.in_time?;
         let counts = |pascals: f64| PressureRise::from_pascals(pascals, bits).0.max(1).unsigned_abs();
         let sixteen_bits = |value: f64| libm::round(65_536.0 * value) as u32;
         let membrane = &self.design.design().membrane;
         let thin = membrane.thickness <= THIN * membrane.radial_semi_axis;
-        let period = 1e-6 * f64::from(self.transducer().kind.period());
         Some(WallSeries {
-            step: SeriesStep::over(relaxation, period),
+            step: SeriesStep::over(&chip.series, chip.period),
             remaining_permille: if thin { REMAINING_THIN } else { REMAINING },
             fluid_least: sixteen_bits(rules.fluid_least).min(1 << 16),
             fluid_half: counts(rules.fluid_half),

@@ -7,6 +7,7 @@ mod design;
 mod emit;
 pub mod feedback;
 pub mod object;
+mod terms;
 
 use crate::curve::{Contact, Curve};
 use crate::design_file::Accuracy;
@@ -19,6 +20,7 @@ pub use design::{
     AccuracyLimit, DesignState, GenerateError, Generated, InTime, Solved, from_design, from_design_file,
     from_design_or_worse, solve,
 };
+pub use terms::ChipSeries;
 
 /// Version of the tables' layout and of the generator. It increases if a change of either changes the integers.
 pub const TABLE_VERSION: u32 = 6;

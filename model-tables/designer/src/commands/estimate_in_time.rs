@@ -38,10 +38,10 @@ const PASCALS: &str = "pressure_rise_pa";
 
 pub(super) fn run(file: &Path, history: &Path, allow_worse: bool) -> Result<CommandAnswer, Refusal> {
     let design_file = read(file)?;
-    let relaxation = design_file.relaxation;
     let read = time_rows::read(history, &[KILOPASCALS, PASCALS])?;
     let unit = if read.column == KILOPASCALS { 1e3 } else { 1.0 };
     let generated = generated(file, design_file, allow_worse)?;
+    let relaxation = generated.chip_series.map(|chip| chip.series);
     let block = generated.binary();
     let (design, _) = LoadedDesign::read(&block).map_err(|error| Refusal::about(file, &error))?;
     let bits = design.parameters().pressure_fraction_bits;

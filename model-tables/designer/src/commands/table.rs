@@ -64,6 +64,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<CommandAnswer, Refusal> {
             feedback.errors.of_reading.max
         )
     }));
+    notes.extend(
+        generated
+            .chip_series
+            .iter()
+            .map(|series| format!("{name}: {series}")),
+    );
     notes.extend([format!("{name}: solved, fitted and certified in {seconds:.1} s")]);
     notes.extend(generated.band.iter().map(|band| format!("{name}: {band}")));
     notes.extend(generated.own_error().map(|error| format!("{name}: {error}")));

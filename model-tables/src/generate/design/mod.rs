@@ -13,7 +13,7 @@ pub use limit::AccuracyLimit;
 
 use super::feedback::FeedbackCurve;
 use super::object::{Band, NoObjects, SolvedObjects, Unknown, plate_of};
-use super::{Beside, Certified, NoTables, tables_with};
+use super::{Beside, Certified, ChipSeries, NoTables, tables_with};
 use crate::constants::{AirReference, BELOW_ZERO_DEVIATIONS, Transducer, TransducerKind};
 use crate::curve::{Contact, Curve};
 use crate::design_file::{
@@ -75,6 +75,8 @@ pub struct Generated {
     pub kind: Option<Kind>,
     /// Parameters of the chip's rules for a relaxing wall; `None` if the wall does not relax.
     pub in_time: Option<InTime>,
+    /// The series that the chip computes with; `None` if the wall does not relax.
+    pub chip_series: Option<ChipSeries>,
     /// The membrane against the solid of the same wall; `None` where the model is a solid, or there is none.
     pub membrane_error: Option<OwnError>,
     /// Band for an unknown object; `None` if the curve is of data, the object is a punch, or a ball has no press.
@@ -137,6 +139,9 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         None => None,
         Some(relaxation) => Some(in_time::fitted(&design, &touching, relaxation, end)?),
     };
+    let period = 1e-6 * f64::from(kind(transducer.kind).period());
+    let whole = design.relaxation.as_ref();
+    let chip_series = whole.map(|whole| ChipSeries::fewest(whole, period, &accuracy));
     let is_unknown = design.object.is_some_and(|object| object.unknown);
     // The presses on balls would be of the fingertip alone.
     let unknown = fingertip
@@ -197,6 +202,7 @@ fn make(design: DesignFile, doublings: u32) -> Result<Generated, GenerateError> 
         model_error,
         kind,
         in_time,
+        chip_series,
         membrane_error,
         band,
         feedback_mesh_percent,

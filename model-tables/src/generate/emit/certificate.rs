@@ -6,7 +6,7 @@ use crate::block::section;
 use crate::generate::design::{AccuracyLimit, Generated};
 use crate::generate::feedback::CertifiedFeedback;
 use crate::generate::object::{Band, ObjectTables, quoted};
-use crate::generate::{Errors, TABLE_VERSION};
+use crate::generate::{ChipSeries, Errors, TABLE_VERSION};
 use crate::model::own_error::OwnError;
 use crate::table::ContactLookup as _;
 use crate::table::feedback::words_per_segment;
@@ -133,6 +133,21 @@ fn write_certificate(generated: &Generated, out: &mut String) -> fmt::Result {
 
 /// What else has tables of the same layout, and what is left open.
 fn write_beside(generated: &Generated, asked: f64, out: &mut String) -> fmt::Result {
+    let fewer = |chip: &ChipSeries| chip.series.terms().len() < chip.of;
+    if let Some(chip) = generated.chip_series.filter(fewer) {
+        writeln!(
+            out,
+            "\n[relaxation] # the fewest terms with which the chip reads as with the whole series, and what they add to the settled pressure\n\
+             terms = {}\n\
+             of = {}\n\
+             added_percent = {:.4}\n\
+             allowed_percent = {:?}",
+            chip.series.terms().len(),
+            chip.of,
+            chip.added_percent,
+            chip.allowed_percent
+        )?;
+    }
     if let Some(feedback) = &generated.certified.feedback {
         write_feedback(feedback, generated.feedback_mesh_percent, asked, out)?;
     }

@@ -3,7 +3,7 @@
 use super::labels::{KPA, MM, NEWTON, PERCENT, SECONDS};
 use maud::{Markup, html};
 use model_tables::design_file::{Axes, DesignFile};
-use model_tables::generate::Generated;
+use model_tables::generate::{ChipSeries, Generated};
 use model_tables::model::choice::{FINE, elements_in_time};
 use model_tables::solid::history::{Drive, History};
 use model_tables::table::ContactLookup as _;
@@ -58,7 +58,7 @@ pub(super) fn presses(file: &DesignFile, generated: &Generated) -> Vec<TimedPres
 }
 
 /// Their table.
-pub(super) fn section(presses: &[TimedPress]) -> Markup {
+pub(super) fn section(presses: &[TimedPress], chip: Option<&ChipSeries>) -> Markup {
     let error = |read: f64, truth: f64| PERCENT.given(&plain(100.0 * (read / truth - 1.0), 3));
     html! {
         section {
@@ -67,6 +67,7 @@ pub(super) fn section(presses: &[TimedPress]) -> Markup {
                 "The wall relaxes. The chip's stages take that into account; static tables alone would read a press to a third of the \
                  largest force so, at its end:"
             }
+            @if let Some(chip) = chip { p { (chip) "." } }
             div.wide {
                 table {
                     caption { "Static tables in time" }

@@ -31,7 +31,7 @@ pub(super) fn html(found: &Findings, path: &Path) -> String {
             (press(found))
             (meridians(found))
             (tables(found))
-            @if !found.in_time.is_empty() { (in_time::section(&found.in_time)) }
+            @if !found.in_time.is_empty() { (in_time::section(&found.in_time, found.tables.as_ref().ok().and_then(|tables| tables.chip_series.as_ref()))) }
             (speed(found))
             @if !found.actuator.is_empty() { (actuator(found)) }
             @if let Some(haptic) = &feedback::pressing(&found.file, found.model, &found.design, found.deepest) {
