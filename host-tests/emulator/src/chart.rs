@@ -62,6 +62,8 @@ pub struct Caption {
     pub full_scale: Contact,
     /// Tables of the settled wall on a plate, shown beside the report; `None`: not shown.
     pub static_tables: Option<Curve>,
+    /// What the truth is: see [`crate::fingertip_design::RunTruth::words`].
+    pub truth: &'static str,
     /// Largest error that the median may have, percent of reading: the band in the lowest panel.
     pub target_percent: f64,
 }
@@ -85,7 +87,7 @@ fn drawing(error: impl fmt::Display) -> ChartError {
 /// One of the upper panels.
 struct Quantity {
     label: &'static str,
-    /// Truth and report of a row.
+    /// RunTruth and report of a row.
     of: fn(&Row) -> [Option<f64>; 2],
     /// It of a contact of the static tables, where they have it.
     of_static: Option<fn(&Contact) -> f64>,
@@ -221,8 +223,9 @@ fn heading(area: &Area<'_>, caption: &Caption) -> Result<(), ChartError> {
             .map_err(drawing)?;
         y += SUBTITLE as i32 + 6;
     }
+    let truth = format!("truth: {}", caption.truth);
     let mut entries = vec![
-        Entry::line("truth: full model", TRUTH, 6),
+        Entry::line(&truth, TRUTH, 6),
         Entry::line("reported by the firmware", REPORT, 3),
         Entry::area("zeroing", ZEROING.mix(SHADE)),
         Entry::area("warning", WARNING.mix(SHADE)),
@@ -480,6 +483,7 @@ mod tests {
             subtitle: "median error: force 0.1 %, indentation 0.1 %".to_owned(),
             full_scale,
             static_tables: None,
+            truth: "settled wall, not in time",
             target_percent: 0.5,
         }
     }
@@ -494,7 +498,7 @@ mod tests {
             "indentation / mm",
             "error / % of reading",
             "time / s",
-            "truth: full model",
+            "truth: settled wall, not in time",
             "reported by the firmware",
             "fault: no values",
             "warning",

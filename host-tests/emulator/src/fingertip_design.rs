@@ -32,6 +32,46 @@ pub struct FingertipDesign {
     transducer: EmulatedTransducer,
 }
 
+/// What the truth of a run is.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum RunTruth {
+    /// The full model of an elastic wall.
+    Model,
+    /// What was measured.
+    Data,
+    /// The solid in time, of a wall that relaxes.
+    InTime,
+    /// The settled states of a wall that relaxes. The scenario moves the plate by a share of the largest indentation. A real wall would press
+    /// back harder than that, beyond most transducers.
+    Settled,
+}
+
+impl RunTruth {
+    /// In two or three words, for the key of a chart.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Model => "full model",
+            Self::Data => "measured data",
+            Self::InTime => "solid in time",
+            Self::Settled => "settled wall, not in time",
+        }
+    }
+}
+
+impl fmt::Display for RunTruth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Model => "the full model",
+            Self::Data => "the measured data",
+            Self::InTime => "the solid in time, as the wall relaxes",
+            Self::Settled => {
+                "the settled states of a wall that relaxes: as pressed for ever, and no real press is. The firmware takes the pressure \
+                 for that of a wall in time, and its force and indentation differ. --scenario regrasp has the truth in time"
+            }
+        })
+    }
+}
+
 /// Why a design cannot be pressed.
 #[derive(Debug)]
 pub enum FingertipDesignError {
@@ -157,11 +197,13 @@ impl FingertipDesign {
         &self.file.name
     }
 
-    /// Where the truth of a press comes from, in words.
-    pub fn truth(&self) -> String {
-        match self.file.calibration.curve {
-            Some(_) => format!("taking the data of {} for the truth", self.name()),
-            None => format!("solving the full model of {} for the truth", self.name()),
+    /// What the truth of a scenario is.
+    pub fn truth(&self, scenario: &Scenario) -> RunTruth {
+        match (&self.file.calibration.curve, &self.file.relaxation) {
+            (None, Some(_)) if scenario.is_in_time() => RunTruth::InTime,
+            (None, Some(_)) => RunTruth::Settled,
+            (Some(_), _) => RunTruth::Data,
+            (None, None) => RunTruth::Model,
         }
     }
 

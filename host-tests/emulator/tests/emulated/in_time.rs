@@ -3,7 +3,7 @@
 use crate::{Run, firmware_for};
 use emulator::accuracy::{force_errors, is_wrong};
 use emulator::bench;
-use emulator::fingertip_design::{FingertipDesign, workspace};
+use emulator::fingertip_design::{FingertipDesign, RunTruth, workspace};
 use emulator::record::{Recorder, Row};
 use emulator::scenario::Scenario;
 use fingertip::link::command::{CommandKind, Outcome};
@@ -55,6 +55,31 @@ fn nothing_else_happened(run: &Run) {
     assert_eq!(run.gaps, Vec::<String>::new());
     let wrong = run.record.rows.iter().find(|row| is_wrong(row, &run.plant));
     assert!(wrong.is_none(), "{wrong:?}");
+}
+
+/// A travel has the settled states of a wall that relaxes: the pressure at the end of a press of a second is that of a press of a day.
+#[test]
+fn the_truth_of_a_scenario_is_named() {
+    let truth = |design: &str, scenario: &str| {
+        let path = host_tests::design(design);
+        let design = FingertipDesign::read(&path).expect("it is shipped");
+        design.truth(&Scenario::named(scenario).expect("it is shipped"))
+    };
+    assert_eq!(truth("index-fingertip", "regrasp"), RunTruth::InTime);
+    assert_eq!(truth("index-fingertip", "press-hold-release"), RunTruth::Settled);
+    assert_eq!(
+        truth("index-fingertip-elastic", "press-hold-release"),
+        RunTruth::Model
+    );
+    let settled = RunTruth::Settled.to_string();
+    assert!(
+        settled.contains("settled") && settled.contains("regrasp"),
+        "{settled}"
+    );
+    let relaxing = FingertipDesign::read(&host_tests::design("index-fingertip")).expect("it is shipped");
+    let scenario = Scenario::named("press-hold-release").expect("it is shipped");
+    let plant = relaxing.plant(scenario).expect("it can be pressed");
+    assert_eq!(plant.truth(1.5), plant.truth(1.9), "held, nothing relaxes");
 }
 
 #[test]

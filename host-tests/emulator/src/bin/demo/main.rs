@@ -63,7 +63,8 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
         design.name()
     );
     let image = Image::firmware(Some(&design.path))?;
-    say!("2/3 {} ...", design.truth());
+    let truth = design.truth(&scenario);
+    say!("2/3 the truth of {}: {truth} ...", design.name());
     let started = Instant::now();
     let plant = design.plant(scenario.clone())?;
     say!("    in {:.1} s", started.elapsed().as_secs_f64());
@@ -103,6 +104,7 @@ fn demo(options: &Options) -> Result<(), Box<dyn Error>> {
         full_scale: plant.full_scale(),
         static_tables: plant.timed().map(|_| plant.curve().clone()),
         target_percent: TARGET_PERCENT,
+        truth: truth.words(),
     };
     write_csv(&record.rows, caption.static_tables.as_ref(), &mut csv)?;
     svg.write_all(chart::svg(&record.rows, &caption)?.as_bytes())?;
@@ -135,7 +137,7 @@ fn serve(options: &Options, address: &str) -> Result<(), Box<dyn Error>> {
         design.name()
     );
     let image = Image::firmware(Some(&design.path))?;
-    say!("{} ...", design.truth());
+    say!("the truth of {}: {} ...", design.name(), design.truth(&scenario));
     let plant = design.plant(scenario)?;
     say!(
         "serving {} at tcp:{address}, until Ctrl-C; watch it with",
