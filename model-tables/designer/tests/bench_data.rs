@@ -370,3 +370,320 @@ fn misspelt_names_and_swapped_axes_are_named() {
         "{line}"
     );
 }
+
+/// Rows of depth, force and pressure rise as other programs export them, read as the plain file is.
+#[test]
+fn exports_of_test_machines_and_loggers_are_read() {
+    let folder = folder("exports");
+    let rows = rows();
+    let (_, plain, _) = fit(&folder, csv(PLAIN, ",", &rows).as_bytes(), &[]);
+    let (_, two, _) = fit(
+        &folder,
+        csv(
+            PLAIN,
+            ",",
+            &rows
+                .iter()
+                .map(|[h, f, _]| [*h, *f, f64::NAN])
+                .collect::<Vec<_>>(),
+        )
+        .as_bytes(),
+        &[],
+    );
+    let factor = |answer: &str| -> f64 {
+        let cell = answer.lines().nth(1).and_then(|line| line.split(',').nth(3));
+        cell.and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN)
+    };
+    let lines = |line: &dyn Fn(usize, [f64; 3]) -> String| -> String {
+        rows.iter().enumerate().map(|(k, row)| line(k, *row)).collect()
+    };
+    let comma = |text: String| text.replace('.', ",");
+    let with_pressure =
+        |head: &str, line: &dyn Fn(usize, [f64; 3]) -> String| (format!("{head}{}", lines(line)), true);
+    let without =
+        |head: &str, line: &dyn Fn(usize, [f64; 3]) -> String| (format!("{head}{}", lines(line)), false);
+    let grouped = |value: f64, group: char, mark: char| -> String {
+        let text = format!("{value:.3}");
+        let (whole, part) = text.split_once('.').expect("decimals");
+        let split = whole.len().saturating_sub(3);
+        let group = if split > 0 {
+            group.to_string()
+        } else {
+            String::new()
+        };
+        format!("{}{group}{}{mark}{part}", &whole[..split], &whole[split..])
+    };
+    for ((text, pressure), note) in [
+        (
+            without(
+                "Mark,M5\nCapacity,50\nRate,100,Hz\nReading,Travel (mm),Load (N)\n",
+                &|k, [h, f, _]| format!("{k},{h:.6},{f:.6}\n"),
+            ),
+            "the 3 lines before the header",
+        ),
+        (
+            without(
+                "\"Specimen label\",\"tip 1\"\n\n\"Time\",\"Extension\",\"Load\"\n\"(s)\",\"(mm)\",\"(N)\"\n",
+                &|k, [h, f, _]| format!("\"{k}\",\"-{h:.6}\",\"-{f:.6}\"\n"),
+            ),
+            "its sign was turned",
+        ),
+        (
+            without(
+                "Results\n,Maximum Load (N),Modulus (MPa)\n1,10.3,0.5\nMean,10.3,0.5\n\nTime (s),Extension (mm),Load (kN)\n",
+                &|k, [h, f, _]| format!("{k},{h:.6},{:.9}\n", f / 1e3),
+            ),
+            "`Load (kN)` is taken as the force, in kN",
+        ),
+        (
+            without(
+                "\"Vorkraft\";0,05;\"N\"\n\"Pr\u{fc}fzeit\";\"Standardweg\";\"Standardkraft\"\n\"s\";\"mm\";\"N\"\n",
+                &|k, [h, f, _]| comma(format!("{k};{h:.6};{f:.6}\n")),
+            ),
+            "`Standardkraft` is taken as the force, in N",
+        ),
+        (
+            without(
+                "MTS793|MPT|ENU|1|2\nStation Name: a.cfg\nAxial Displacement\tAxial Force\tRunning Time\nmm\tN\tsec\n",
+                &|k, [h, f, _]| format!("{h:.6}\t{f:.6}\t{k}\n"),
+            ),
+            "`Axial Force`",
+        ),
+        (
+            with_pressure(
+                "Channels\t3\t\t\nSamples\t25\t25\t25\n***End***\t\t\t\nDepth (mm)\tForce (N)\tPressure (kPa)\tComment\n",
+                &|_, [h, f, p]| format!("{h:.6}\t{f:.6}\t{p:.6}\t\n"),
+            ),
+            "the 3 lines before the header",
+        ),
+        (
+            with_pressure(
+                "# run 7\n# indentation_mm,force_n,pressure_rise_kpa\n",
+                &|_, [h, f, p]| format!("{h:.6},{f:.6},{p:.6}\n"),
+            ),
+            "the names of the columns are those of the comment",
+        ),
+        (
+            with_pressure("indentation_mm,force_n,pressure_rise_kpa\n", &|_, [h, f, p]| {
+                format!("{h:.6},{f:.6},{p:.6},\n")
+            }),
+            "",
+        ),
+        (
+            with_pressure("Tiefe (\u{b5}m);Kraft (mN);Druck (Pa)\n", &|_, row| {
+                let [h, f, p] = row.map(|value| grouped(1e3 * value, '\'', '.'));
+                format!("{h};{f};{p}\n")
+            }),
+            "`Kraft (mN)` is taken as the force",
+        ),
+        (
+            with_pressure("Depth (um);Force (mN);Pressure (Pa)\n", &|_, row| {
+                let [h, f, p] = row.map(|value| grouped(1e3 * value, '\u{202f}', ','));
+                format!("{h};{f};{p}\n")
+            }),
+            "decimal commas",
+        ),
+        (
+            with_pressure("Depth (mm);Force (N);Pressure (bar(g))\n", &|_, [h, f, p]| {
+                format!("{h:.6};{f:.6};{:.9}\n", p / 100.0)
+            }),
+            "`Pressure (bar(g))`",
+        ),
+        (
+            with_pressure(
+                "Depth (mm);Force (N);Pressure (kgf/cm\u{b2})\n",
+                &|_, [h, f, p]| format!("{h:.6};{f:.6};{:.9}\n", p / 98.0665),
+            ),
+            "`Pressure (kgf/cm\u{b2})`",
+        ),
+        (
+            with_pressure(
+                "\"Depth\n(mm)\",\"Force\n(N)\",\"Pressure\n(kPa)\"\n",
+                &|_, [h, f, p]| format!("{h:.5}D+00,{f:.6},{p:.6}\n"),
+            ),
+            "`Pressure (kPa)` is taken",
+        ),
+        (
+            {
+                let (text, pressure) =
+                    with_pressure("indentation_mm,force_n,pressure_rise_kpa\n", &|k, [h, f, p]| {
+                        let again = if k == 12 {
+                            "indentation_mm,force_n,pressure_rise_kpa\n"
+                        } else {
+                            ""
+                        };
+                        format!("{again}{h:.6},{f:.6},{p:.6}\n")
+                    });
+                (text + "\0\0\0\0\0\0", pressure)
+            },
+            "6 zero bytes at the end",
+        ),
+    ] {
+        let (ok, answer, notes) = fit(&folder, text.as_bytes(), &[]);
+        assert!(ok, "{text}: {notes}");
+        let right = factor(if pressure { &plain } else { &two });
+        assert!(
+            (factor(&answer) / right - 1.0).abs() < 1e-3,
+            "{text}: {answer} for {right}"
+        );
+        assert!(notes.contains(note), "{note}: {notes}");
+        assert!(notes.lines().all(|line| line.contains(": ")), "{notes}");
+    }
+}
+
+#[test]
+fn what_is_no_reading_or_no_table_is_refused_by_its_true_name() {
+    let folder = folder("true-names");
+    let rows = rows();
+    let plain = csv(PLAIN, ",", &rows);
+    let scaled = |a: f64, b: f64, c: f64, d: f64| -> Vec<[f64; 3]> {
+        rows.iter().map(|[h, f, p]| [a * h, b * f, c * p + d]).collect()
+    };
+    let column = |k: usize| -> String { rows.iter().map(|row| format!(",{:.4}", row[k])).collect() };
+    for (text, reason) in [
+        (
+            csv(
+                "indentation_mm,force_n,Pressure (mbar abs)",
+                ",",
+                &scaled(1.0, 1.0, 10.0, 1013.0),
+            ),
+            "`Pressure (mbar abs)` is an absolute pressure",
+        ),
+        (
+            csv(
+                "indentation_mm,force_n,Pressure (psia)",
+                ",",
+                &scaled(1.0, 1.0, 0.145, 14.7),
+            ),
+            "`Pressure (psia)` is an absolute pressure",
+        ),
+        (
+            csv(
+                "indentation_mm,force_n,pressure_kpa",
+                ",",
+                &scaled(1.0, 1.0, 1.0, 101.3),
+            ),
+            "as much as the pressure of the air",
+        ),
+        (
+            csv(PLAIN, ",", &scaled(1.0, 1.0, -1.0, 0.0)),
+            "`pressure_rise_kpa` falls as it should grow with `indentation_mm`",
+        ),
+        (
+            csv(PLAIN, ",", &scaled(1.0 / 25.4, 1.0, 1.0, 0.0)),
+            "is the indentation in inches, cm or m",
+        ),
+        (
+            plain.replacen("0.300000,", "-9999,", 1),
+            "is `-9999`: must be a reading: nines far from all others",
+        ),
+        (
+            format!(
+                "indentation_mm{}\nforce_n{}\npressure_rise_kpa{}\n",
+                column(0),
+                column(1),
+                column(2)
+            ),
+            "turn rows into columns",
+        ),
+        (
+            "[{\"indentation_mm\": 0.1, \"force_n\": 0.01}]".to_owned(),
+            "is JSON",
+        ),
+        (
+            "<html><table><tr><td>1</td></tr></table></html>".to_owned(),
+            "is HTML or XML",
+        ),
+        (
+            rows.iter()
+                .fold("Depth,Force,Pressure\n".to_owned(), |text, [h, f, p]| {
+                    text + &format!("{h:.3} mm,{f:.4} N,{p:.4} kPa\n")
+                }),
+            "has no unit",
+        ),
+    ] {
+        let (ok, answer, notes) = fit(&folder, text.as_bytes(), &[]);
+        assert!(!ok && answer.is_empty(), "{reason}: {notes}");
+        let last = notes.lines().last().unwrap_or_default();
+        assert!(last.contains(reason), "{reason}: {notes}");
+    }
+    let (ok, _, notes) = fit(&folder, plain.as_bytes(), &["--direction", "unloading"]);
+    assert!(
+        !ok && notes.contains("none of the 25 rows is what --direction asks for"),
+        "{notes}"
+    );
+    let (ok, _, notes) = fit(&folder, plain.as_bytes(), &["--only", "force_n=99"]);
+    assert!(
+        !ok && notes.contains("is what --only force_n=99 asks for"),
+        "{notes}"
+    );
+    // `1.#QNAN` is a missing number, and not 1.
+    let missing = plain.replacen("0.300000,", "1.#QNAN,", 1);
+    let (ok, _, notes) = fit(&folder, missing.as_bytes(), &[]);
+    assert!(ok, "{notes}");
+    let (_, _, notes) = fit(
+        &folder,
+        csv("Z position (mm),force_n,pressure_rise_kpa", ",", &rows).as_bytes(),
+        &[],
+    );
+    assert!(notes.contains("--columns indentation_mm=1"), "{notes}");
+}
+
+/// CPU seconds in the last line of the shell's `times`: `0m1.20s 0m0.03s`.
+#[cfg(target_os = "linux")]
+fn cpu_of_children(times: &str) -> f64 {
+    let part = |text: &str| -> f64 {
+        let (minutes, seconds) = text.trim_end_matches('s').split_once('m').expect("minutes");
+        60.0 * minutes.parse::<f64>().expect("a number") + seconds.parse::<f64>().expect("a number")
+    };
+    let last = times.trim_end().lines().last().expect("two lines");
+    last.split_whitespace().map(part).sum()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_thousand_rows_end_in_time_and_tell_their_progress_in_a_pipe() {
+    let folder = folder("thousand");
+    let mut text = format!("{PLAIN}\n");
+    for k in 1..=1000 {
+        let h = 0.0025 * f64::from(k);
+        let ripple = 1.0 + 0.01 * (2.399 * f64::from(k)).sin();
+        let _ = writeln!(
+            text,
+            "{h:.6},{:.6},{:.6}",
+            1.1 * h.powf(2.1) * ripple,
+            7.0 * h.powf(1.9) / ripple
+        );
+    }
+    fs::write(folder.join("data.csv"), text).expect("the data");
+    let solid = DESIGN.replace("[rest]\npole_stretch = 1.02\n", "[model]\nkind = \"solid\"\n");
+    assert_ne!(solid, DESIGN);
+    fs::write(folder.join("solid.toml"), solid).expect("a design");
+    for (design, most) in [("tip.toml", 20.0), ("solid.toml", 60.0)] {
+        let begun = std::time::Instant::now();
+        let script = format!(
+            "'{}' fit {design} data.csv >answer.csv; echo $?; times",
+            env!("CARGO_BIN_EXE_designer")
+        );
+        let output = std::process::Command::new("sh")
+            .current_dir(&folder)
+            .args(["-c", &script])
+            .output()
+            .expect("sh is there");
+        let elapsed = begun.elapsed().as_secs_f64();
+        let [times, told] =
+            [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+        assert!(times.starts_with("0\n"), "{design}: {told}");
+        let cpu = cpu_of_children(&times);
+        assert!(cpu > 0.0 && cpu < most, "{design}: {cpu} s of CPU");
+        // A line a second while it works; reading and the end of the run have none.
+        let lines = told
+            .lines()
+            .filter(|line| line.starts_with("progress: fit: "))
+            .count() as f64;
+        assert!(
+            lines >= 0.5 * elapsed - 2.0,
+            "{design}: {lines} lines in {elapsed} s"
+        );
+    }
+}

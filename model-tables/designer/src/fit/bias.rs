@@ -64,6 +64,7 @@ impl fmt::Display for Bias {
         let of = self
             .trial
             .as_ref()
+            .filter(|trial| !trial.is_empty())
             .map_or_else(String::new, |trial| format!(" of trial {trial}"));
         let evidence = self.evidence.abs();
         match self.course {

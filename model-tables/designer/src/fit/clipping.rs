@@ -10,6 +10,8 @@ const MIN_TIES: usize = 3;
 const OVER_USUAL: f64 = 3.0;
 /// Part of the range of every other channel that is passed through meanwhile.
 const GOES_ON: f64 = 0.05;
+/// The same part at a lower end, where the other channel grows from row to row.
+const GOES_ON_LIGHTLY: f64 = 0.01;
 /// Part of the rows that stand at a value at most; more is another kind of data.
 const MAX_SHARE: f64 = 0.9;
 
@@ -59,19 +61,41 @@ fn standing(rows: &[DataRow], quantity: Measured, upper: bool) -> Option<Vec<usi
     {
         return None;
     }
-    let mut others = 0;
+    let (mut others, mut moves) = (0, false);
     for other in Measured::ALL.into_iter().filter(|other| *other != quantity) {
         let Some(whole) = Range::of(rows.iter().filter_map(|row| row.get(other))) else {
             continue;
         };
         others += 1;
-        let meanwhile = Range::of(members.iter().filter_map(|&i| rows[i].get(other)))?;
-        if meanwhile.width() < GOES_ON * whole.width() {
+        let during: Vec<f64> = members.iter().filter_map(|&i| rows[i].get(other)).collect();
+        let stands = upper && other != Measured::Indentation;
+        let Some(meanwhile) = Range::of(during.iter().copied()) else {
+            // Taken out already.
+            if stands {
+                continue;
+            }
+            return None;
+        };
+        let goes_on = meanwhile.width() >= GOES_ON * whole.width();
+        // Force and pressure both at their upper ends stand while the stage alone goes on.
+        let both = stands && meanwhile.width() <= SAME * whole.width();
+        // A press is light at a lower end: it goes on by little, but from row to row.
+        let lightly = !upper && meanwhile.width() >= GOES_ON_LIGHTLY * whole.width() && grows(&during);
+        if !(goes_on || both || lightly) {
             return None;
         }
+        moves |= goes_on || lightly;
+    }
+    if !moves {
+        return None;
     }
     // At the lower end one other channel alone does not tell a channel at its end from a tip that is not touched yet.
     (others == 2 || (others == 1 && upper)).then_some(members)
+}
+
+/// Whether each value is above the one before it; too few tell nothing.
+fn grows(values: &[f64]) -> bool {
+    values.len() > MIN_TIES && values.windows(2).all(|pair| pair[1] > pair[0])
 }
 
 /// Rows of one value away from an end: on average, or of the value next to the end if those are more.
@@ -140,11 +164,36 @@ mod tests {
                 "the pressure rise stands at 2.5",
                 10,
             ),
+            (
+                bench(|h| force(h).min(4.5), |h| rise(h).min(22.5)),
+                "the force stands at 4.5",
+                11,
+            ),
+            (
+                bench(|h| force(h).min(4.5), |h| rise(h).min(22.5)),
+                "the pressure rise stands at 22.5",
+                11,
+            ),
+            (
+                bench(force, |h| rise(h).max(0.55)),
+                "the pressure rise stands at 0.55",
+                4,
+            ),
         ] {
             let found = data.notes.iter().find(|note| note.contains(word));
             let found = found.unwrap_or_else(|| panic!("{word}: {:?}", data.notes));
             assert!(found.contains(&format!("in {left} rows")), "{found}");
         }
+    }
+
+    /// A press to 1.5 mm that is held there.
+    fn held() -> Data {
+        let mut text = String::from("indentation_mm,force_n,pressure_rise_kpa\n");
+        for k in 1..=40 {
+            let depth = 0.05 * f64::from(k.min(30));
+            let _ = writeln!(text, "{depth:.3},{:.5},{:.5}", 2.0 * depth, 10.0 * depth);
+        }
+        Data::parse(&text, "held.csv", &DataChoice::default()).expect("good data")
     }
 
     #[test]
@@ -153,7 +202,7 @@ mod tests {
         for data in [
             bench(|h| 2.0 * h * h, |h| coarse(3.0 * (1.0 - (-2.0 * h).exp()), 0.1)),
             bench(|h| (h - 0.4).max(0.0), |h| 5.0 * (h - 0.4).max(0.0)),
-            bench(|h| h.min(1.5), |h| 10.0 * h.min(1.5)),
+            held(),
         ] {
             assert!(
                 data.notes.iter().all(|note| !note.contains("stands at")),

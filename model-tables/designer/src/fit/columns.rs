@@ -147,6 +147,21 @@ impl Columns {
                 found: sheet.header.join(", "),
             });
         }
+        for quantity in Measured::ALL {
+            let could = unused
+                .iter()
+                .find(|&&at| stated_unit(sheet, at).is_some_and(|unit| quantity.unit(&unit).is_some()));
+            if let Some(&at) = could
+                && self.quantities[quantity as usize].is_none()
+            {
+                self.notes.push(format!(
+                    "no column is taken as the {quantity}: if `{}` is it, say --columns {}={}",
+                    sheet.header[at],
+                    quantity.column(),
+                    at + 1
+                ));
+            }
+        }
         let names: Vec<&str> = unused
             .iter()
             .map(|&at| sheet.header[at].as_str())
@@ -272,6 +287,10 @@ fn unit_of(sheet: &Sheet, at: usize, quantity: Measured) -> Result<f64, DataErro
     };
     let of_heading = Heading::of(&sheet.header[at]).unit;
     let stated = stated_unit(sheet, at).ok_or_else(|| about(None))?;
+    if quantity == Measured::PressureRise && Measured::is_absolute_unit(&stated) {
+        let found = sheet.header[at].clone();
+        return Err(DataError::Absolute { found });
+    }
     let size = quantity
         .unit(&stated)
         .ok_or_else(|| about(Some(stated.clone())))?;

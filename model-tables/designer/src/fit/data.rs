@@ -6,7 +6,7 @@ pub use super::record::{Data, DataRow, Direction};
 use super::clipping;
 use super::columns::{self, Columns};
 use super::heading::Measured;
-use crate::table_text::{Decimal, Sheet, SheetRow};
+use crate::table_text::{Decimal, Sheet, SheetRow, is_missing};
 
 /// How columns are found and rows chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +23,12 @@ pub struct DataChoice {
 const MIN_ROWS: usize = 3;
 /// Numbers of no bench, SI: a logger's mark of a missing value, or a slip.
 const LARGEST: f64 = 1e12;
+/// Pressures of the air, pascals, and the part of the deepest press up to which one is light.
+const AIR: [f64; 2] = [8e4, 1.1e5];
+const LIGHT: f64 = 0.3;
+/// Nines from this number on that are so many times as large as all else are a logger's mark.
+const NINES: f64 = 999.0;
+const FAR: f64 = 3.0;
 /// Rank correlation under which a quantity does not grow with another.
 const MIN_CORRELATION: f64 = 0.5;
 /// A turn back by more than this part of the range of a trial changes the direction.
@@ -30,8 +36,6 @@ const TURN: f64 = 0.15;
 
 /// A quantity of the negative sign is so many times as large there as on the positive side.
 const NEGATIVE: f64 = 4.0;
-/// Cells that stand for a missing number, in lower case.
-const MISSING: [&str; 6] = ["", "nan", "na", "n/a", "-", "--"];
 
 /// How the cells of a file become numbers.
 struct Cells<'a> {
@@ -47,7 +51,7 @@ impl Cells<'_> {
             return Ok(None);
         };
         let text = row.number_text(column.at);
-        if MISSING.contains(&text.to_lowercase().as_str()) {
+        if is_missing(text) {
             return Ok(None);
         }
         match self.decimal.number(text).map(|number| number * column.unit) {
@@ -132,10 +136,28 @@ impl Data {
                 data.rows.push(row);
             }
         }
+        if let Some((column, value)) = choice.only.first()
+            && data.rows.is_empty()
+            && data.incomplete == 0
+            && !sheet.rows.is_empty()
+        {
+            return Err(DataError::NoneChosen {
+                choice: format!("--only {column}={value}"),
+                rows: sheet.rows.len(),
+            });
+        }
+        data.check_marks(&sheet.header, &columns)?;
         data.turn_signs();
         data.infer_directions();
         if let Some(direction) = choice.direction {
+            let before = data.rows.len();
             data.rows.retain(|row| row.direction == direction);
+            if data.rows.is_empty() && before > 0 {
+                return Err(DataError::NoneChosen {
+                    choice: "--direction".to_owned(),
+                    rows: before,
+                });
+            }
         }
         data.check()?;
         let clipped = clipping::take_out(&mut data);
@@ -160,6 +182,50 @@ impl Data {
                     "the {quantity} is negative in compression: its sign was turned"
                 ));
             }
+        }
+    }
+
+    /// Refuses a logger's mark of a missing value, `-9999` and the like, far from all readings.
+    fn check_marks(&self, header: &[String], columns: &Columns) -> Result<(), DataError> {
+        for quantity in Measured::ALL {
+            let Some(column) = columns.quantities[quantity as usize] else {
+                continue;
+            };
+            let read = |row: &DataRow| row.get(quantity).map(|value| value / column.unit);
+            let (marks, readings): (Vec<_>, Vec<_>) = self
+                .rows
+                .iter()
+                .filter_map(|row| Some((row.line, read(row)?)))
+                .partition(|(_, value): &(u64, f64)| is_nines(value.abs()));
+            let largest = readings.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max);
+            if let Some(&(line, value)) = marks.iter().find(|(_, value)| value.abs() > FAR * largest)
+                && !readings.is_empty()
+            {
+                return Err(DataError::Cell {
+                    line,
+                    column: header[column.at].clone(),
+                    found: format!("{}", value.round()),
+                    allowed: "a reading: nines far from all others are a logger's mark of a missing value, so leave the cell empty",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses pressures that begin at that of the air.
+    fn check_air(&self) -> Result<(), DataError> {
+        let drive = |row: &DataRow| row.indentation.or(row.force);
+        let pressed = self.rows.iter().filter_map(|row| Some([drive(row)?, row.rise?]));
+        let deepest = pressed.clone().map(|[drive, _]| drive).fold(0.0, f64::max);
+        let lightest = pressed.clone().min_by(|a, b| a[0].total_cmp(&b[0]));
+        let least = pressed.map(|[_, rise]| rise).fold(f64::INFINITY, f64::min);
+        match lightest {
+            Some([drive, rise])
+                if drive < LIGHT * deepest && (AIR[0]..=AIR[1]).contains(&rise) && least > AIR[0] =>
+            {
+                Err(DataError::BeginsAtAir { least: rise })
+            }
+            _ => Ok(()),
         }
     }
 
@@ -215,6 +281,7 @@ impl Data {
                 });
             }
         }
+        self.check_air()?;
         for (a, b) in [
             (Force, Indentation),
             (PressureRise, Indentation),
@@ -239,6 +306,13 @@ impl Data {
         }
         Ok(())
     }
+}
+
+/// 999, 9999 and so on.
+fn is_nines(value: f64) -> bool {
+    let whole = value.round();
+    let digits = format!("{whole}");
+    value >= NINES && (value - whole).abs() < 1e-6 * whole && digits.bytes().all(|digit| digit == b'9')
 }
 
 /// The direction that a cell names.

@@ -30,6 +30,11 @@ pub enum DataError {
         /// The column.
         found: String,
     },
+    /// Pressures that begin near that of the air.
+    BeginsAtAir {
+        /// The rise of the lightest press, pascals.
+        least: f64,
+    },
     /// Two columns of one quantity, which differ.
     Several {
         /// The name or quantity.
@@ -83,6 +88,13 @@ pub enum DataError {
         /// How many it takes.
         needed: usize,
     },
+    /// No row is as it was asked for.
+    NoneChosen {
+        /// The option that asks.
+        choice: String,
+        /// Rows that there are.
+        rows: usize,
+    },
     /// A quantity does not vary.
     Constant {
         /// The column.
@@ -100,6 +112,9 @@ pub enum DataError {
         correlation: f64,
     },
 }
+
+/// Rank correlation from which on, with a minus, a quantity falls with another.
+const FALLS: f64 = 0.9;
 
 impl fmt::Display for DataError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -123,6 +138,12 @@ impl fmt::Display for DataError {
                 f,
                 "`{found}` is an absolute pressure, and a fit needs the rise over the untouched tip: subtract the untouched \
                  reading, and name the column pressure_rise_kpa"
+            ),
+            Self::BeginsAtAir { least } => write!(
+                f,
+                "the pressure rise is {:.1} kPa at the lightest press, as much as the pressure of the air, so it is taken for an \
+                 absolute pressure: subtract the untouched reading",
+                1e-3 * least
             ),
             Self::Several {
                 what,
@@ -175,6 +196,10 @@ impl fmt::Display for DataError {
                 "{found} rows have two of the three quantities, and a fit needs at least {needed}: measure more, or \
                  choose other rows"
             ),
+            Self::NoneChosen { choice, rows } => write!(
+                f,
+                "none of the {rows} rows is what {choice} asks for: leave the option out, or choose other rows"
+            ),
             Self::Constant { column, value } => write!(
                 f,
                 "`{column}` is {value} in every row, which shows nothing: press to several depths"
@@ -185,8 +210,17 @@ impl fmt::Display for DataError {
                 correlation,
             } => write!(
                 f,
-                "`{column}` does not grow with `{with}` (rank correlation {correlation:.2}): check signs, units and \
-                 columns"
+                "`{column}` {} `{with}` (rank correlation {correlation:.2}): {}",
+                if *correlation < -FALLS {
+                    "falls as it should grow with"
+                } else {
+                    "does not grow with"
+                },
+                if *correlation < -FALLS {
+                    "turn the sign of one of the two, or count the indentation from first touch on"
+                } else {
+                    "check signs, units and columns"
+                }
             ),
         }
     }

@@ -18,6 +18,11 @@ pub enum FitError {
         /// Data over design.
         ratio: f64,
     },
+    /// Force and pressure rise are both a large factor away from the design.
+    DepthUnits {
+        /// Data over design: force, and pressure rise.
+        ratios: [f64; 2],
+    },
     /// The data go deeper than the tip is high.
     TooDeep {
         /// Deepest indentation, metres.
@@ -71,6 +76,15 @@ impl fmt::Display for FitError {
                  and the design",
                 significant(*ratio, 3),
                 slip(*quantity, *ratio)
+            ),
+            Self::DepthUnits {
+                ratios: [force, rise],
+            } => write!(
+                f,
+                "force and pressure rise of the data are {} and {} times what the design gives at these depths: is the indentation in \
+                 inches, cm or m, or are they in mN and Pa? check the units (N, kPa, mm) and the design",
+                significant(*force, 3),
+                significant(*rise, 3)
             ),
             Self::TooDeep { deepest, height } => write!(
                 f,

@@ -45,22 +45,32 @@ const FORCES: &[Unit] = &[
     (&["kN"], 1e3),
     (&["gf", "g"], 9.806_65e-3),
     (&["kgf", "kg"], 9.806_65),
+    (&["daN"], 10.0),
     (&["lbf"], 4.448_222),
+    (&["ozf"], 0.278_013_9),
 ];
 const PRESSURES: &[Unit] = &[
     (&["kPa", "kilopascal", "kilopascals"], 1e3),
-    (&["Pa", "pascal", "pascals"], 1.0),
+    (&["Pa", "pascal", "pascals", "N/m2"], 1.0),
     (&["hPa", "mbar"], 1e2),
-    (&["MPa"], 1e6),
+    (&["MPa", "N/mm2"], 1e6),
     (&["bar"], 1e5),
     (&["psi"], 6_894.757),
     (&["mmHg", "Torr"], 133.322),
     (&["cmH2O"], 98.0665),
     (&["mmH2O"], 9.80665),
+    (&["mH2O"], 9_806.65),
+    (&["inH2O", "inWC", "inWG"], 249.088_9),
+    (&["inHg"], 3_386.389),
+    (&["kgf/cm2", "kg/cm2"], 98_066.5),
     (&["atm"], 101_325.0),
 ];
 /// Milli and mega differ by their case alone, and these are no units of a fingertip's bench.
 const DOUBTFUL: [&str; 4] = ["mPa", "MN", "Mm", "Mbar"];
+
+/// What follows a unit of a gauge pressure and of an absolute one, in lower case.
+const GAUGE: [&str; 4] = ["(g)", "gauge", "rel", "g"];
+const ABSOLUTE: [&str; 4] = ["(a)", "absolute", "abs", "a"];
 
 /// Names that tell a quantity, in lower case.
 const INDENTATION_NAMES: &[&str] = &[
@@ -71,6 +81,25 @@ const INDENTATION_NAMES: &[&str] = &[
     "displacement",
     "penetration",
     "penetration depth",
+    "travel",
+    "stroke",
+    "deflection",
+    "compression",
+    "extension",
+    "compressive extension",
+    "compressive displacement",
+    "axial displacement",
+    "crosshead",
+    "crosshead travel",
+    "crosshead displacement",
+    "tiefe",
+    "eindringtiefe",
+    "eindr\u{fc}cktiefe",
+    "weg",
+    "standardweg",
+    "traversenweg",
+    "profondeur",
+    "enfoncement",
 ];
 const FORCE_NAMES: &[&str] = &[
     "force",
@@ -79,6 +108,14 @@ const FORCE_NAMES: &[&str] = &[
     "load",
     "load cell",
     "load cell force",
+    "compressive load",
+    "compressive force",
+    "axial load",
+    "axial force",
+    "kraft",
+    "normalkraft",
+    "standardkraft",
+    "force normale",
 ];
 const PRESSURE_NAMES: &[&str] = &[
     "pressure rise",
@@ -93,6 +130,12 @@ const PRESSURE_NAMES: &[&str] = &[
     "dp",
     "fluid pressure",
     "internal pressure",
+    "pressure gauge",
+    "druck",
+    "\u{fc}berdruck",
+    "druckanstieg",
+    "pression",
+    "pression relative",
 ];
 
 impl Measured {
@@ -134,8 +177,23 @@ impl Measured {
         }
     }
 
-    /// Size of a unit in SI: by its exact name, else whatever the case of its letters.
+    /// Size of a unit in SI: by its exact name, else whatever the case of its letters; of a pressure also with a word for gauge.
     pub(super) fn unit(self, name: &str) -> Option<f64> {
+        let name = one_word(name);
+        self.plain_unit(&name).or_else(|| {
+            let of_gauge = || without_ending(&name, &GAUGE).find_map(|unit| self.plain_unit(unit));
+            (self == Self::PressureRise).then(of_gauge).flatten()
+        })
+    }
+
+    /// Whether a unit is that of an absolute pressure: `psia`, `mbar abs`.
+    pub(super) fn is_absolute_unit(name: &str) -> bool {
+        let name = one_word(name);
+        Self::PressureRise.unit(&name).is_none()
+            && without_ending(&name, &ABSOLUTE).any(|unit| Self::PressureRise.plain_unit(unit).is_some())
+    }
+
+    fn plain_unit(self, name: &str) -> Option<f64> {
         let find = |same: &dyn Fn(&str) -> bool| {
             let unit = self
                 .units()
@@ -164,6 +222,29 @@ impl fmt::Display for Measured {
             Self::PressureRise => "pressure rise",
         })
     }
+}
+
+/// A unit without blanks and points, its powers as digits: `kgf/cm\u{b2}` is `kgf/cm2`, and `in. Hg` `inHg`.
+fn one_word(unit: &str) -> String {
+    unit.chars()
+        .filter(|c| !c.is_whitespace() && !matches!(c, '.' | '^' | '_'))
+        .map(|c| {
+            if matches!(c, '\u{b2}' | '\u{2082}') {
+                '2'
+            } else {
+                c
+            }
+        })
+        .collect()
+}
+
+/// What stands before each of some endings that a unit has.
+fn without_ending<'a>(unit: &'a str, endings: &'a [&str]) -> impl Iterator<Item = &'a str> {
+    endings.iter().filter_map(move |ending| {
+        let at = unit.len().checked_sub(ending.len())?;
+        let (start, end) = unit.split_at_checked(at)?;
+        end.eq_ignore_ascii_case(ending).then_some(start)
+    })
 }
 
 /// A heading, taken apart.
@@ -206,23 +287,39 @@ impl Heading {
 
     /// Whether its name is an absolute pressure's.
     pub(super) fn is_absolute(&self) -> bool {
-        self.name.contains("absolute") && self.name.contains("pressure")
+        let says = self
+            .name
+            .split(' ')
+            .any(|word| matches!(word, "absolute" | "abs" | "absolutdruck"));
+        let of_unit = self.unit.as_deref().is_some_and(Measured::is_absolute_unit);
+        let of_pressure = ["press", "druck"].iter().any(|word| self.name.contains(word));
+        of_pressure && (says || of_unit)
     }
 }
 
 /// A unit as it stands in a cell: `(mm)`, `[in bar]`.
 pub(super) fn bare(unit: &str) -> &str {
-    let unit = unit
-        .trim()
-        .trim_matches(['(', ')', '[', ']', '{', '}', '<', '>'])
-        .trim();
+    let unit = unit.trim();
+    let unit = match bracketed(unit) {
+        Some(("", inner)) => inner.trim(),
+        _ => unit,
+    };
     unit.strip_prefix("in ").unwrap_or(unit).trim()
 }
 
 /// Name and unit of `name (unit)`.
 fn bracketed(text: &str) -> Option<(&str, &str)> {
     let inner = text.strip_suffix([')', ']', '}', '>'])?;
-    let at = inner.rfind(['(', '[', '{', '<'])?;
+    // `Pressure (bar(g))`: to the bracket that the last one closes.
+    let mut open = 1;
+    let (at, _) = inner.char_indices().rev().find(|(_, c)| {
+        match c {
+            ')' | ']' | '}' | '>' => open += 1,
+            '(' | '[' | '{' | '<' => open -= 1,
+            _ => {}
+        }
+        open == 0
+    })?;
     Some((&inner[..at], &inner[at + 1..]))
 }
 
@@ -271,6 +368,15 @@ mod tests {
             ("Indentation_mm", Indentation, "mm", 1e-3),
             ("Depth (\u{b5}m)", Indentation, "\u{b5}m", 1e-6),
             ("Depth (in)", Indentation, "in", 0.0254),
+            ("Pressure (bar(g))", PressureRise, "bar(g)", 1e5),
+            ("Pressure (psig)", PressureRise, "psig", 6_894.757),
+            ("Pressure [kPa g]", PressureRise, "kPa g", 1e3),
+            ("Pressure (kgf/cm\u{b2})", PressureRise, "kgf/cm\u{b2}", 98_066.5),
+            ("Pressure (in. Hg)", PressureRise, "in. Hg", 3_386.389),
+            ("Pressure (cm H2O)", PressureRise, "cm H2O", 98.0665),
+            ("Compressive extension (mm)", Indentation, "mm", 1e-3),
+            ("Standardkraft [kN]", Force, "kN", 1e3),
+            ("\u{dc}berdruck (mbar)", PressureRise, "mbar", 1e2),
         ] {
             let heading = Heading::of(text);
             assert_eq!(heading.quantity(), Some(quantity), "{text}: {heading:?}");
@@ -294,6 +400,15 @@ mod tests {
         }
         assert_eq!(Heading::of("Force").unit, None);
         assert!(Heading::of("Absolute pressure (kPa)").is_absolute());
+        for text in [
+            "Pressure (psia)",
+            "pressure_mbar_abs",
+            "Pressure (bar(a))",
+            "Absolutdruck (hPa)",
+        ] {
+            assert!(Heading::of(text).is_absolute(), "{text}");
+        }
+        assert!(!Heading::of("Pressure (Pa)").is_absolute() && !Heading::of("Pressure (kPa)").is_absolute());
         assert_eq!(Measured::Force.unit("MN"), None);
         assert_eq!(Measured::PressureRise.unit("mPa"), None);
     }

@@ -13,6 +13,8 @@ use model_tables::model::ModelError;
 
 /// Data so far from the design, as a factor, are in other units or of another device.
 const OTHER_UNITS: f64 = 40.0;
+/// Force and pressure rise that are both so many times the design's come of the unit of the indentation, as a rule.
+const MUCH_MORE: f64 = 10.0;
 /// First touch over the deepest indentation that is no rounding of the stage's zero.
 const OFF_ZERO: f64 = 0.1;
 
@@ -88,7 +90,7 @@ pub(super) fn check_swapped(targets: &[Target], predicted: &[f64]) -> Result<(),
 
 /// Data of another unit or device are no work for a fit.
 pub(super) fn check_units(targets: &[Target], predicted: &[f64]) -> Result<(), FitError> {
-    for quantity in [DataQuantity::Force, DataQuantity::Rise] {
+    let ratio = |quantity: DataQuantity| {
         let ratios: Vec<f64> = targets
             .iter()
             .zip(predicted)
@@ -97,8 +99,22 @@ pub(super) fn check_units(targets: &[Target], predicted: &[f64]) -> Result<(), F
             })
             .map(|(target, predicted)| target.measured / predicted)
             .collect();
-        let ratio = robust::median(&ratios);
-        if !ratios.is_empty() && !(1.0 / OTHER_UNITS..=OTHER_UNITS).contains(&ratio) {
+        (!ratios.is_empty()).then(|| robust::median(&ratios))
+    };
+    let of_force = ratio(DataQuantity::Force);
+    let of_rise = ratio(DataQuantity::Rise);
+    if let (Some(force), Some(rise)) = (of_force, of_rise)
+        && force.min(rise) > MUCH_MORE
+        && force.max(rise) > OTHER_UNITS
+    {
+        return Err(FitError::DepthUnits {
+            ratios: [force, rise],
+        });
+    }
+    for (quantity, ratio) in [(DataQuantity::Force, of_force), (DataQuantity::Rise, of_rise)] {
+        if let Some(ratio) = ratio
+            && !(1.0 / OTHER_UNITS..=OTHER_UNITS).contains(&ratio)
+        {
             return Err(FitError::Units { quantity, ratio });
         }
     }

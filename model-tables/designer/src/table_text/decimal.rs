@@ -62,7 +62,7 @@ impl Decimal {
             Self::Point => ('.', ','),
             Self::Comma => (',', '.'),
         };
-        let mut text = cell.trim().replace('\u{2212}', "-");
+        let mut text = without_spaced_groups(&cell.trim().replace('\u{2212}', "-"));
         if text.contains(group) {
             let whole = text.split(mark).next().unwrap_or_default();
             if !is_grouped(whole, group) || text.matches(group).count() != whole.matches(group).count() {
@@ -70,10 +70,26 @@ impl Decimal {
             }
             text.retain(|c| c != group);
         }
-        text.replace(mark, ".")
-            .parse::<f64>()
+        let text = text.replace(mark, ".");
+        text.parse::<f64>()
+            // Fortran's exponent: `1.5D-03`.
+            .or_else(|_| text.replacen(['d', 'D'], "e", 1).parse::<f64>())
             .ok()
             .filter(|number| number.is_finite())
+    }
+}
+
+/// What stands between groups of thousands and is no decimal mark: apostrophes, and blanks that do not break.
+const SPACES: [char; 5] = ['\'', '\u{2019}', '\u{a0}', '\u{202f}', '\u{2009}'];
+
+/// `1'234.5` as `1234.5`; anything else as it is.
+fn without_spaced_groups(text: &str) -> String {
+    let whole = text.split(['.', ',']).next().unwrap_or_default();
+    match SPACES.iter().find(|space| whole.contains(**space)) {
+        Some(&space) if is_grouped(whole, space) => {
+            whole.chars().filter(|c| *c != space).collect::<String>() + &text[whole.len()..]
+        }
+        _ => text.to_owned(),
     }
 }
 
@@ -86,6 +102,13 @@ fn is_grouped(text: &str, group: char) -> bool {
         && digits(first)
         && !first.starts_with('0')
         && parts.all(|part| part.len() == 3 && digits(part))
+}
+
+/// Whether a cell is a number, with a decimal point or a decimal comma.
+pub(super) fn is_number(cell: &str) -> bool {
+    [Decimal::Point, Decimal::Comma]
+        .iter()
+        .any(|decimal| decimal.number(cell).is_some())
 }
 
 fn evidence(cell: &str) -> Evidence {
@@ -108,7 +131,7 @@ fn evidence(cell: &str) -> Evidence {
     let Some((&first, &last)) = marks.first().zip(marks.last()) else {
         return Evidence::None;
     };
-    let found = if first != last {
+    let found = if first != last || cell.contains(SPACES) {
         Evidence::Only(mark(last))
     } else if is_grouped(cell, first) {
         if marks.len() > 1 {
@@ -144,6 +167,8 @@ mod tests {
             (&["1.234,5"], Decimal::Comma),
             (&["1,234.5", "2,000"], Decimal::Point),
             (&["25.11.2026", "0,123"], Decimal::Comma),
+            (&["100,000", "1\u{a0}015,150"], Decimal::Comma),
+            (&["1'015.150"], Decimal::Point),
         ] {
             assert_eq!(of(cells), Ok(mark), "{cells:?}");
         }
@@ -166,6 +191,11 @@ mod tests {
             (Point, "1,23.5", None),
             (Point, "inf", None),
             (Point, "2,5", None),
+            (Point, "1'234'567.5", Some(1_234_567.5)),
+            (Comma, "-1\u{202f}234,5", Some(-1234.5)),
+            (Point, "1'23.5", None),
+            (Point, "1.5D-03", Some(0.0015)),
+            (Point, "D", None),
         ] {
             assert_eq!(decimal.number(cell), number, "{cell}");
         }

@@ -13,6 +13,13 @@ const OTHER_FILES: [(&[u8], &str); 5] = [
     (b"MATLAB 5.0", "a MATLAB file"),
     (b"\x89HDF", "an HDF5 or MATLAB file"),
 ];
+/// Texts that people take for tables, by their first characters.
+const OTHER_TEXTS: [(&str, &str); 4] = [
+    ("<", "HTML or XML"),
+    ("{", "JSON"),
+    ("[{", "JSON"),
+    ("[[", "JSON"),
+];
 /// Bytes at which a file without a byte order mark is looked at.
 const LOOKED_AT: usize = 4096;
 
@@ -30,6 +37,12 @@ pub(super) fn decode(bytes: &[u8]) -> Result<(String, Option<&'static str>), Str
         return Err(format!(
             "is not text: its bytes are no {}; export the table as CSV",
             encoding.name()
+        ));
+    }
+    let start = text.trim_start_matches('\u{feff}').trim_start();
+    if let Some((_, what)) = OTHER_TEXTS.iter().find(|(first, _)| start.starts_with(first)) {
+        return Err(format!(
+            "is {what}, not a table of cells: export the table as CSV"
         ));
     }
     let name = (encoding != UTF_8).then(|| {
@@ -96,6 +109,8 @@ mod tests {
             (&b"PK\x03\x04\x14\0"[..], "an Excel or OpenDocument workbook"),
             (&b"MATLAB 5.0 MAT-file"[..], "a MATLAB file"),
             (&b"a,b\n1,\0\0\0\n"[..], "is not text"),
+            (&b"<html><table>"[..], "is HTML or XML"),
+            (&b" [{\"force_n\": 1}]"[..], "is JSON"),
         ] {
             assert!(decode(bytes).expect_err("no text").contains(reason));
         }

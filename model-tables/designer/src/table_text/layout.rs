@@ -1,7 +1,8 @@
 //! Text -> header and rows of cells: comments, separator, lines before the header, a row of units.
 
-use super::Decimal;
+use super::decimal::is_number;
 use super::encoding;
+use super::header::{self, Top};
 use super::one_line;
 
 /// Separators, the surest first: a comma may also be a decimal mark, a blank part of a name.
@@ -25,7 +26,12 @@ impl SheetRow {
 
     /// A cell of numbers without a comment after it.
     pub(crate) fn number_text(&self, column: usize) -> &str {
-        self.cell(column).split('#').next().unwrap_or_default().trim()
+        let cell = self.cell(column);
+        // `1.#QNAN` has no comment.
+        let comment = cell
+            .match_indices('#')
+            .find(|(at, _)| cell[..*at].chars().next_back().is_none_or(char::is_whitespace));
+        comment.map_or(cell, |(at, _)| &cell[..at]).trim()
     }
 }
 
@@ -50,12 +56,10 @@ impl Sheet {
     /// # Errors
     /// One line: what is wrong, and where.
     pub(crate) fn read(bytes: &[u8]) -> Result<Self, String> {
-        let (text, encoding) = encoding::decode(bytes)?;
-        let mut notes: Vec<String> = encoding
-            .map(|name| format!("read as {name} text"))
-            .into_iter()
-            .collect();
-        let text = without_comments(&text);
+        let (bytes, mut notes) = whole(bytes);
+        let (original, encoding) = encoding::decode(bytes)?;
+        notes.extend(encoding.map(|name| format!("read as {name} text")));
+        let text = without_comments(&original);
         let (separator, text) = separator(&text)?;
         if separator != b',' {
             let name = SEPARATORS.iter().find(|known| known.0 == separator);
@@ -63,41 +67,65 @@ impl Sheet {
         }
         let rows = split(&text, separator)?;
         let mut sheet = Self::of_rows(rows, separator)?;
+        if !sheet.named
+            && let Some(names) = names_in_comment(&original, &sheet, separator)
+        {
+            let line = sheet.rows[0].line;
+            notes.push(format!(
+                "the names of the columns are those of the comment above line {line}"
+            ));
+            (sheet.header, sheet.named) = (names, true);
+        }
         notes.append(&mut sheet.notes);
         Ok(Self { notes, ..sheet })
     }
 
     /// Finds the header among the rows.
     fn of_rows(mut rows: Vec<SheetRow>, separator: u8) -> Result<Self, String> {
-        let width = usual_width(&rows);
-        let start = rows.iter().position(|row| row.cells.len() == width).unwrap_or(0);
-        let first = rows.get(start).ok_or("has no rows")?;
-        let named = !first.cells.iter().any(|cell| is_number(cell));
-        if !named && start > 0 {
-            let before = &rows[start - 1];
-            return Err(uneven(first, before.line, before.cells.len(), separator));
+        let cells: Vec<&[String]> = rows.iter().map(|row| row.cells.as_slice()).collect();
+        if rows.is_empty() {
+            return Err("has no rows".to_owned());
         }
+        if header::lies(&cells) {
+            return Err("has its columns as rows, with the names first: turn rows into columns".to_owned());
+        }
+        let top = header::find(&cells).or_else(|| first_of_usual_width(&rows));
         let mut notes = Vec::new();
-        if start > 0 {
-            notes.push(format!(
-                "the {start} lines before the header, in line {}, were left out",
-                first.line
-            ));
-        }
-        let header = if named {
-            rows.drain(..=start)
-                .next_back()
-                .map_or_else(Vec::new, |row| row.cells)
+        let (mut header, mut units) = (Vec::new(), None);
+        let named = top.is_some();
+        if let Some(top) = top {
+            if top.header > 0 {
+                notes.push(format!(
+                    "the {} lines before the header, in line {}, were left out",
+                    top.header, rows[top.header].line
+                ));
+            }
+            let mut above: Vec<SheetRow> = rows.drain(..=top.units.unwrap_or(top.header)).collect();
+            units = top.units.and_then(|_| above.pop()).map(|row| row.cells);
+            header = above.pop().map_or_else(Vec::new, |row| row.cells);
+            repeated(&mut rows, &header, units.as_deref(), &mut notes);
+            header = header.iter().map(|name| one_line(name)).collect();
+            // Separators at the end of the header alone.
+            while header.last().is_some_and(String::is_empty)
+                && rows.iter().any(|row| row.cells.len() < header.len())
+            {
+                header.pop();
+            }
+            if let Some(units) = &mut units {
+                units.resize(header.len(), String::new());
+            }
         } else {
-            (1..=width).map(|column| column.to_string()).collect()
-        };
-        let units = rows
-            .first()
-            .is_some_and(|row| {
-                named && row.cells.len() == width && row.cells.iter().all(|cell| !is_number(cell))
-            })
-            .then(|| rows.remove(0).cells)
-            .filter(|cells| cells.iter().any(|cell| !cell.is_empty()));
+            let width = usual_width(&rows);
+            if rows[0].cells.len() != width {
+                let first = rows
+                    .iter()
+                    .find(|row| row.cells.len() == width)
+                    .unwrap_or(&rows[0]);
+                return Err(uneven(first, rows[0].line, rows[0].cells.len(), separator));
+            }
+            header.extend((1..=width).map(|column| column.to_string()));
+        }
+        let width = header.len();
         for row in &mut rows {
             let comment = row.cells.iter().position(|cell| cell.contains('#'));
             let beyond = row.cells.iter().skip(width).any(|cell| !cell.is_empty());
@@ -114,6 +142,63 @@ impl Sheet {
             notes,
         })
     }
+}
+
+/// The file without what loggers and old programs leave at its end: zero bytes of a file that was made before it was filled, and the
+/// mark of the end of a text.
+fn whole(bytes: &[u8]) -> (&[u8], Vec<String>) {
+    let end = bytes
+        .iter()
+        .rposition(|byte| *byte != 0)
+        .map_or(0, |last| last + 1);
+    let mut notes = Vec::new();
+    let mut text = bytes;
+    // Text of two bytes a character has zeros elsewhere too.
+    if end < bytes.len() && end > 0 && !bytes[..end].contains(&0) {
+        text = &bytes[..end];
+        notes.push(format!(
+            "the {} zero bytes at the end of the file were left out",
+            bytes.len() - end
+        ));
+    }
+    (text.strip_suffix(b"\x1a").unwrap_or(text), notes)
+}
+
+/// The header where no names stand above numbers: the first row that is as wide as most, without a number.
+fn first_of_usual_width(rows: &[SheetRow]) -> Option<Top> {
+    let width = usual_width(rows);
+    let header = rows.iter().position(|row| row.cells.len() == width)?;
+    let words = |row: &SheetRow| row.cells.len() == width && !row.cells.iter().any(|cell| is_number(cell));
+    words(&rows[header]).then(|| Top {
+        header,
+        units: rows.get(header + 1).filter(|row| words(row)).map(|_| header + 1),
+    })
+}
+
+/// Takes rows out that are the header, or the units, again.
+fn repeated(rows: &mut Vec<SheetRow>, header: &[String], units: Option<&[String]>, notes: &mut Vec<String>) {
+    let is_again = |row: &SheetRow| row.cells == header || Some(row.cells.as_slice()) == units;
+    if let Some(row) = rows.iter().find(|row| row.cells == header) {
+        notes.push(format!(
+            "the header is repeated in line {}: its rows follow the others",
+            row.line
+        ));
+        rows.retain(|row| !is_again(row));
+    }
+}
+
+/// Names in the comment right above the first row of numbers, as programs write that mark their header as one.
+fn names_in_comment(text: &str, sheet: &Sheet, separator: u8) -> Option<Vec<String>> {
+    let above = (sheet.rows.first()?.line as usize).checked_sub(1)?;
+    let lines: Vec<&str> = text.lines().take(above).collect();
+    let comment = lines.iter().rev().find(|line| !line.trim().is_empty())?.trim();
+    let names = comment.trim_start_matches(['#', '%', '/']);
+    let mut cells = split(names, separator).ok()?.pop()?.cells;
+    if cells.len() == 1 {
+        cells = names.split_whitespace().map(str::to_owned).collect();
+    }
+    let fits = names.len() < comment.len() && cells.len() == sheet.header.len();
+    (fits && !cells.iter().any(|cell| cell.is_empty() || is_number(cell))).then_some(cells)
 }
 
 /// Why a row does not fit the width of its table.
@@ -230,12 +315,6 @@ fn split(text: &str, separator: u8) -> Result<Vec<SheetRow>, String> {
     Ok(rows)
 }
 
-fn is_number(cell: &str) -> bool {
-    [Decimal::Point, Decimal::Comma]
-        .iter()
-        .any(|decimal| decimal.number(cell).is_some())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -254,6 +333,9 @@ mod tests {
             ("sep=;\na;b\n1;2\n", 2),
             ("a  b\n 1    2\n", 2),
             ("a,b,\n1,2,\n", 3),
+            ("a,b\n1,2,\n3,4,\n", 2),
+            ("a,b,\n1,2\n3,4\n", 2),
+            ("# a,b\n1,2\n3,4\n", 2),
             ("a\n1\n2\n", 1),
         ] {
             let sheet = read(text);
@@ -282,6 +364,12 @@ mod tests {
         assert_eq!(sheet.rows.len(), 3);
         assert_eq!(sheet.rows[0].number_text(2), "3");
         assert!(!read("1,2\n3,4\n").named);
+        let commented = read("# run 7\n# depth_mm force_n\n1 2\n3 4\n");
+        assert_eq!(commented.header, ["depth_mm", "force_n"]);
+        assert!(commented.named && commented.rows.len() == 2);
+        let twice = read("a,b\n1,2\n3,4\na,b\n5,6\n\0\0\0");
+        assert_eq!((twice.rows.len(), twice.notes.len()), (3, 2), "{:?}", twice.notes);
+        assert_eq!(read("a,b\n1.#QNAN,2\n3,4\n").rows[0].number_text(0), "1.#QNAN");
     }
 
     #[test]
@@ -290,6 +378,7 @@ mod tests {
             ("a,b\n1,2\n3\n", "line 3 has 1 cells and the header 2"),
             ("a,b,c\n0,1,0,2,0,3\n0,2,0,3,0,4\n", "decimal commas"),
             ("", "has no rows"),
+            ("force_n,1,2,3\nindentation_mm,4,5,6\n", "turn rows into columns"),
         ] {
             let error = Sheet::read(text.as_bytes()).expect_err(text);
             assert!(error.contains(reason), "{error}");

@@ -5,12 +5,10 @@ use super::hold::{HoldRow, HoldTrial, RawTrial, trial};
 use crate::fit::columns::{self, Columns};
 use crate::fit::data::DataChoice;
 use crate::fit::heading::Measured;
-use crate::table_text::{Decimal, Sheet, SheetRow};
+use crate::table_text::{Decimal, Sheet, SheetRow, is_missing};
 
 const TIME: &str = "time_s";
 const TEMPERATURE: &str = "temperature_c";
-/// Cells that stand for a missing number, in lower case.
-const MISSING: [&str; 6] = ["", "nan", "na", "n/a", "-", "--"];
 /// Numbers of no bench, SI.
 const LARGEST: f64 = 1e12;
 /// Temperatures that a fingertip stands, degrees Celsius.
@@ -58,9 +56,14 @@ impl HoldRecord {
             .map(|raw| trial(raw, &mut notes))
             .collect::<Result<Vec<_>, _>>()?;
         if trials.is_empty() {
-            return Err(HoldError::Unreadable(
-                "has no rows: needs a press and its hold".to_owned(),
-            ));
+            return Err(HoldError::Unreadable(if incomplete > 0 {
+                format!(
+                    "none of the {incomplete} rows has a time, an indentation and a force or pressure: a record needs the three in \
+                     each row"
+                )
+            } else {
+                "has no rows: needs a press and its hold".to_owned()
+            }));
         }
         Ok(Self {
             name: name.to_owned(),
@@ -137,7 +140,7 @@ impl Places {
     ) -> Result<bool, HoldError> {
         let cell = |at: usize, unit: f64| -> Result<Option<f64>, HoldError> {
             let text = row.number_text(at);
-            if MISSING.contains(&text.to_lowercase().as_str()) {
+            if is_missing(text) {
                 return Ok(None);
             }
             match decimal.number(text).map(|number| number * unit) {
