@@ -4,10 +4,11 @@ mod domes;
 
 use domes::dome;
 use model_tables::design::{Design, Membrane, RestBy};
+use model_tables::design_file::DesignFile;
 use model_tables::limit::EndsBy;
 use model_tables::material::Law;
 use model_tables::material::preset::{AGILUS30, PRESETS};
-use model_tables::model::ModelError;
+use model_tables::model::{Fingertip, ModelError};
 use model_tables::object::Object;
 use model_tables::solid::SolidError;
 use model_tables::solid::mesh::Elements;
@@ -215,4 +216,26 @@ fn a_law_without_stiffness_is_refused_before_solving() {
             Err(ModelError::Solid(SolidError::NoStiffness { .. }))
         ));
     }
+}
+
+/// The solid ends at 1.556 mm, before the 1.75 mm to which `auto` compares where no design says how deep: a light touch is answered all the same,
+/// as it is with the solid asked for by name. A depth that is stated is a promise, and refused.
+#[test]
+fn auto_answers_where_a_press_ends_early() {
+    let file = |more: &str| {
+        let text = format!(
+            "name = \"flat\"\n[membrane]\nradial_semi_axis_mm = 12.0\naxial_semi_axis_mm = 5.0\nthickness_mm = 2.0\n\
+             [material]\npreset = \"ecoflex-00-30\"\n{more}"
+        );
+        DesignFile::parse(&text, "flat").expect("a design")
+    };
+    let touch = |more: &str| Fingertip::new(&file(more)).and_then(|mut model| model.contact_at(0.2e-3));
+    let auto = touch("[model]\nkind = \"auto\"\naxes = \"outer\"\n").expect("a state");
+    let named = touch("[model]\nkind = \"solid\"\nthrough = 3\nalong = 96\n").expect("a state");
+    assert!(
+        (auto.force / named.force - 1.0).abs() < 0.01,
+        "{auto:?} {named:?}"
+    );
+    let stated = touch("[model]\nkind = \"auto\"\naxes = \"outer\"\n[press]\nmax_indentation_mm = 1.75\n");
+    assert!(stated.expect_err("beyond the end").beyond().is_some());
 }

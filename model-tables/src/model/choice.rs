@@ -68,6 +68,8 @@ const MAX_PERCENT: f64 = 1.0;
 const DEFAULT_FROM: f64 = 1.0;
 /// The deepest indentation where a design does not say, over the height: well before the end of any press.
 const DEFAULT_DEPTH: f64 = 0.35;
+/// The part of a press that ends before the default depth to which fidelities are compared.
+const NEAR_END: f64 = 0.98;
 /// Square of the smallest part of a depth that a cup is looked at to.
 const TIGHTEST_CUP: f64 = 0.01;
 
@@ -80,6 +82,8 @@ pub struct Wanted {
     pub from: f64,
     /// Deepest indentation, metres.
     pub deepest: f64,
+    /// Whether the design states the deepest. Otherwise a press that ends before it is compared down to its end.
+    pub is_stated: bool,
 }
 
 impl Wanted {
@@ -98,6 +102,7 @@ impl Wanted {
             error: percent / 100.0,
             from: from / 100.0,
             deepest: 1e-3 * file.max_indentation_mm.unwrap_or(DEFAULT_DEPTH * height) * in_a_cup(&design),
+            is_stated: file.max_indentation_mm.is_some(),
         }
     }
 
@@ -190,6 +195,20 @@ pub struct Choice {
 /// # Errors
 /// [`ModelError`] of the last fidelity.
 pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
+    let mut wanted = *wanted;
+    loop {
+        let (choice, end) = climb(design, &wanted);
+        let is_judged = choice.as_ref().is_ok_and(|choice| choice.judged.is_some());
+        match end {
+            Some(end) if !is_judged && !wanted.is_stated && end > 0.0 => wanted.deepest = NEAR_END * end,
+            _ => return choice,
+        }
+    }
+}
+
+/// Climbs the ladder once. Beside the choice: the least indentation, metres, at which a fidelity ended before the deepest.
+fn climb(design: &Design, wanted: &Wanted) -> (Result<Choice, ModelError>, Option<f64>) {
+    let mut end: Option<f64> = None;
     let mut solved: Vec<(Kind, Fingertip, Vec<Contact>)> = Vec::new();
     let mut failure = ModelError::Solid(SolidError::RestNotForSolid);
     for judge in LADDER {
@@ -207,6 +226,9 @@ pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
                 contacts
             }
             Err(error) => {
+                if let Some(limit) = error.beyond() {
+                    end = Some(limit.indentation.min(end.unwrap_or(f64::INFINITY)));
+                }
                 failure = error;
                 continue;
             }
@@ -215,19 +237,21 @@ pub fn choose(design: &Design, wanted: &Wanted) -> Result<Choice, ModelError> {
         if let Some(near) = wanted.judge(fidelities, &contacts, own_error) {
             let (kind, fingertip, found) = solved.swap_remove(near);
             let distance = wanted.distance(&found, &contacts);
-            return Ok(Choice {
+            let choice = Choice {
                 kind,
                 judged: Some((judge, distance + own_error)),
                 fingertip,
-            });
+            };
+            return (Ok(choice), end);
         }
     }
-    match solved.pop() {
+    let choice = match solved.pop() {
         Some((kind, fingertip, _)) => Ok(Choice {
             kind,
             judged: None,
             fingertip,
         }),
         None => Err(failure),
-    }
+    };
+    (choice, end)
 }

@@ -107,8 +107,10 @@ impl fmt::Display for MeshError {
         let [through, along] = self.finer.map(Kind::Solid);
         write!(
             f,
-            "error of the mesh: force and pressure rise differ from those of the {through} and of the {along} by at most {:.2} % together, ",
-            100.0 * self.difference
+            "error of the mesh: force and pressure rise differ from those of the {through} and of the {along} by at most {:.2} % together \
+             (of the reading, or of {:.0} % of the largest one asked for), ",
+            100.0 * self.difference,
+            100.0 * FROM
         )?;
         if self.is_known() {
             write!(
@@ -185,7 +187,7 @@ mod tests {
         assert!(known && shown.contains("up to about 30.00 %"), "{shown}");
         let (known, shown) = text(0.67);
         assert!(
-            !known && shown.contains("33.00 % together, too much to say"),
+            !known && shown.contains("33.00 % together") && shown.contains(", too much to say"),
             "{shown}"
         );
     }

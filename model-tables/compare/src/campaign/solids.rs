@@ -172,6 +172,7 @@ pub fn judge(index: u64) -> JudgedSolid {
         error: 0.0,
         from: FROM,
         deepest,
+        is_stated: true,
     };
     let found = by_judge.map(|truth| wanted.distance(&in_list, &truth));
     let stated = MeshError::of(&design, ASKED, &in_list)

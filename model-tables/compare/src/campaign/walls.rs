@@ -105,6 +105,7 @@ impl RandomWall {
             error,
             from: FROM,
             deepest: DEPTH * self.design.membrane.axial_semi_axis,
+            is_stated: true,
         }
     }
 

@@ -12,7 +12,11 @@ use crate::solid::mesh::Elements;
 use std::fmt;
 
 /// Parts of the deepest indentation at which models are compared.
-const PARTS: [f64; 4] = [0.1, 0.3, 0.6, 1.0];
+const PARTS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
+/// After those: each part is this much of the one before, as long as force or pressure rise is large enough to count by itself.
+const NEXT_PART: f64 = 0.5;
+/// States compared, at most.
+const MAX_COMPARED: usize = 8;
 /// The solid that a membrane is compared with, which is about 1 % off itself.
 const JUDGE: Elements = solid::press::FULL;
 /// Part of the end of a press that is surely before it.
@@ -125,7 +129,8 @@ fn better(model: &Fingertip, file: &DesignFile) -> Result<(Fingertip, String), M
     }
 }
 
-/// Compares two models down to an indentation, or to the end of the better one's press if that comes first.
+/// Compares two models down to an indentation, or to the end of the better one's press if that comes first; from there to light touches, as long
+/// as a reading counts by itself.
 fn compare(
     model: &mut Fingertip,
     better: &mut Fingertip,
@@ -140,8 +145,15 @@ fn compare(
         force_percent: 0.0,
         indentation_percent: 0.0,
     };
-    for part in PARTS {
+    let lighter = core::iter::successors(Some(PARTS[PARTS.len() - 1] * NEXT_PART), |part| {
+        Some(part * NEXT_PART)
+    });
+    for part in PARTS.into_iter().chain(lighter).take(MAX_COMPARED) {
         let truth = better.contact_at(part * full.indentation)?;
+        let counts = truth.force >= from * full.force || truth.pressure_rise >= from * full.pressure_rise;
+        if found.states >= PARTS.len() && !counts {
+            break;
+        }
         let read = reading(model, &truth)?;
         let share = |of: fn(&Contact) -> f64| {
             100.0 * (of(&read) - of(&truth)).abs() / of(&truth).max(from * of(&full))
@@ -158,7 +170,11 @@ fn compare(
 /// The state at an indentation, or at the end of the press if that comes first.
 fn up_to_the_end(model: &mut Fingertip, indentation: f64) -> Result<Contact, ModelError> {
     model.contact_at(indentation).or_else(|error| {
-        let limit = error.beyond().ok_or(error)?;
+        // A press that ends where it begins has nothing to compare.
+        let limit = error
+            .beyond()
+            .filter(|limit| limit.indentation > 0.0)
+            .ok_or(error)?;
         model.contact_at(NEARLY * limit.indentation)
     })
 }
