@@ -186,8 +186,9 @@ fn force_and_indentation_hold_on_other_domes_and_walls_also_on_the_release_and_t
         ([10.0, 6.0, 1.0], AGILUS, other, after),
         ([10.0, 6.0, 1.0], MILD, mild, after),
         ([6.0, 5.0, 0.6], AGILUS, other, after),
-        // A tall dome with a wall of a sixth of its radius: 0.02 mm below and 0.4 above are not met.
-        ([7.0, 9.0, 1.2], AGILUS, other, [-0.02, 0.6]),
+        ([10.0, 8.0, 1.2], AGILUS, other, after),
+        // A tall dome with a wall of a sixth of its radius; where it hardly relaxes, 0.02 mm below is not met.
+        ([7.0, 9.0, 1.2], AGILUS, other, after),
         ([7.0, 9.0, 1.2], MILD, mild, [-0.1, 0.4]),
     ] {
         let file = other_dome(dome[0], dome[1], dome[2], MOONEY, series);

@@ -23,6 +23,11 @@
 //! grows beyond the old one, and the effect decays within seconds. `P_l` is at most `-4 P_0`: a wall that pulls little has
 //! recovered, even if its series, at another temperature, gives more.
 //!
+//! A free wall recovers faster than the tables of a pressed one say: while the pressure is below rest, its pole rises by about three
+//! sixteenths more than the settled indentation falls. The indentation is smaller by this rebound `b`, by at most a quarter of it.
+//! A new contact forgets `b` within seconds, as it forgets `P_l`, and faster as it grows: by eight times the relative growth of
+//! the indentation. A wall that hardly relaxes follows its tables: a fall counts by the factor `1 - 1 / (1 + sum c)`.
+//!
 //! `kappa`, `P_2`, `phi_0`, `P_1` and `rho` belong to the design: its tables' generator fits them to a press of the solid in time.
 //!
 //! A plate cannot pull: there is no force below zero.
@@ -49,6 +54,16 @@ const FORCE_BITS: u32 = 16;
 pub const WHOLE: u32 = 1 << 16;
 /// The loss of force on a wall that is touched again starts at `2^PULL_SHIFT` times the pull of the fluid before.
 const PULL_SHIFT: u32 = 2;
+/// Sixteenths of the fall of the settled indentation by which the pole of a free wall rises in addition.
+const REBOUND: i64 = 3;
+const REBOUND_SHIFT: u32 = 4;
+/// The rebound is at most `1 / 2^2` of the indentation.
+const MAX_REBOUND_SHIFT: u32 = 2;
+/// The relative growth of the indentation reduces the rebound by this multiple of itself.
+const GROWTHS: i32 = 8;
+/// Fraction bits of the rebound in nanometres: it has 31 bits up to 134 mm.
+const REBOUND_BITS: u32 = 6;
+
 /// A reading from the pressure of a relaxing wall.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct RelaxedReading {
@@ -82,6 +97,10 @@ pub struct Relaxing<const TERMS: usize> {
     left: i32,
     /// `2^PULL_SHIFT A P` at `P_l`.
     pull: i64,
+    /// The settled indentation of the previous step, nanometres.
+    indentation: i32,
+    /// The rebound `b`, nanometres with [`REBOUND_BITS`].
+    rebound: i32,
 }
 
 /// Table values at an elastic pressure, interpolated between two counts.
@@ -125,6 +144,8 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         peak_force: 0,
         left: 0,
         pull: 0,
+        indentation: 0,
+        rebound: 0,
     };
 
     /// Sets the state of a wall that has always been at this pressure.
@@ -186,7 +207,7 @@ impl<const TERMS: usize> Relaxing<TERMS> {
             lowered: pressed_before && rise.0 < at.elastic.0.saturating_sub(parameters.limits.margin),
             contact: Contact {
                 force: Micronewtons(force),
-                indentation: Nanometres(at.indentation),
+                indentation: Nanometres(self.rebounded(step, at.indentation, rise)),
                 warnings: Warnings::SATURATED
                     .when(at.saturated)
                     .and(Warnings::RECOVERING.when(recovering))
@@ -203,6 +224,24 @@ impl<const TERMS: usize> Relaxing<TERMS> {
         step.take(&mut self.forces, stress);
         // The terms took everything except the share of the settled wall.
         settled + left + stress - change
+    }
+
+    /// The indentation without the rebound, for the next settled one. Both are from 0 to below 2^31 nm.
+    fn rebounded(&mut self, step: &SeriesStep, indentation: i32, rise: PressureRise) -> i32 {
+        let fallen = core::mem::replace(&mut self.indentation, indentation).saturating_sub(indentation);
+        if rise.0 < 0 {
+            let fallen = i64::from(fallen) * (REBOUND << (REBOUND_BITS - REBOUND_SHIFT));
+            self.rebound = self
+                .rebound
+                .saturating_add((fallen - scaled(step.settled, fallen)) as i32);
+        } else if self.rebound > 0 {
+            let grown = share(part(fallen.saturating_mul(-GROWTHS), indentation));
+            self.rebound -= scaled(step.forgets, i64::from(self.rebound)) as i32;
+            self.rebound -= scaled(grown, i64::from(self.rebound)) as i32;
+        }
+        let most = indentation << (REBOUND_BITS - MAX_REBOUND_SHIFT);
+        self.rebound = self.rebound.min(most).max(0);
+        indentation - (self.rebound >> REBOUND_BITS)
     }
 
     /// The largest force so far. It decays with the slowest term.

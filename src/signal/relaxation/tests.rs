@@ -185,6 +185,36 @@ fn a_wall_that_was_left_is_recovering_and_bears_nothing() {
     }
 }
 
+/// By hand, at a nanometre a count: while the pressure is below rest, three sixteenths of the fall of the settled indentation, times the part
+/// that relaxes. A new contact forgets it with 2 s, and by eight times the relative growth.
+#[test]
+fn a_free_wall_comes_back_faster_than_a_pressed_one() {
+    let step = agilus30(0.01);
+    let settled = 1.0 / stiffness(0.01);
+    let mut wall = Relaxing::<TERMS>::NEW;
+    let rebound = |wall: &Relaxing<TERMS>| f64::from(wall.rebound) / 64.0;
+    wall.indentation = 1_000_000;
+    let reading = wall.rebounded(&step.step, 800_000, PressureRise(-1));
+    let by_hand = 0.1875 * 200_000.0 * (1.0 - settled);
+    assert!((rebound(&wall) - by_hand).abs() < 1.0, "{}", rebound(&wall));
+    assert!(
+        (800_000.0 - by_hand - f64::from(reading)).abs() < 2.0,
+        "{reading}"
+    );
+    // At most a quarter.
+    wall.indentation = 1_000_000_000;
+    assert_eq!(wall.rebounded(&step.step, 800_000, PressureRise(-1)), 600_000);
+    wall.rebounded(&step.step, 804_000, PressureRise(1));
+    let by_hand = 200_000.0 * (-0.01_f64 / 2.0).exp() * (1.0 - 8.0 * 4.0 / 804.0);
+    assert!((rebound(&wall) - by_hand).abs() < 5.0, "{}", rebound(&wall));
+    // Twice as deep nothing is left, and a fall leaves it as it is.
+    assert_eq!(wall.rebounded(&step.step, 1_608_000, PressureRise(1)), 1_608_000);
+    // A wall of no series follows its table.
+    let elastic = SeriesStep::over(&Relaxation::new(&[], 20.0, 0.0), 0.01);
+    wall.indentation = 1_000_000;
+    assert_eq!(wall.rebounded(&elastic, 800_000, PressureRise(-1)), 800_000);
+}
+
 #[test]
 fn an_untouched_wall_stays_at_zero() {
     let step = agilus30(1e-3);
