@@ -64,7 +64,13 @@ fn holds(answer: &Answer, out: &Path, name: &str, lightest: f64, greatest: f64, 
         // The tables' accuracy and the model's; a relaxing wall is touched later than a settled one.
         let pascals = 1e3 * solved.number(0, "pressure_rise_kpa") / floor(answer.text(row, "transducer"));
         let relaxes = answer.text(row, "material") == "agilus30";
-        assert!(pascals > 0.95 && (relaxes || pascals < 1.05), "{pascals}");
+        // Below a hundredth of the tables' end, their accuracy is a part of the value there.
+        let small = 1e-4 * answer.number(row, "accuracy_percent") * answer.number(row, "greatest_force_n");
+        let allowed = 0.05_f64.max(small / touch);
+        assert!(
+            pascals > 1.0 - allowed && (relaxes || pascals < 1.0 + allowed),
+            "{pascals}, {allowed}"
+        );
     }
 }
 

@@ -341,7 +341,7 @@ fn a_refused_fit_is_one_line_and_writes_nothing() {
             "falling",
             "indentation_mm,force_n\n0.5,3\n1,2\n2,1\n",
             "",
-            "does not grow with",
+            "falls as it should grow with",
         ),
         (
             "parameter",

@@ -175,9 +175,9 @@ mod tests {
                 11,
             ),
             (
-                bench(force, |h| rise(h).max(0.55)),
-                "the pressure rise stands at 0.55",
-                4,
+                bench(force, |h| rise(h).max(0.95)),
+                "the pressure rise stands at 0.95",
+                6,
             ),
         ] {
             let found = data.notes.iter().find(|note| note.contains(word));

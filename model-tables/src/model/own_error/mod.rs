@@ -12,11 +12,7 @@ use crate::solid::mesh::Elements;
 use std::fmt;
 
 /// Parts of the deepest indentation at which models are compared.
-const PARTS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
-/// After those: each part is this much of the one before, as long as force or pressure rise is large enough to count by itself.
-const NEXT_PART: f64 = 0.5;
-/// States compared, at most.
-const MAX_COMPARED: usize = 8;
+const PARTS: [f64; 4] = [0.1, 0.3, 0.6, 1.0];
 /// The solid that a membrane is compared with, which is about 1 % off itself.
 const JUDGE: Elements = solid::press::FULL;
 /// Part of the end of a press that is surely before it.
@@ -35,6 +31,8 @@ pub struct Comparison {
     pub better: String,
     /// States compared.
     pub states: usize,
+    /// The lightest of them, metres, > 0: a lighter touch can be further off.
+    pub lightest: f64,
     /// Largest error of the force at a pressure rise, percent of reading, as the tables' errors are.
     pub force_percent: f64,
     /// The same of the indentation, percent of reading.
@@ -101,8 +99,11 @@ impl fmt::Display for OwnError {
         match self {
             Self::Compared(found) => write!(
                 f,
-                "against the {} the model is off by {:.2} % (force) and {:.2} % (indentation) of reading at most",
-                found.better, found.force_percent, found.indentation_percent
+                "against the {} the model is off by {:.2} % (force) and {:.2} % (indentation) of reading at most, from {:.3} mm on",
+                found.better,
+                found.force_percent,
+                found.indentation_percent,
+                1e3 * found.lightest
             ),
             Self::Estimated { percent, reason } => write!(
                 f,
@@ -129,8 +130,7 @@ fn better(model: &Fingertip, file: &DesignFile) -> Result<(Fingertip, String), M
     }
 }
 
-/// Compares two models down to an indentation, or to the end of the better one's press if that comes first; from there to light touches, as long
-/// as a reading counts by itself.
+/// Compares two models down to an indentation, or to the end of the better one's press if that comes first.
 fn compare(
     model: &mut Fingertip,
     better: &mut Fingertip,
@@ -142,18 +142,12 @@ fn compare(
     let mut found = Comparison {
         better: words,
         states: 0,
+        lightest: PARTS[0] * full.indentation,
         force_percent: 0.0,
         indentation_percent: 0.0,
     };
-    let lighter = core::iter::successors(Some(PARTS[PARTS.len() - 1] * NEXT_PART), |part| {
-        Some(part * NEXT_PART)
-    });
-    for part in PARTS.into_iter().chain(lighter).take(MAX_COMPARED) {
+    for part in PARTS {
         let truth = better.contact_at(part * full.indentation)?;
-        let counts = truth.force >= from * full.force || truth.pressure_rise >= from * full.pressure_rise;
-        if found.states >= PARTS.len() && !counts {
-            break;
-        }
         let read = reading(model, &truth)?;
         let share = |of: fn(&Contact) -> f64| {
             100.0 * (of(&read) - of(&truth)).abs() / of(&truth).max(from * of(&full))

@@ -58,7 +58,7 @@ fn nonsense_is_refused_with_its_reason() {
         ),
         (
             "indentation_mm,force_n\n0.1,3\n0.2,2\n0.3,1\n",
-            "`force_n` does not grow with `indentation_mm` (rank correlation -1.00)",
+            "`force_n` falls as it should grow with `indentation_mm` (rank correlation -1.00)",
         ),
         (
             "indentation_mm,force_n\n0.1,1\n0.2,1\n0.3\n",
