@@ -140,6 +140,7 @@ pub(super) fn convergence(
             DISC.finer().along
         ),
         states: 0,
+        lightest: f64::INFINITY,
         force_percent: 0.0,
         indentation_percent: 0.0,
     };
@@ -153,6 +154,7 @@ pub(super) fn convergence(
         let read = curve.at_pressure_rise(rise);
         let share = |got: f64, truth: f64, full: f64| 100.0 * (got - truth).abs() / truth.max(from * full);
         found.states += 1;
+        found.lightest = found.lightest.min(state.touch.indentation);
         found.force_percent = found
             .force_percent
             .max(share(read.force, state.touch.force, end.force));

@@ -337,6 +337,7 @@ fn convergence(
     let mut found = Comparison {
         better,
         states: 0,
+        lightest: f64::INFINITY,
         force_percent: 0.0,
         indentation_percent: 0.0,
     };
@@ -353,6 +354,7 @@ fn convergence(
         let force = share(read.force, state.force, end.force);
         let indentation = share(read.indentation, indentation, end.indentation);
         found.states += 1;
+        found.lightest = found.lightest.min(state.indentation);
         found.force_percent = found.force_percent.max(force);
         found.indentation_percent = found.indentation_percent.max(indentation);
     }

@@ -142,7 +142,7 @@ fn compare(
     let mut found = Comparison {
         better: words,
         states: 0,
-        lightest: PARTS[0] * full.indentation,
+        lightest: f64::INFINITY,
         force_percent: 0.0,
         indentation_percent: 0.0,
     };
@@ -153,6 +153,7 @@ fn compare(
             100.0 * (of(&read) - of(&truth)).abs() / of(&truth).max(from * of(&full))
         };
         found.states += 1;
+        found.lightest = found.lightest.min(truth.indentation);
         found.force_percent = found.force_percent.max(share(|contact| contact.force));
         found.indentation_percent = found
             .indentation_percent
