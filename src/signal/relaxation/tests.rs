@@ -202,7 +202,7 @@ fn a_free_wall_comes_back_faster_than_a_pressed_one() {
         "{reading}"
     );
     // At most a quarter.
-    wall.indentation = 1_000_000_000;
+    wall.indentation = 100_000_000;
     assert_eq!(wall.rebounded(&step.step, 800_000, PressureRise(-1)), 600_000);
     wall.rebounded(&step.step, 804_000, PressureRise(1));
     let by_hand = 200_000.0 * (-0.01_f64 / 2.0).exp() * (1.0 - 8.0 * 4.0 / 804.0);
