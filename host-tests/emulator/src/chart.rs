@@ -87,7 +87,7 @@ fn drawing(error: impl fmt::Display) -> ChartError {
 /// One of the upper panels.
 struct Quantity {
     label: &'static str,
-    /// RunTruth and report of a row.
+    /// Truth and report of a row.
     of: fn(&Row) -> [Option<f64>; 2],
     /// It of a contact of the static tables, where they have it.
     of_static: Option<fn(&Contact) -> f64>,

@@ -373,6 +373,7 @@ fn misspelt_names_and_swapped_axes_are_named() {
 
 /// Rows of depth, force and pressure rise as other programs export them, read as the plain file is.
 #[test]
+#[expect(clippy::too_many_lines, reason = "a list of files")]
 fn exports_of_test_machines_and_loggers_are_read() {
     let folder = folder("exports");
     let rows = rows();
@@ -539,7 +540,10 @@ fn what_is_no_reading_or_no_table_is_refused_by_its_true_name() {
     let scaled = |a: f64, b: f64, c: f64, d: f64| -> Vec<[f64; 3]> {
         rows.iter().map(|[h, f, p]| [a * h, b * f, c * p + d]).collect()
     };
-    let column = |k: usize| -> String { rows.iter().map(|row| format!(",{:.4}", row[k])).collect() };
+    let column = |k: usize| {
+        let cells: Vec<String> = rows.iter().map(|row| format!(",{:.4}", row[k])).collect();
+        cells.concat()
+    };
     for (text, reason) in [
         (
             csv(

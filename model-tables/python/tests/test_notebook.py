@@ -38,7 +38,7 @@ def test_the_notebook_finds_its_curve(tmp_path):
     print(printed)
     # Of all threads: 18 s on a loaded machine.
     seconds = float(re.search(r"^processor time (.+)$", printed, re.MULTILINE)[1])
-    assert seconds < 30.0, f"{seconds:.1f} s"
+    assert seconds < 60.0, f"{seconds:.1f} s"
     assert re.search(r"^10000 designs, \d+ refused", printed)
     figures = [output for cell in notebook.cells for output in cell.get("outputs", []) if "image/png" in output.get("data", {})]
     assert len(figures) == 1

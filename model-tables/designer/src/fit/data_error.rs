@@ -208,22 +208,25 @@ impl fmt::Display for DataError {
                 column,
                 with,
                 correlation,
-            } => write!(
-                f,
-                "`{column}` {} `{with}` (rank correlation {correlation:.2}): {}",
-                if *correlation < -FALLS {
-                    "falls as it should grow with"
-                } else {
-                    "does not grow with"
-                },
-                if *correlation < -FALLS {
-                    "turn the sign of one of the two, or count the indentation from first touch on"
-                } else {
-                    "check signs, units and columns"
-                }
-            ),
+            } => refuse_not_growing(f, column, with, *correlation),
         }
     }
+}
+
+/// That a quantity does not grow with another one, or falls.
+fn refuse_not_growing(f: &mut fmt::Formatter<'_>, column: &str, with: &str, correlation: f64) -> fmt::Result {
+    let (how, remedy) = if correlation < -FALLS {
+        (
+            "falls as it should grow with",
+            "turn the sign of one of the two, or count the indentation from first touch on",
+        )
+    } else {
+        ("does not grow with", "check signs, units and columns")
+    };
+    write!(
+        f,
+        "`{column}` {how} `{with}` (rank correlation {correlation:.2}): {remedy}"
+    )
 }
 
 impl core::error::Error for DataError {}
