@@ -36,7 +36,7 @@ def test_the_notebook_finds_its_curve(tmp_path):
         output.text for cell in notebook.cells for output in cell.get("outputs", []) if output.output_type == "stream"
     )
     print(printed)
-    # Of all threads: 18 s on a loaded machine.
+    # Of all threads: 18 s, and 33 s beside other builds on every core.
     seconds = float(re.search(r"^processor time (.+)$", printed, re.MULTILINE)[1])
     assert seconds < 60.0, f"{seconds:.1f} s"
     assert re.search(r"^10000 designs, \d+ refused", printed)
