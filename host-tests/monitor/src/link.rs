@@ -240,10 +240,14 @@ fn take_turns(
     let mut buffer = [0; BUFFER];
     let (mut answered, mut is_silent) = (Instant::now(), false);
     loop {
-        // Also before the first turn: another program may have given the board one.
+        // Also before the first turn: another program may have given the board one. Only a read that found nothing proves the silence: time
+        // alone also passes while bytes wait here.
         let (mut heard, mut came) = (Instant::now(), 0);
-        while heard.elapsed() < quiet {
+        loop {
             let count = read(wire, &mut buffer)?;
+            if count == 0 && heard.elapsed() >= quiet {
+                break;
+            }
             if count == 0 {
                 continue;
             }
@@ -330,6 +334,64 @@ mod tests {
             drop(peer);
             assert!(matches!(link.next(LONG), Some(LinkEvent::Lost(_))));
         }
+    }
+
+    /// Bytes that wait, then silence. It counts what the host sends into the bytes that wait.
+    struct Waiting {
+        chunks: usize,
+        collisions: usize,
+        polls: usize,
+    }
+
+    impl Read for Waiting {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            if self.polls > 0 {
+                return Ok(0);
+            }
+            if self.chunks == 0 {
+                thread::sleep(Duration::from_millis(1));
+                return Err(ErrorKind::TimedOut.into());
+            }
+            self.chunks -= 1;
+            buffer[0] = 1;
+            Ok(1)
+        }
+    }
+
+    impl Write for Waiting {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.collisions += usize::from(self.chunks > 0);
+            self.polls += 1;
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_host_that_is_slow_to_take_bytes_does_not_send_into_those_that_wait() {
+        let (say, events) = sync_channel(0);
+        let (_outgoing, to_send) = channel();
+        let taker = thread::spawn(move || {
+            let mut count = 0;
+            while events.recv().is_ok() {
+                count += 1;
+                thread::sleep(Duration::from_millis(5));
+            }
+            count
+        });
+        let mut wire = Waiting {
+            chunks: 10,
+            collisions: 0,
+            polls: 0,
+        };
+        let ended = take_turns(&mut wire, Duration::from_millis(2), &say, &to_send);
+        drop(say);
+        assert_eq!(ended.map_err(|error| error.kind()), Err(ErrorKind::UnexpectedEof));
+        assert_eq!(taker.join().expect("it ends"), 10);
+        assert_eq!((wire.collisions, wire.polls), (0, 1));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 """The client on a shared line (RS-485), over a pseudo-terminal and sockets: a board that is silent until it has the turn."""
 
+import collections
 import os
 import select
 import socket
@@ -10,6 +11,7 @@ import time
 import pytest
 
 from fingertip.telemetry import Client, CommandKind, Outcome, Reading, TelemetryError, frames
+from fingertip.telemetry.shared import turns
 
 #: Silence before the host may send, s (PROTOCOL.md).
 QUIET = 0.001
@@ -143,6 +145,34 @@ def test_a_board_that_stops_answering_is_a_lost_connection_with_its_reason(socke
         client.take()
         client.read(10)
         assert client.counts.disconnected == 1
+
+
+class Waiting:
+    """Bytes that wait, then silence; it counts what the host sends into the bytes that wait."""
+
+    def __init__(self):
+        self.chunks, self.polls, self.collisions = 10, 0, 0
+
+    def read(self):
+        if self.chunks == 0:
+            time.sleep(0.001)
+            return b""
+        self.chunks -= 1
+        return b"\1"
+
+    def write(self, _):
+        self.polls += 1
+        self.collisions += self.chunks > 0
+
+
+def test_a_program_that_is_slow_to_take_bytes_does_not_send_into_those_that_wait():
+    line, taken = Waiting(), 0
+    for read in turns(line, 0.002, 64, collections.deque()):
+        taken += len(read)
+        time.sleep(0.005)
+        if line.polls:
+            break
+    assert (taken, line.collisions) == (10, 0)
 
 
 def test_a_line_that_is_no_shared_one_is_refused(sockets, tmp_path):

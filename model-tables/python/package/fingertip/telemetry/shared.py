@@ -34,13 +34,16 @@ def turns(line: Line, quiet: float, longest: int, outgoing: deque[bytes]) -> Ite
     """
     answered = time.monotonic()
     while True:
-        # Also before the first turn: another program may have given the board one.
+        # Also before the first turn: another program may have given the board one. Only a read that found nothing proves the silence:
+        # time alone also passes while bytes wait here.
         heard, came = time.monotonic(), 0
-        while time.monotonic() - heard < quiet:
+        while True:
             read = line.read() or b""
             if read:
                 answered = heard = time.monotonic()
                 came += len(read)
+            elif time.monotonic() - heard >= quiet:
+                break
             if came > _FRAMES * (longest + 1):
                 raise OSError("the board does not stop sending, so its line is not a shared one: leave poll out")
             yield read
